@@ -1,0 +1,29 @@
+// Threads: the only header that evaluators and the application use for parallelism.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace raycone {
+
+// Caps the threads of this process (ours, Embree's, OpenVDB's: all of them run on TBB) while it lives. Create exactly
+// one, before the first evaluation. count >= 1.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
+// Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
+// floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
+// where count allows. Exceptions of body propagate.
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+}  // namespace raycone

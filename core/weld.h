@@ -1,0 +1,21 @@
+// Identification of vertices by position.
+#pragma once
+
+#include "core/triangle_mesh.h"
+
+namespace raycone {
+
+enum class WeldMode { kExact, kNone, kDistance };
+
+struct Weld {
+  WeldMode mode = WeldMode::kExact;
+  double distance = 0.0;  // world units; only for kDistance, positive
+};
+
+// The mesh with -0 stored as +0 and equal vertices merged: bitwise equal ones (kExact), or, for kDistance, greedily in
+// lexicographic order of (x, y, z): a vertex joins the first earlier representative within `distance`, or becomes one.
+// Triangles keep their number and order and refer to the representatives. The result does not depend on the order of
+// faces, for kDistance nor on that of vertices; with kNone only the zeros change.
+[[nodiscard]] TriangleMesh weld(const TriangleMesh& mesh, const Weld& how);
+
+}  // namespace raycone

@@ -1,0 +1,60 @@
+// The evaluator: exact generalized winding numbers of one mesh at many points.
+//
+//   w(q) = n(q) - (1 / 2 pi) sum over exterior edges of m_ab arg z_ab(q)
+//
+// n counts the triangles that the ray q + t x, t > 0, crosses; the sum is the winding number of the cone over the
+// exterior edges with its apex at infinity behind the ray. Derivation and every exactness rule: docs/method.md. Method:
+// "Fast and Exact Winding Numbers for Triangle Meshes" (ACM TOG 45(4), 2026), eq. 5.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/lattice.h"
+#include "core/triangle_mesh.h"
+
+namespace raycone {
+
+// Counts over the samples of one evaluation.
+struct Tally {
+  std::uint64_t degenerate = 0;  // edge sides that were ties, decided by the symbolic perturbation, over all samples
+  std::uint64_t on_surface = 0;  // samples that lie exactly on the surface
+
+  Tally& operator+=(const Tally& other) {
+    degenerate += other.degenerate;
+    on_surface += other.on_surface;
+    return *this;
+  }
+};
+
+class WindingNumberEvaluator {
+ public:
+  // Prepares all that depends on the mesh alone: exterior edges and the acceleration structure of the rays.
+  // `mesh` is welded (core/weld.h); vertices used by triangles are finite. Throws std::bad_alloc.
+  explicit WindingNumberEvaluator(TriangleMesh mesh);
+  ~WindingNumberEvaluator();
+  WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
+  WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;
+
+  // Number of undirected edges of non-zero net count; 0 means closed: every value is then exactly an integer.
+  [[nodiscard]] std::uint64_t exterior_edges() const;
+
+  // Winding numbers (turns) of a block of `lattice`, x fastest: values.size() == block.size(). `done`, where given,
+  // grows by one per finished sample while the call runs. Uses the threads that ThreadLimit allows; the values depend
+  // on neither their number nor the block's extent. Const calls may run concurrently.
+  Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
+                 std::atomic<std::uint64_t>* done = nullptr) const;
+
+  // Winding numbers (turns) at finite points, in their order: values.size() == points.size().
+  Tally evaluate(std::span<const Vec3> points, std::span<double> values,
+                 std::atomic<std::uint64_t>* done = nullptr) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<const Implementation> implementation_;
+};
+
+}  // namespace raycone

@@ -1,0 +1,28 @@
+// Errors about files, worded for the person who named them on the command line.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace raycone {
+
+// A file cannot be read or is invalid: exit status 2. what() is one complete line without the leading "raycone: ":
+// "FILE:LINE: what is wrong, what was expected", FILE as given on the command line, LINE a line number or "byte N".
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Output cannot be written: exit status 3. what() is "FILE: what is wrong".
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A request exceeds a limit (memory, size): exit status 4. what() names the number.
+class LimitError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace raycone

@@ -21,6 +21,10 @@ class ThreadLimit {
   std::unique_ptr<Control> control_;
 };
 
+// Makes TBB start its workers in the floating-point environment of the caller. Call before Embree is first used:
+// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero.
+void prime_threads();
+
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
 // floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
 // where count allows. Exceptions of body propagate.

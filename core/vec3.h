@@ -1,6 +1,8 @@
 // A point or vector of three doubles.
 #pragma once
 
+#include <compare>
+
 namespace raycone {
 
 struct Vec3 {
@@ -19,6 +21,13 @@ inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a
 inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// By x, then y, then z: a total order, also of non-finite vertices that no triangle uses.
+inline std::strong_ordering lexicographic_order(const Vec3& a, const Vec3& b) {
+  if (const auto order = std::strong_order(a.x, b.x); order != 0) return order;
+  if (const auto order = std::strong_order(a.y, b.y); order != 0) return order;
+  return std::strong_order(a.z, b.z);
 }
 
 }  // namespace raycone

@@ -1,0 +1,51 @@
+// The boundary cone: what the exterior edges contribute to winding numbers.
+//
+// With p = v - q, P = p_y + i p_z and s = |p| - p_x, the edge a -> b of multiplicity m contributes m arg z,
+//   z = s_a s_b + conj(P_a) P_b,  Im z = a_y b_z - a_z b_y = the edge's side (core/predicates.h),
+// to 2 pi times the winding number of the cone over the edges whose apex lies at infinity along -x (docs/method.md;
+// "Fast and Exact Winding Numbers", eq. 5, with the apex of Martens, Trettner, Bessmeltsev 2026).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/row.h"
+#include "core/triangle_mesh.h"
+
+namespace raycone {
+
+// A sum of angles in turns: whole turns and a rest, kept apart so that the whole ones stay exact.
+struct Turns {
+  std::int64_t whole = 0;
+  double rest = 0.0;
+};
+
+class Cone {
+ public:
+  // The cone over the exterior edges of a welded mesh.
+  explicit Cone(const TriangleMesh& mesh);
+
+  [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
+
+  // Replaces cone[i] by the cone's winding number at sample i of the row, sign as in w = n - w_cone. Rounding errors of
+  // some u per edge; needs DefaultFloatingPoint. Thread-safe. cone.size() == row.xs.size().
+  void winding_numbers(const Row& row, std::span<Turns> cone) const;
+
+ private:
+  // Edges of one |multiplicity|: their product is common. A chain lists consecutive vertices.
+  struct Step {
+    Vec3 to;
+    bool joined;    // the edge from the previous step's vertex to this one is there; else a chain begins here
+    bool reversed;  // its multiplicity is negative
+  };
+  struct Group {
+    std::int32_t multiplicity = 1;  // positive
+    std::vector<Step> steps;
+  };
+
+  std::uint64_t edges_ = 0;
+  std::vector<Group> groups_;
+};
+
+}  // namespace raycone

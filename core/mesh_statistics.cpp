@@ -1,0 +1,81 @@
+#include "core/mesh_statistics.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/exterior_edges.h"
+#include "core/floating_point.h"
+#include "core/predicates.h"
+
+namespace raycone {
+namespace {
+
+void count_edges(const TriangleMesh& mesh, MeshStatistics& statistics) {
+  for_each_edge(mesh, [&](const EdgeUse& use) {
+    statistics.exterior_edges += use.forward != use.backward;
+    statistics.nonmanifold_edges += use.forward + use.backward > 2;
+    statistics.inconsistent_edges += use.forward + use.backward == 2 && use.forward != use.backward;
+  });
+}
+
+std::uint64_t count_duplicates(const TriangleMesh& mesh) {
+  std::vector<Triangle> sorted = mesh.triangles;
+  for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto last = std::unique(sorted.begin(), sorted.end());
+  return static_cast<std::uint64_t>(sorted.end() - last);
+}
+
+std::uint64_t count_degenerate(const TriangleMesh& mesh) {
+  const DefaultFloatingPoint guard;
+  return static_cast<std::uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+    return collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  }));
+}
+
+std::uint64_t count_components(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<bool> counted(mesh.vertices.size(), false);
+  std::uint64_t components = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const std::uint32_t r = root(t[0]);
+    components += !counted[r];
+    counted[r] = true;
+  }
+  return components;
+}
+
+// Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
+double signed_volume(const TriangleMesh& mesh) {
+  const Box box = bounding_box(mesh);
+  const Vec3 centre = 0.5 * box.lower + 0.5 * box.upper;
+  long double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]] - centre, b = mesh.vertices[t[1]] - centre, c = mesh.vertices[t[2]] - centre;
+    sum += static_cast<long double>(dot(a, cross(b, c)));
+  }
+  return static_cast<double>(sum / 6);
+}
+
+}  // namespace
+
+MeshStatistics mesh_statistics(const TriangleMesh& welded) {
+  MeshStatistics statistics;
+  count_edges(welded, statistics);
+  statistics.degenerate_faces = count_degenerate(welded);
+  statistics.duplicate_faces = count_duplicates(welded);
+  statistics.components = count_components(welded);
+  if (statistics.closed()) statistics.signed_volume = signed_volume(welded);
+  return statistics;
+}
+
+}  // namespace raycone

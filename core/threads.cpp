@@ -1,0 +1,33 @@
+#include "core/threads.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/floating_point.h"
+
+namespace raycone {
+
+struct ThreadLimit::Control {
+  tbb::global_control parallelism;
+};
+
+ThreadLimit::ThreadLimit(int count)
+    : control_(new Control{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)}}) {}
+ThreadLimit::~ThreadLimit() = default;
+
+void prime_threads() {
+  tbb::parallel_for(0, 1, [](int) {});
+}
+
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
+  tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
+    const DefaultFloatingPoint guard;
+    body(range.begin(), range.end());
+  });
+}
+
+}  // namespace raycone

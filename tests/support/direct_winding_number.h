@@ -1,0 +1,18 @@
+// The oracle: generalized winding numbers as the plain sum of the solid angles of all triangles (Van Oosterom &
+// Strackee 1983, eq. 8), in extended precision. Shares no code with the evaluator.
+#pragma once
+
+#include "core/triangle_mesh.h"
+
+namespace raycone::test {
+
+// w at q, in turns of the full solid angle (sum of solid angles / 4 pi). Each triangle's term is computed with 64 bits,
+// and again with 113 bits where cancellation would cost the former more than 12 of them (q close to the triangle). In
+// all good to 1e-14, for queries no closer to an edge than 1e-14 of its length; not defined on the surface.
+[[nodiscard]] double direct_winding_number(const TriangleMesh& mesh, const Vec3& q);
+
+// The same at the query moved by (e1, e2, e3), e1 = step, e2 = step^2, e3 = step^3, all in 113 bits: what the symbolic
+// perturbation stands for, made actual.
+[[nodiscard]] double perturbed_winding_number(const TriangleMesh& mesh, const Vec3& q, double step);
+
+}  // namespace raycone::test

@@ -1,0 +1,182 @@
+#include "tests/support/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/weld.h"
+
+namespace raycone::test {
+namespace {
+
+int below(Random& random, int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); }
+
+void add_triangle(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+void add_quad(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  add_triangle(mesh, a, b, c);
+  add_triangle(mesh, a, c, d);
+}
+
+// One side of a box, seen from outside counter-clockwise; side 2 * axis is the lower one, 2 * axis + 1 the upper one.
+void add_side(TriangleMesh& mesh, const Vec3& lower, const Vec3& upper, int side) {
+  const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  Vec3 a = lower, b = lower, c = upper, d = lower;
+  b[u] = upper[u];
+  d[v] = upper[v];
+  c[axis] = lower[axis];
+  if (side % 2 == 0) return add_quad(mesh, a, d, c, b);
+  for (Vec3* p : {&a, &b, &c, &d}) (*p)[axis] = upper[axis];
+  add_quad(mesh, a, b, c, d);
+}
+
+}  // namespace
+
+double uniform(Random& random, double lower, double upper) {
+  return lower + (upper - lower) * (static_cast<double>(random() >> 11) * 0x1p-53);
+}
+
+Vec3 uniform_point(Random& random, const Box& box) {
+  const double x = uniform(random, box.lower.x, box.upper.x);
+  const double y = uniform(random, box.lower.y, box.upper.y);
+  return {x, y, uniform(random, box.lower.z, box.upper.z)};
+}
+
+TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
+  TriangleMesh mesh;
+  for (int side = 0; side < 6; ++side) add_side(mesh, lower, upper, side);
+  return weld(mesh, {});
+}
+
+TriangleMesh open_box() {
+  TriangleMesh mesh;
+  for (int side = 0; side < 5; ++side) add_side(mesh, {0, 0, 0}, {1, 1, 1}, side);
+  return weld(mesh, {});
+}
+
+TriangleMesh sphere(int rings) {
+  const int slices = 2 * rings;
+  const auto at = [&](int ring, int slice) -> Vec3 {
+    if (ring == 0) return {0, 0, 1};
+    if (ring == rings) return {0, 0, -1};
+    const double theta = std::numbers::pi * ring / rings, phi = 2 * std::numbers::pi * (slice % slices) / slices;
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  };
+  TriangleMesh mesh;
+  for (int ring = 0; ring < rings; ++ring) {
+    for (int slice = 0; slice < slices; ++slice) {
+      const Vec3 a = at(ring, slice), b = at(ring + 1, slice), c = at(ring + 1, slice + 1), d = at(ring, slice + 1);
+      if (ring + 1 < rings) add_triangle(mesh, a, b, c);
+      if (ring > 0) add_triangle(mesh, a, c, d);
+    }
+  }
+  return weld(mesh, {});
+}
+
+TriangleMesh soup(Random& random, int triangles) {
+  TriangleMesh mesh;
+  const Box unit{{0, 0, 0}, {1, 1, 1}};
+  for (int i = 0; i < triangles; ++i) {
+    const Vec3 a = uniform_point(random, unit), b = uniform_point(random, unit);
+    add_triangle(mesh, a, b, uniform_point(random, unit));
+  }
+  return mesh;
+}
+
+TriangleMesh lattice_soup(Random& random, int triangles, int size) {
+  TriangleMesh mesh;
+  const auto corner = [&] {
+    const double x = below(random, size + 1), y = below(random, size + 1);
+    return Vec3{x, y, static_cast<double>(below(random, size + 1))};
+  };
+  for (int i = 0; i < triangles; ++i) {
+    const Vec3 a = corner(), b = corner();
+    add_triangle(mesh, a, b, corner());
+  }
+  return weld(mesh, {});
+}
+
+TriangleMesh random_cells(Random& random, int size) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::size_t>(size + 2);
+  std::vector<bool> filled(n * n * n, false);  // with an empty layer around
+  const auto cell = [&](int i, int j, int k) {
+    return (static_cast<std::size_t>(i + 1) * n + static_cast<std::size_t>(j + 1)) * n +
+           static_cast<std::size_t>(k + 1);
+  };
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < size; ++j) {
+      for (int k = 0; k < size; ++k) filled[cell(i, j, k)] = below(random, 2) == 1;
+    }
+  }
+  filled[cell(0, 0, 0)] = true;
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < size; ++j) {
+      for (int k = 0; k < size; ++k) {
+        if (!filled[cell(i, j, k)]) continue;
+        const Vec3 lower{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
+        const Vec3 upper = lower + Vec3{1, 1, 1};
+        const std::array<std::size_t, 6> beyond{cell(i - 1, j, k), cell(i + 1, j, k), cell(i, j - 1, k),
+                                                cell(i, j + 1, k), cell(i, j, k - 1), cell(i, j, k + 1)};
+        for (int side = 0; side < 6; ++side) {
+          if (!filled[beyond[static_cast<std::size_t>(side)]]) add_side(mesh, lower, upper, side);
+        }
+      }
+    }
+  }
+  return weld(mesh, {});
+}
+
+TriangleMesh fan(int triangles, int same) {
+  TriangleMesh mesh;
+  const Vec3 a{0, 0, 0}, b{0.25, 0.5, 1};
+  for (int i = 0; i < triangles; ++i) {
+    const double phi = 2 * std::numbers::pi * i / triangles;
+    const Vec3 tip{std::cos(phi), std::sin(phi), 0.5};
+    if (i < same) {
+      add_triangle(mesh, a, b, tip);
+    } else {
+      add_triangle(mesh, b, a, tip);
+    }
+  }
+  return weld(mesh, {});
+}
+
+TriangleMesh reversed(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh mesh = a;
+  const auto shift = static_cast<std::uint32_t>(a.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Triangle& t : b.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  return weld(mesh, {});
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& factors, const Vec3& shift) {
+  for (Vec3& p : mesh.vertices) p = Vec3{factors.x * p.x, factors.y * p.y, factors.z * p.z} + shift;
+  return mesh;
+}
+
+TriangleMesh shuffled(const TriangleMesh& mesh, Random& random) {
+  std::vector<std::uint32_t> place(mesh.vertices.size());
+  std::iota(place.begin(), place.end(), 0U);
+  std::shuffle(place.begin(), place.end(), random);
+  TriangleMesh result = mesh;
+  for (std::size_t v = 0; v < place.size(); ++v) result.vertices[place[v]] = mesh.vertices[v];
+  for (Triangle& t : result.triangles) {
+    t = {place[t[0]], place[t[1]], place[t[2]]};
+    std::rotate(t.begin(), t.begin() + below(random, 3), t.end());
+  }
+  std::shuffle(result.triangles.begin(), result.triangles.end(), random);
+  return result;
+}
+
+}  // namespace raycone::test

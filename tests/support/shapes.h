@@ -1,0 +1,40 @@
+// Meshes for tests.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "core/triangle_mesh.h"
+
+namespace raycone::test {
+
+using Random = std::mt19937_64;
+
+// Uniform in [lower, upper); the same on every platform, unlike std::uniform_real_distribution.
+[[nodiscard]] double uniform(Random& random, double lower, double upper);
+[[nodiscard]] Vec3 uniform_point(Random& random, const Box& box);
+
+// The closed box with outward faces, two triangles a side.
+[[nodiscard]] TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper);
+// The unit cube without its top (z = 1).
+[[nodiscard]] TriangleMesh open_box();
+// A closed sphere of radius 1 about the origin: `rings` bands of 2 * `rings` slices, outward.
+[[nodiscard]] TriangleMesh sphere(int rings);
+// Unrelated triangles with uniform corners in the unit cube.
+[[nodiscard]] TriangleMesh soup(Random& random, int triangles);
+// Unrelated triangles with corners on the integer lattice {0 .. size}^3: every kind of degeneracy.
+[[nodiscard]] TriangleMesh lattice_soup(Random& random, int triangles, int size);
+// The closed boundary of a random set of unit cells of {0 .. size}^3: every lattice ray through it is degenerate, and
+// cells touch in edges and vertices only.
+[[nodiscard]] TriangleMesh random_cells(Random& random, int size);
+// Triangles around one common edge, the first `same` of them in one direction, the others in the other.
+[[nodiscard]] TriangleMesh fan(int triangles, int same);
+
+[[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
+[[nodiscard]] TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+// All vertices as A v + shift, A diagonal.
+[[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const Vec3& factors, const Vec3& shift);
+// Faces in another order, each starting at another corner; vertices renumbered.
+[[nodiscard]] TriangleMesh shuffled(const TriangleMesh& mesh, Random& random);
+
+}  // namespace raycone::test

@@ -1,0 +1,75 @@
+#include "core/weld.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+TEST(Weld, MergesBitwiseEqualVerticesAndKeepsTheOrderOfFaces) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
+  const TriangleMesh welded = weld(mesh, {});
+  EXPECT_EQ(welded.vertices.size(), 4U);
+  EXPECT_EQ(welded.triangles[0], (Triangle{0, 1, 2}));
+  EXPECT_EQ(welded.triangles[1], (Triangle{1, 0, 3}));
+}
+
+TEST(Weld, NegativeZeroIsZeroInEveryMode) {
+  const TriangleMesh mesh{{{0.0, 1, 2}, {-0.0, 1, 2}, {5, -0.0, 5}}, {{0, 1, 2}}};
+  EXPECT_EQ(weld(mesh, {}).vertices.size(), 2U);
+  const TriangleMesh unmerged = weld(mesh, {WeldMode::kNone});
+  EXPECT_EQ(unmerged.vertices.size(), 3U);
+  EXPECT_FALSE(std::signbit(unmerged.vertices[1].x));
+  EXPECT_FALSE(std::signbit(unmerged.vertices[2].y));
+}
+
+TEST(Weld, OneUlpApartIsTwoVertices) {
+  const double next = std::nextafter(1.0, 2.0);
+  EXPECT_EQ(weld({{{1, 0, 0}, {next, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}).vertices.size(), 3U);
+}
+
+TEST(Weld, DistanceJoinsTheFirstRepresentativeInLexicographicOrder) {
+  // 0 takes 0.9; 1.5 is too far from 0 and becomes its own; 2.4 joins 1.5.
+  const TriangleMesh mesh{{{2.4, 0, 0}, {0.9, 0, 0}, {0, 0, 0}, {1.5, 0, 0}}, {{0, 1, 2}, {2, 3, 1}}};
+  const TriangleMesh welded = weld(mesh, {WeldMode::kDistance, 1.0});
+  ASSERT_EQ(welded.vertices.size(), 2U);
+  const auto x = [&](std::size_t face, std::size_t corner) {
+    return welded.vertices[welded.triangles[face][corner]].x;
+  };
+  EXPECT_EQ(x(0, 0), 1.5);
+  EXPECT_EQ(x(0, 1), 0.0);
+  EXPECT_EQ(x(0, 2), 0.0);
+  EXPECT_EQ(x(1, 1), 1.5);
+}
+
+TEST(Weld, DistanceIsInclusiveAndWorksFarFromTheOrigin) {
+  const TriangleMesh mesh{{{5e5, 4.6e6, 0}, {5e5 + 0.25, 4.6e6, 0}, {5e5, 4.6e6 - 0.5, 0}}, {{0, 1, 2}}};
+  EXPECT_EQ(weld(mesh, {WeldMode::kDistance, 0.25}).vertices.size(), 2U);
+  EXPECT_EQ(weld(mesh, {WeldMode::kDistance, 0.125}).vertices.size(), 3U);
+}
+
+TEST(Weld, DistanceDoesNotDependOnTheOrderOfVertices) {
+  test::Random random(7);
+  const TriangleMesh mesh = test::soup(random, 200);
+  const Weld how{WeldMode::kDistance, 0.05};
+  const auto representatives = [&](const TriangleMesh& m) { return weld(m, how).vertices; };
+  const std::vector<Vec3> expected = representatives(mesh);
+  EXPECT_LT(expected.size(), mesh.vertices.size());
+  EXPECT_EQ(representatives(test::shuffled(mesh, random)), expected);
+}
+
+TEST(Weld, UnusedNonFiniteVerticesDoNoHarm) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const TriangleMesh mesh{{{nan, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, inf, nan}, {0, 1, 0}}, {{1, 2, 4}}};
+  for (const Weld& how : {Weld{}, Weld{WeldMode::kNone}, Weld{WeldMode::kDistance, 0.5}}) {
+    const TriangleMesh welded = weld(mesh, how);
+    EXPECT_EQ(welded.vertices[welded.triangles[0][2]], (Vec3{0, 1, 0}));
+  }
+}
+
+}  // namespace
+}  // namespace raycone

@@ -166,14 +166,14 @@ void multiply_tied(Products& z, const Corner& a, const Corner& b, int side, cons
 }
 
 void multiply_edge(Products& z, const Corner& a, const Corner& b, bool reversed, const Row& row) {
-  const EdgeSide side = edge_side(a.vertex, b.vertex, row.query(0));
+  const EdgeDeterminant d = edge_determinant(a.vertex, b.vertex, row.query(0));
+  const EdgeSide side = edge_side(a.vertex, b.vertex, row.query(0), d);
   if (side.sign == 0) return;  // projects to a point: arg z = 0
   const int sign = reversed ? -side.sign : side.sign;
   if (side.tie) {
     multiply_tied(z, a, b, sign, row);
   } else {
-    const double d = a.y * (b.vertex.z - a.vertex.z) - a.z * (b.vertex.y - a.vertex.y);
-    multiply_generic(z, a, b, std::copysign(d, sign), row);
+    multiply_generic(z, a, b, std::copysign(d.value, sign), row);
   }
   if (++z.factors == kFactorsPerScaling) scale(z, row.xs.size());
 }

@@ -32,9 +32,26 @@ struct EdgeSide {
 // Sign of D, exact: -1, 0 or +1. Depends on the y and z of its arguments only.
 [[nodiscard]] int exact_edge_orientation(const Vec3& a, const Vec3& b, const Vec3& q);
 
-// Floating point vouches for the sign of D^ = a_y d_z - a_z d_y, d = b - a, where |D^| exceeds this many times
-// |a_y d_z| + |a_z d_y|, plus the absolute term, which stands for underflow: each factor is rounded once (two of them:
-// 2 u), each product (u) and the difference (u), so 4 u, second-order terms included, is a bound; u = 2^-53.
+// D in floating point.
+struct EdgeDeterminant {
+  double value = 0.0;
+  double terms = 0.0;  // the sum of the absolute values of its two products
+};
+
+// D = P_a x d = P_b x d with d = b - a, from the end that is nearer in projection: the error is a few u times `terms`,
+// which shrinks with the edge and with the distance from that end. From the farther end a query level with a vertex, as
+// on lattices, would lose all digits of D.
+[[nodiscard]] inline EdgeDeterminant edge_determinant(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const double ay = a.y - q.y, az = a.z - q.z, by = b.y - q.y, bz = b.z - q.z;
+  const bool a_is_nearer = std::abs(ay) + std::abs(az) <= std::abs(by) + std::abs(bz);
+  const double left = (a_is_nearer ? ay : by) * (b.z - a.z);
+  const double right = (a_is_nearer ? az : bz) * (b.y - a.y);
+  return {left - right, std::abs(left) + std::abs(right)};
+}
+
+// Floating point vouches for the sign of D^ where |D^| exceeds this many times `terms`, plus the absolute value, which
+// stands for underflow: each factor is rounded once (two of them: 2 u), each product (u) and the difference (u), so 4 u
+// is a bound but for second-order terms; u = 2^-53.
 inline constexpr double kSideFilter = 4.0 * 0x1p-53 * (1.0 + 0x1p-50);
 inline constexpr double kSideUnderflow = 0x1p-1000;
 
@@ -44,15 +61,17 @@ inline constexpr double kSideUnderflow = 0x1p-1000;
   return {0, true};
 }
 
-[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q) {
-  const double ay = a.y - q.y, az = a.z - q.z, dy = b.y - a.y, dz = b.z - a.z;
-  const double left = ay * dz, right = az * dy;
-  const double d = left - right;
-  const double trust = kSideFilter * (std::abs(left) + std::abs(right)) + kSideUnderflow;
-  if (d > trust) return {1, false};
-  if (-d > trust) return {-1, false};
+// The side of the edge, given its determinant.
+[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q, const EdgeDeterminant& d) {
+  const double trust = kSideFilter * d.terms + kSideUnderflow;
+  if (d.value > trust) return {1, false};
+  if (-d.value > trust) return {-1, false};
   const int sign = exact_edge_orientation(a, b, q);
   return sign != 0 ? EdgeSide{sign, false} : broken_tie(a, b);
+}
+
+[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q) {
+  return edge_side(a, b, q, edge_determinant(a, b, q));
 }
 
 // Sign of det(b - a, c - a, q - a): positive where q lies on the front side of the triangle.

@@ -317,6 +317,21 @@ TEST(WindingNumber, PlainDoublesWouldLoseTheDigitsNearEdges) {  // negative cont
   EXPECT_GT(std::abs(argument(1.0) - argument(1.0L)), 1e-9);
 }
 
+// D computed from the farther end of an edge loses its digits where the nearer one is level with the query.
+TEST(WindingNumber, NearlyLevelWithAVertexKeepsTwelveDigits) {
+  Random random(19);
+  const TriangleMesh mesh = test::joined(test::open_box(), weld(test::soup(random, 10), {}));
+  std::vector<Vec3> queries;
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) {
+      const Vec3& p = mesh.vertices[v];
+      const double step = std::pow(10.0, -test::uniform(random, 3, 15));
+      queries.push_back({test::uniform(random, -1, 1.5), p.y + step, p.z - 0.3 * step});
+    }
+  }
+  EXPECT_LT(largest_error(mesh, queries), kRounding);
+}
+
 // --- Magnitudes ---
 
 TEST(WindingNumber, FarFromTheOriginIsTheDirectSum) {

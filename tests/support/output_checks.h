@@ -1,0 +1,51 @@
+// What the tests of writers share: files as text, and checks by other programs' readers.
+#pragma once
+
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/field_writer.h"
+#include "tests/support/run_command.h"
+
+namespace raycone::test {
+
+inline std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The values (x fastest) of the part of the lattice that `block` is.
+inline std::vector<double> part(const Lattice& lattice, const std::vector<double>& values, const LatticeBlock& block) {
+  std::vector<double> result;
+  for (std::int64_t z = 0; z < block.counts[2]; ++z) {
+    for (std::int64_t y = 0; y < block.counts[1]; ++y) {
+      for (std::int64_t x = 0; x < block.counts[0]; ++x) {
+        const std::int64_t i = block.first[0] - lattice.index_min[0] + x;
+        const std::int64_t j = block.first[1] - lattice.index_min[1] + y;
+        const std::int64_t k = block.first[2] - lattice.index_min[2] + z;
+        result.push_back(values[static_cast<std::size_t>((k * lattice.counts[1] + j) * lattice.counts[0] + i)]);
+      }
+    }
+  }
+  return result;
+}
+
+// Writes `values` (x fastest) as a file would be written by the application, in slabs of `thickness`.
+inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice& lattice,
+                           const FieldDescription& description, const std::vector<double>& values,
+                           std::int64_t thickness, const FieldTotals& totals = {}) {
+  const auto writer = make_lattice_writer(format, output, lattice, description);
+  const auto axis = static_cast<std::size_t>(writer->slab_axis());
+  for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
+    LatticeBlock slab = whole(lattice);
+    slab.first[axis] += done;
+    slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
+    writer->write(slab, part(lattice, values, slab));
+  }
+  writer->finish(totals);
+}
+
+}  // namespace raycone::test

@@ -1,0 +1,57 @@
+// What the tests of the mesh readers share: readers called on literals, and on every truncation of one.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/file_error.h"
+#include "io/read_mesh.h"
+
+namespace raycone::test {
+
+using MeshReader = ParsedMesh (*)(const MeshSource&);
+
+// Messages name the file "f".
+inline ParsedMesh parse(MeshReader reader, std::string_view bytes) { return reader({"f", "", bytes}); }
+
+// The message of the InputError that the reader throws; empty where it throws none.
+inline std::string error_of(MeshReader reader, std::string_view bytes) {
+  try {
+    parse(reader, bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+// Reads every proper prefix of `bytes`, each in an allocation of its exact size, so that the address sanitizer sees a
+// read beyond the end. Each must load or throw InputError. Returns how many loaded.
+inline int count_loading_prefixes(MeshReader reader, std::string_view bytes) {
+  int loading = 0;
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const std::unique_ptr<char[]> copy(new char[size]);
+    std::memcpy(copy.get(), bytes.data(), size);
+    loading += error_of(reader, {copy.get(), size}).empty() ? 1 : 0;
+  }
+  return loading;
+}
+
+// Bytes of numbers, in the byte order of this machine or the other one.
+template <class Number>
+std::string bytes_of(std::initializer_list<Number> numbers, bool reversed = false) {
+  std::string bytes;
+  for (const Number number : numbers) {
+    std::string one(sizeof number, '\0');
+    std::memcpy(one.data(), &number, sizeof number);
+    bytes += reversed ? std::string(one.rbegin(), one.rend()) : one;
+  }
+  return bytes;
+}
+
+}  // namespace raycone::test

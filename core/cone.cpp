@@ -5,11 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "core/angle.h"
 #include "core/exterior_edges.h"
 #include "core/near_edge.h"
 #include "core/predicates.h"
+#include "core/tied_factor.h"
 
 namespace raycone {
 namespace {
@@ -97,14 +99,15 @@ void scale(Products& z, std::size_t samples) {
 }
 
 // A factor that no cheap test vouches for.
-Factor careful_factor(const Corner& a, const Corner& b, const Vec3& q, double re, double im, double product_of_s) {
+Factor<double> careful_factor(const Corner& a, const Corner& b, const Vec3& q, double re, double im,
+                              double product_of_s) {
   const double magnitude = std::abs(re) + std::abs(im);
   if (a.ordinary && b.ordinary && magnitude > kNearEdge * product_of_s && magnitude > kSmallestScalable &&
       magnitude < kLargestScalable) {
     const double power = inverse_power(magnitude);
     return {re * power, im * power};
   }
-  const Factor near = near_edge_factor(a.vertex, b.vertex, q);
+  const Factor<double> near = near_edge_factor<double>(a.vertex, b.vertex, q).factor;
   return {near.re, std::copysign(near.im, im)};
 }
 
@@ -131,37 +134,18 @@ void multiply_generic(Products& z, const Corner& a, const Corner& b, double im, 
     if (ordinary && magnitude_excess[i] > 0.0 && magnitude < kLargestFactor) {
       multiply(z, i, re[i], im);
     } else {
-      const Factor f = careful_factor(a, b, row.query(i), re[i], im, a.s[i] * b.s[i]);
+      const Factor<double> f = careful_factor(a, b, row.query(i), re[i], im, a.s[i] * b.s[i]);
       multiply(z, i, f.re, f.im);
     }
   }
 }
 
-// Re and |Im| of the factor of an edge with D = 0 (METHOD section 3, rule 4), up to a positive number. True where the
-// argument is not 0.
-bool tied_factor(const Corner& a, const Corner& b, const Vec3& q, Factor& f) {
-  const bool through_a = a.y == 0.0 && a.z == 0.0, through_b = b.y == 0.0 && b.z == 0.0;
-  if (through_a) {  // the ray meets the vertex ahead, (s, P) = (0, -1); or q lies at it or beyond, where the argument
-                    // is 0
-    f = {-b.y, std::abs(b.z)};
-    return a.vertex.x > q.x;
-  }
-  if (through_b) {
-    f = {-a.y, std::abs(a.z)};
-    return b.vertex.x > q.x;
-  }
-  // P_a and P_b lie on one line through 0: the signs of one coordinate tell whether on opposite sides.
-  const bool opposite = a.y != 0.0 && b.y != 0.0 ? (a.y < 0.0) != (b.y < 0.0) : (a.z < 0.0) != (b.z < 0.0);
-  f = {-1.0, 0.0};
-  return opposite && meeting_side(a.vertex, b.vertex, q) > 0;
-}
-
 void multiply_tied(Products& z, const Corner& a, const Corner& b, int side, const Row& row) {
   for (std::size_t i = 0; i < row.xs.size(); ++i) {
-    Factor f;
-    if (!tied_factor(a, b, row.query(i), f)) continue;
-    const double power = inverse_power(std::max({std::abs(f.re), std::abs(f.im), 0x1p-1000}));
-    multiply(z, i, f.re * power, std::copysign(f.im * power, side));
+    const std::optional<Factor<double>> f = tied_factor<double>(a.vertex, b.vertex, row.query(i));
+    if (!f) continue;
+    const double power = inverse_power(std::max({std::abs(f->re), std::abs(f->im), 0x1p-1000}));
+    multiply(z, i, f->re * power, std::copysign(f->im * power, side));
   }
 }
 
@@ -214,7 +198,7 @@ void Cone::winding_numbers(const Row& row, std::span<Turns> cone) const {
       }
       for (std::size_t i = 0; i < samples; ++i) {
         cone[begin + i].whole += group.multiplicity * z.turns[i];
-        cone[begin + i].rest += group.multiplicity * argument_in_turns(z.re[i], z.im[i]);
+        cone[begin + i].rest += group.multiplicity * argument_in_turns<double>(z.re[i], z.im[i]);
       }
     }
   }

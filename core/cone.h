@@ -21,6 +21,13 @@ struct Turns {
   double rest = 0.0;
 };
 
+// The same with 64 bits, and how far the sum may be off.
+struct TurnsWithin {
+  std::int64_t whole = 0;
+  long double rest = 0.0L;
+  long double bound = 0.0L;  // of |whole + rest - the exact sum|, turns
+};
+
 class Cone {
  public:
   // The cone over the exterior edges of a welded mesh.
@@ -31,6 +38,11 @@ class Cone {
   // Replaces cone[i] by the cone's winding number at sample i of the row, sign as in w = n - w_cone. Rounding errors of
   // some u per edge; needs DefaultFloatingPoint. Thread-safe. cone.size() == row.xs.size().
   void winding_numbers(const Row& row, std::span<Turns> cone) const;
+
+  // The same in extended precision with a rigorous bound of its error, by running error analysis (docs/method.md,
+  // "Error bound"). Some ten times slower, and a check of the above: it shares the signs and the order of edges, not
+  // the arithmetic.
+  void enclose(const Row& row, std::span<TurnsWithin> cone) const;
 
  private:
   // Edges of one |multiplicity|: their product is common. A chain lists consecutive vertices.

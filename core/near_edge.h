@@ -6,15 +6,26 @@
 namespace raycone {
 
 // A complex number; only its argument counts.
+template <class Real>
 struct Factor {
-  double re = 1.0;
-  double im = 0.0;
+  Real re = 1;
+  Real im = 0;
 };
 
-// A number with the argument of z_ab(q), to a few units in the last place at any distance of q from the edge and for
-// coordinates of any magnitude, max(|re|, |im|) = 1; |im| may underflow to 0, and its sign is to be set from
-// edge_side(). q does not lie on the edge's closed segment, nor on its line along the ray. Slow (microseconds): METHOD
-// section 3, rule 5.
-[[nodiscard]] Factor near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q);
+// Close to the inside of an edge s_a s_b and conj(P_a) P_b cancel. Where |Re z| + |Im z| is less than this share of s_a
+// s_b, near_edge_factor() takes over (METHOD section 3, rule 5).
+inline constexpr double kNearEdge = 0x1p-8;
+
+// A number with the argument of z_ab(q) at any distance of q from the edge and for coordinates of any magnitude, within
+// `error` (radians) and the rounding of its two parts to Real. max(|re|, |im|) = 1; |im| may underflow to 0, and its
+// sign is to be set from edge_side(). q does not lie on the edge's closed segment, nor on its line along the ray. Slow
+// (microseconds): METHOD section 3, rule 5.
+template <class Real>
+struct NearEdgeFactor {
+  Factor<Real> factor;
+  Real error;
+};
+template <class Real>  // double or long double
+[[nodiscard]] NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q);
 
 }  // namespace raycone

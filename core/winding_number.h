@@ -30,6 +30,14 @@ struct Tally {
   }
 };
 
+// What is known of each value besides itself. Every span has the values' size.
+struct Diagnostics {
+  std::span<std::int64_t> crossings;   // n(q)
+  std::span<std::int64_t> degenerate;  // ties, as in Tally
+  std::span<std::uint8_t> on_surface;  // 1 on the surface, where the value is that of the perturbed query
+  std::span<double> error_bound;  // of |w - true w| in turns, rigorous (docs/method.md, "Error bound"); 0 if closed
+};
+
 class WindingNumberEvaluator {
  public:
   // Prepares all that depends on the mesh alone: exterior edges and the acceleration structure of the rays.
@@ -44,13 +52,14 @@ class WindingNumberEvaluator {
 
   // Winding numbers (turns) of a block of `lattice`, x fastest: values.size() == block.size(). `done`, where given,
   // grows by one per finished sample while the call runs. Uses the threads that ThreadLimit allows; the values depend
-  // on neither their number nor the block's extent. Const calls may run concurrently.
+  // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes some ten times
+  // as long for open meshes. Const calls may run concurrently.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
-                 std::atomic<std::uint64_t>* done = nullptr) const;
+                 std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
   // Winding numbers (turns) at finite points, in their order: values.size() == points.size().
-  Tally evaluate(std::span<const Vec3> points, std::span<double> values,
-                 std::atomic<std::uint64_t>* done = nullptr) const;
+  Tally evaluate(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done = nullptr,
+                 const Diagnostics* diagnostics = nullptr) const;
 
  private:
   struct Implementation;

@@ -21,17 +21,17 @@ TEST(ArgumentInTurns, AgreesWithTheArcTangent) {
         std::atan2(static_cast<long double>(im), static_cast<long double>(re)) / (2 * std::numbers::pi_v<long double>);
     // 6 u of the value: beyond 1/16 rad the result is at least half the table's entry, whose rounding (u) and that of
     // the quotient t (u) thus count double; the rest's quotient, the product and the sum add less than 2 u.
-    EXPECT_NEAR(argument_in_turns(re, im), static_cast<double>(expected),
+    EXPECT_NEAR(argument_in_turns<double>(re, im), static_cast<double>(expected),
                 std::abs(static_cast<double>(expected)) * 6 * u);
   }
 }
 
 TEST(ArgumentInTurns, KeepsTheSignBitOfIm) {
-  EXPECT_EQ(argument_in_turns(-1, 0.0), 0.5);
-  EXPECT_EQ(argument_in_turns(-1, -0.0), -0.5);
-  EXPECT_TRUE(std::signbit(argument_in_turns(1, -0.0)));
-  EXPECT_EQ(argument_in_turns(0.0, 3), 0.25);
-  EXPECT_EQ(argument_in_turns(0.0, -3), -0.25);
+  EXPECT_EQ(argument_in_turns<double>(-1, 0.0), 0.5);
+  EXPECT_EQ(argument_in_turns<double>(-1, -0.0), -0.5);
+  EXPECT_TRUE(std::signbit(argument_in_turns<double>(1, -0.0)));
+  EXPECT_EQ(argument_in_turns<double>(0.0, 3), 0.25);
+  EXPECT_EQ(argument_in_turns<double>(0.0, -3), -0.25);
 }
 
 // The argument of z_ab in turns by its definition, in 80-bit arithmetic: well conditioned away from the edge.
@@ -50,9 +50,9 @@ TEST(NearEdgeFactor, HasTheArgumentOfThePlainFormWhereThatIsWellConditioned) {
   for (int i = 0; i < 20000; ++i) {
     const Vec3 a = test::uniform_point(random, box), b = test::uniform_point(random, box);
     const Vec3 q = test::uniform_point(random, box);
-    const Factor f = near_edge_factor(a, b, q);
+    const Factor<double> f = near_edge_factor<double>(a, b, q).factor;
     // 1e-13: what cancellation in |p| - p_x and near the edge leaves of 64 bits in the worst of 20 000 draws.
-    EXPECT_NEAR(argument_in_turns(f.re, f.im), argument_by_definition(a, b, q), 1e-13);
+    EXPECT_NEAR(argument_in_turns<double>(f.re, f.im), argument_by_definition(a, b, q), 1e-13);
   }
 }
 
@@ -64,8 +64,8 @@ TEST(NearEdgeFactor, KeepsItsDigitsDownToTheSmallestDistances) {
       // In the plane through (-0.5, 0, 0) spanned by y and z, coordinates relative to y = z = 0 are exact at any
       // magnitude.
       const Vec3 q{-0.5, distance * std::cos(angle), distance * std::sin(angle)};
-      const Factor f = near_edge_factor(a, b, q);
-      return argument_in_turns(f.re, f.im);
+      const Factor<double> f = near_edge_factor<double>(a, b, q).factor;
+      return argument_in_turns<double>(f.re, f.im);
     };
     const double reference = argument_by_definition(a, b, {-0.5, 1e-8 * std::cos(angle), 1e-8 * std::sin(angle)});
     // 1e-3: at 1e-8 edge lengths cancellation leaves the reference 64 - 53 bits.
@@ -80,9 +80,9 @@ TEST(NearEdgeFactor, KeepsItsDigitsDownToTheSmallestDistances) {
 
 TEST(NearEdgeFactor, MagnitudesOfCoordinatesDoNotMatter) {
   const Vec3 a{0.25, -1, 0.5}, b{0.5, 3, 0.25}, q{0.125, 0.75, 0.5};
-  const Factor expected = near_edge_factor(a, b, q);
+  const Factor<double> expected = near_edge_factor<double>(a, b, q).factor;
   for (const double scale : {0x1p-1000, 0x1p-500, 0x1p500, 0x1p1000}) {
-    const Factor f = near_edge_factor(scale * a, scale * b, scale * q);
+    const Factor<double> f = near_edge_factor<double>(scale * a, scale * b, scale * q).factor;
     EXPECT_EQ(f.re, expected.re);
     EXPECT_EQ(f.im, expected.im);
   }

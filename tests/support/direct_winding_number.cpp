@@ -90,6 +90,10 @@ double direct_winding_number(const TriangleMesh& mesh, const Vec3& q) {
   return static_cast<double>(sum / kTwoPi);
 }
 
+__float128 direct_winding_number_quad(const TriangleMesh& mesh, const Vec3& q) {
+  return sum_in_quad(mesh, {q.x, q.y, q.z}) / kTwoPi;
+}
+
 double perturbed_winding_number(const TriangleMesh& mesh, const Vec3& q, double step) {
   const Quad e = step;
   return static_cast<double>(sum_in_quad(mesh, {q.x + e, q.y + e * e, q.z + e * e * e}) / kTwoPi);

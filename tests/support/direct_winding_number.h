@@ -11,6 +11,9 @@ namespace raycone::test {
 // all good to 1e-14, for queries no closer to an edge than 1e-14 of its length; not defined on the surface.
 [[nodiscard]] double direct_winding_number(const TriangleMesh& mesh, const Vec3& q);
 
+// The same with 113 bits throughout, unrounded.
+[[nodiscard]] __float128 direct_winding_number_quad(const TriangleMesh& mesh, const Vec3& q);
+
 // The same at the query moved by (e1, e2, e3), e1 = step, e2 = step^2, e3 = step^3, all in 113 bits: what the symbolic
 // perturbation stands for, made actual.
 [[nodiscard]] double perturbed_winding_number(const TriangleMesh& mesh, const Vec3& q, double step);

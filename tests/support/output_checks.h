@@ -1,6 +1,7 @@
 // What the tests of writers share: files as text, and checks by other programs' readers.
 #pragma once
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -32,6 +33,16 @@ inline std::vector<double> part(const Lattice& lattice, const std::vector<double
   }
   return result;
 }
+
+// Runs a program under Debian's Python, which has pyopenvdb, and returns what it said on standard error.
+inline std::string run_python(const std::string& program, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"/usr/bin/python3", "-c", program};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const CommandResult result = Command(command).wait();
+  return result.status == 0 ? result.err : "failed: " + result.err;
+}
+
+inline bool python_has(const std::string& module) { return run_python("import " + module, {}).empty(); }
 
 // Writes `values` (x fastest) as a file would be written by the application, in slabs of `thickness`.
 inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice& lattice,

@@ -20,13 +20,13 @@ struct CommandResult {
 };
 
 struct CommandOptions {
-  std::string input;                               // standard input, closed behind it
-  std::map<std::string, std::string> environment;  // added to this process's
-  std::optional<std::string> output_file;          // opened as standard output in place of a pipe
-  std::optional<std::uint64_t> file_size_limit;    // RLIMIT_FSIZE, bytes
-  bool close_output = false;                       // standard output is closed at the start
-  bool break_output_pipe = false;                  // nobody reads standard output
-  std::vector<int> ignored_signals;                // ignored at the start, as under nohup
+  std::string input{};                               // standard input, closed behind it
+  std::map<std::string, std::string> environment{};  // added to this process's
+  std::optional<std::string> output_file{};          // opened as standard output in place of a pipe
+  std::optional<std::uint64_t> file_size_limit{};    // RLIMIT_FSIZE, bytes
+  bool close_output = false;                         // standard output is closed at the start
+  bool break_output_pipe = false;                    // nobody reads standard output
+  std::vector<int> ignored_signals{};                // ignored at the start, as under nohup
 };
 
 // A command that runs; killed if still running at the end of its life.

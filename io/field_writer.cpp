@@ -1,1 +1,46 @@
-// (being written)
+#include "io/field_writer.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "io/format_writers.h"
+
+namespace raycone {
+
+std::optional<FieldFormat> field_format_from_name(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (lower == "vdb") return FieldFormat::kVdb;
+  if (lower == "csv") return FieldFormat::kCsv;
+  if (lower == "npy") return FieldFormat::kNpy;
+  return std::nullopt;
+}
+
+std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const Lattice& lattice,
+                                                   const FieldDescription& description) {
+  switch (format) {
+    case FieldFormat::kVdb:
+      return make_vdb_lattice_writer(output, lattice, description);
+    case FieldFormat::kCsv:
+      return make_csv_lattice_writer(output, lattice, description);
+    case FieldFormat::kNpy:
+      return make_npy_lattice_writer(output, lattice, description);
+  }
+  throw std::logic_error("unknown field format");
+}
+
+std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
+                                               std::optional<std::uint64_t> size) {
+  switch (format) {
+    case FieldFormat::kCsv:
+      return make_csv_point_writer(output);
+    case FieldFormat::kNpy:
+      return make_npy_point_writer(output, size);
+    case FieldFormat::kVdb:
+      break;  // holds lattices only; options are checked before anything is opened
+  }
+  throw std::logic_error("no point writer for this format");
+}
+
+}  // namespace raycone

@@ -21,13 +21,13 @@ enum class FieldFormat { kVdb, kCsv, kNpy };
 
 // What a file says about itself (VDB metadata).
 struct FieldDescription {
-  std::string field = "winding";   // also the grid's name
-  std::string mesh;                // file name without directory
+  std::string field = "winding";  // also the grid's name
+  std::string mesh;               // file name without directory
   std::string mesh_sha256;
-  std::string rule;                // empty where the field has none: not written then
+  std::string rule;  // empty where the field has none: not written then
   std::uint64_t faces = 0;
   std::uint64_t exterior_edges = 0;
-  bool double_precision = false;   // DoubleGrid / float64 instead of float32
+  bool double_precision = false;  // DoubleGrid / float64 instead of float32
 };
 
 // Known only when all values are.

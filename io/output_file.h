@@ -9,8 +9,8 @@
 namespace raycone {
 
 // Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
-// output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor removes
-// an uncommitted temporary file; so does remove_temporary_files().
+// output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
+// removes an uncommitted temporary file; so does remove_temporary_files().
 class OutputFile {
  public:
   // Opens at once, so that what cannot be written fails before the work. With no_clobber an existing file is an error.

@@ -1,1 +1,327 @@
-// (being written)
+// OpenVDB grids of a field on a lattice: index (i, j, k) is the sample's, background 0, active where the stored value
+// differs from 0. Blocks of 8^3 samples become leaves, or tiles where all samples are stored alike.
+#include <openvdb/io/Archive.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <streambuf>
+#include <string>
+#include <vector>
+
+#include "core/threads.h"
+#include "io/file_error.h"
+#include "io/format_writers.h"
+#include "io/read_file.h"
+#include "io/spool_file.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::int64_t kLeafLog2 = 3;
+constexpr std::int64_t kLeafSize = 1 << kLeafLog2;
+constexpr std::size_t kLeafVoxels = 512;
+
+// --- The lattice
+
+void check_indices(const Lattice& lattice, const std::string& name) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)];
+    const std::int64_t last = lattice.index_max(axis);
+    if (first < std::numeric_limits<std::int32_t>::min() || last > std::numeric_limits<std::int32_t>::max()) {
+      throw OutputError(name + ": lattice indices " + std::to_string(first) + " to " + std::to_string(last) +
+                        " do not fit in the 32 bits of OpenVDB");
+    }
+  }
+}
+
+// OpenVDB takes a transform whose determinant is below 3e-15 for singular, however well scaled it is.
+void check_voxel_volume(const Vec3& spacing, const std::string& name) {
+  constexpr double kLeastVolume = 3e-15;
+  const double volume = spacing.x * spacing.y * spacing.z;
+  if (volume >= kLeastVolume) return;
+  const double mean_exponent = (std::log10(spacing.x) + std::log10(spacing.y) + std::log10(spacing.z)) / 3;
+  char message[160];
+  std::snprintf(message, sizeof message,
+                ": voxel volume %.2g is below 3e-15, which OpenVDB cannot represent; scale the mesh (--scale 1e%.0f)",
+                volume, -std::floor(mean_exponent));
+  throw OutputError(name + message);
+}
+
+openvdb::math::MapBase::Ptr map_of(const Lattice& lattice) {
+  const openvdb::Vec3d scale(lattice.spacing.x, lattice.spacing.y, lattice.spacing.z);
+  const openvdb::Vec3d translation(lattice.origin.x, lattice.origin.y, lattice.origin.z);
+  const bool cubic = scale.x() == scale.y() && scale.y() == scale.z();
+  if (cubic) return std::make_shared<openvdb::math::UniformScaleTranslateMap>(scale.x(), translation);
+  return std::make_shared<openvdb::math::ScaleTranslateMap>(scale, translation);
+}
+
+// Transform's constructor recomputes a map's scale as the difference of two transformed points, which costs digits
+// where the translation is large; a transform that is read has the map as it was written.
+openvdb::math::Transform::Ptr transform_of(const Lattice& lattice) {
+  const openvdb::math::MapBase::Ptr map = map_of(lattice);
+  std::stringstream bytes;
+  openvdb::writeString(bytes, map->type());
+  map->write(bytes);
+  openvdb::io::setCurrentVersion(bytes);
+  auto transform = std::make_shared<openvdb::math::Transform>();
+  transform->read(bytes);
+  return transform;
+}
+
+openvdb::Coord to_coord(std::int64_t x, std::int64_t y, std::int64_t z) {
+  return {static_cast<openvdb::Int32>(x), static_cast<openvdb::Int32>(y), static_cast<openvdb::Int32>(z)};
+}
+
+// --- The tree
+
+// Gathers the samples of all leaf blocks of one layer (equal leaf coordinate along z), then turns them into leaves and
+// tiles. Leaf coordinates are sample indices divided by 8, rounded down.
+template <typename Tree>
+class LeafLayer {
+ public:
+  using Value = typename Tree::ValueType;
+  using Leaf = typename Tree::LeafNodeType;
+
+  explicit LeafLayer(const Lattice& lattice) : lattice_(lattice) {
+    for (std::size_t a = 0; a < 2; ++a) {
+      first_[a] = lattice.index_min[a] >> kLeafLog2;
+      counts_[a] = (lattice.index_max(static_cast<int>(a)) >> kLeafLog2) - first_[a] + 1;
+    }
+    values_.resize(leaf_count() * kLeafVoxels);
+  }
+
+  // Takes the planes z_begin <= z < z_end, all in this layer, from a slab of the lattice.
+  void gather(const LatticeBlock& slab, std::span<const double> values, std::int64_t z_begin, std::int64_t z_end) {
+    parallel_for(static_cast<std::size_t>(counts_[1]), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::int64_t z = z_begin; z < z_end; ++z) gather_row(slab, values, row, z);
+      }
+    });
+  }
+
+  // Adds the leaves and tiles of the layer at leaf coordinate `leaf_z` to `tree` and starts the next layer.
+  void move_to(Tree& tree, std::int64_t leaf_z) {
+    std::vector<std::unique_ptr<Leaf>> leaves(leaf_count());
+    parallel_for(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) leaves[n] = make_leaf(n, origin(n, leaf_z));
+    });
+    openvdb::tree::ValueAccessor<Tree> accessor(tree);
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+      const Value value = values_[n * kLeafVoxels];
+      if (leaves[n]) {
+        accessor.addLeaf(leaves[n].release());
+      } else if (value != Value{0}) {
+        accessor.addTile(1, origin(n, leaf_z), value, true);
+      }
+    }
+    std::fill(values_.begin(), values_.end(), Value{0});
+  }
+
+ private:
+  [[nodiscard]] std::size_t leaf_count() const { return static_cast<std::size_t>(counts_[0] * counts_[1]); }
+
+  [[nodiscard]] openvdb::Coord origin(std::size_t n, std::int64_t leaf_z) const {
+    const std::int64_t leaf_x = first_[0] + static_cast<std::int64_t>(n) % counts_[0];
+    const std::int64_t leaf_y = first_[1] + static_cast<std::int64_t>(n) / counts_[0];
+    return to_coord(leaf_x * kLeafSize, leaf_y * kLeafSize, leaf_z * kLeafSize);
+  }
+
+  // The samples at height z of one row of leaf blocks along x.
+  void gather_row(const LatticeBlock& slab, std::span<const double> values, std::size_t row, std::int64_t z) {
+    const std::int64_t leaf_y = first_[1] + static_cast<std::int64_t>(row);
+    const std::int64_t y_begin = std::max(leaf_y * kLeafSize, slab.first[1]);
+    const std::int64_t y_end = std::min((leaf_y + 1) * kLeafSize, slab.first[1] + slab.counts[1]);
+    const std::int64_t x_begin = slab.first[0] - first_[0] * kLeafSize;  // counted from the first leaf
+    Value* const leaves = &values_[row * static_cast<std::size_t>(counts_[0]) * kLeafVoxels];
+    for (std::int64_t y = y_begin; y < y_end; ++y) {
+      const std::int64_t line = (z - slab.first[2]) * slab.counts[1] + (y - slab.first[1]);
+      const double* source = &values[static_cast<std::size_t>(line * slab.counts[0])];
+      const auto yz = static_cast<std::size_t>((y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1)));
+      for (std::int64_t x = x_begin; x < x_begin + slab.counts[0]; ++x) {
+        const auto leaf = static_cast<std::size_t>(x >> kLeafLog2);
+        const auto plane = static_cast<std::size_t>(x & (kLeafSize - 1));
+        // Adding 0 turns -0 into 0.
+        leaves[leaf * kLeafVoxels + plane * kLeafSize * kLeafSize + yz] = static_cast<Value>(*source++) + Value{0};
+      }
+    }
+  }
+
+  // Nothing where all values are equal.
+  [[nodiscard]] std::unique_ptr<Leaf> make_leaf(std::size_t n, const openvdb::Coord& leaf_origin) const {
+    const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(n * kLeafVoxels);
+    const auto end = begin + kLeafVoxels;
+    if (std::all_of(begin + 1, end, [&](Value value) { return value == *begin; })) return nullptr;
+    auto leaf = std::make_unique<Leaf>(leaf_origin, Value{0}, false);
+    std::copy(begin, end, leaf->buffer().data());
+    typename Leaf::NodeMaskType active;
+    for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) active.set(i, begin[i] != Value{0});
+    leaf->setValueMask(active);
+    return leaf;
+  }
+
+  Lattice lattice_;
+  std::array<std::int64_t, 2> first_{};   // leaf coordinates along x and y
+  std::array<std::int64_t, 2> counts_{};  // leaf blocks along x and y
+  std::vector<Value> values_;             // leaf by leaf, x fastest; in each leaf OpenVDB's order: z fastest
+};
+
+// --- The file
+
+// Passes all bytes on and hashes those behind the file header.
+class HashingBuffer final : public std::streambuf {
+ public:
+  // The archive's identifier, 36 characters that OpenVDB draws at random, is the end of the file header.
+  static constexpr std::size_t kIdentifierOffset = 21;
+  static constexpr std::size_t kIdentifierSize = 36;
+
+  explicit HashingBuffer(std::streambuf& target) : target_(target) {}
+
+  // An identifier that depends on nothing but the bytes written.
+  [[nodiscard]] std::string identifier() {
+    fold();
+    std::string text = hash_.substr(0, 32);
+    for (const std::size_t position : {8U, 13U, 18U, 23U}) text.insert(position, 1, '-');
+    return text;
+  }
+
+ protected:
+  int_type overflow(int_type c) override {
+    const char byte = traits_type::to_char_type(c);
+    return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+  }
+  std::streamsize xsputn(const char* data, std::streamsize size) override {
+    if (passed_ >= kIdentifierOffset + kIdentifierSize) pending_.append(data, static_cast<std::size_t>(size));
+    passed_ += static_cast<std::size_t>(size);
+    constexpr std::size_t kFoldSize = std::size_t{1} << 20;
+    if (pending_.size() >= kFoldSize) fold();
+    return target_.sputn(data, size);
+  }
+  int sync() override { return target_.pubsync(); }
+  pos_type seekoff(off_type offset, std::ios_base::seekdir direction, std::ios_base::openmode which) override {
+    return target_.pubseekoff(offset, direction, which);
+  }
+  pos_type seekpos(pos_type position, std::ios_base::openmode which) override {
+    return target_.pubseekpos(position, which);
+  }
+
+ private:
+  void fold() {
+    hash_ = sha256(hash_ + pending_);
+    pending_.clear();
+  }
+
+  std::streambuf& target_;
+  std::size_t passed_ = 0;
+  std::string pending_;
+  std::string hash_;
+};
+
+// OpenVDB offers files with the offsets that its file reader needs by name only, not on a stream.
+class SeekableArchive : public openvdb::io::Archive {
+ public:
+  void write_to(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
+    write(stream, openvdb::GridCPtrVec{grid}, /*seekable=*/true);
+  }
+};
+
+void write_archive(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) {
+  HashingBuffer hashing(*stream.rdbuf());
+  std::ostream hashed(&hashing);
+  SeekableArchive archive;
+  const bool blosc = openvdb::io::Archive::hasBloscCompression();
+  archive.setCompression((blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP) |
+                         openvdb::io::COMPRESS_ACTIVE_MASK);
+  archive.write_to(hashed, grid);
+  const std::streampos end = stream.tellp();
+  stream.seekp(HashingBuffer::kIdentifierOffset);
+  stream << hashing.identifier();
+  stream.seekp(end);
+}
+
+template <typename Grid>
+class VdbWriter final : public LatticeWriter {
+ public:
+  VdbWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& description)
+      : output_(output), lattice_(lattice), layer_(lattice), grid_(Grid::create()) {
+    grid_->setName(description.field);
+    grid_->setTransform(transform_of(lattice));
+    describe(description);
+  }
+
+  int slab_axis() const override { return 2; }
+  std::int64_t slab_alignment() const override { return kLeafSize; }
+
+  void write(const LatticeBlock& block, std::span<const double> values) override {
+    const std::int64_t end = block.first[2] + block.counts[2];
+    for (std::int64_t z = block.first[2]; z < end;) {
+      const std::int64_t leaf_z = z >> kLeafLog2;
+      const std::int64_t layer_end = std::min((leaf_z + 1) * kLeafSize, lattice_.index_max(2) + 1);
+      const std::int64_t next = std::min(layer_end, end);
+      layer_.gather(block, values, z, next);
+      if (next == layer_end) layer_.move_to(grid_->tree(), leaf_z);
+      z = next;
+    }
+  }
+
+  void finish(const FieldTotals& totals) override {
+    insert("raycone_degenerate", totals.degenerate);
+    insert("raycone_on_surface", totals.on_surface);
+    openvdb::tools::pruneTiles(grid_->tree());
+    if (output_.seekable()) {
+      write_archive(output_.stream(), grid_);
+    } else {
+      SpoolFile spool(output_.name());
+      write_archive(spool.stream(), grid_);
+      spool.copy_to(output_);
+    }
+    output_.commit();
+  }
+
+ private:
+  void insert(const char* key, const std::string& value) { grid_->insertMeta(key, openvdb::StringMetadata(value)); }
+  void insert(const char* key, std::uint64_t value) {
+    grid_->insertMeta(key, openvdb::Int64Metadata(static_cast<openvdb::Int64>(value)));
+  }
+  void insert(const char* key, const openvdb::Coord& value) {
+    grid_->insertMeta(key, openvdb::Vec3IMetadata(value.asVec3i()));
+  }
+
+  void describe(const FieldDescription& description) {
+    insert("raycone_version", RAYCONE_VERSION);
+    insert("raycone_field", description.field);
+    if (!description.rule.empty()) insert("raycone_rule", description.rule);
+    insert("raycone_mesh", description.mesh);
+    insert("raycone_sha256", description.mesh_sha256);
+    insert("raycone_index_min", to_coord(lattice_.index_min[0], lattice_.index_min[1], lattice_.index_min[2]));
+    insert("raycone_index_max", to_coord(lattice_.index_max(0), lattice_.index_max(1), lattice_.index_max(2)));
+    insert("raycone_faces", description.faces);
+    insert("raycone_exterior_edges", description.exterior_edges);
+  }
+
+  OutputFile& output_;
+  Lattice lattice_;
+  LeafLayer<typename Grid::TreeType> layer_;
+  typename Grid::Ptr grid_;
+};
+
+}  // namespace
+
+std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                       const FieldDescription& description) {
+  check_indices(lattice, output.name());
+  check_voxel_volume(lattice.spacing, output.name());
+  openvdb::initialize();
+  if (description.double_precision) {
+    return std::make_unique<VdbWriter<openvdb::DoubleGrid>>(output, lattice, description);
+  }
+  return std::make_unique<VdbWriter<openvdb::FloatGrid>>(output, lattice, description);
+}
+
+}  // namespace raycone

@@ -1,0 +1,24 @@
+// The writers behind make_lattice_writer and make_point_writer, one file per format.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/lattice.h"
+#include "io/field_writer.h"
+#include "io/output_file.h"
+
+namespace raycone {
+
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                     const FieldDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_csv_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                     const FieldDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                     const FieldDescription& description);
+
+[[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output);
+[[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size);
+
+}  // namespace raycone

@@ -1,0 +1,404 @@
+#include "io/output_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <climits>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "io/file_error.h"
+#include "io/spool_file.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone {
+namespace {
+
+using test::contents;
+using test::TemporaryDirectory;
+
+void put(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+void write(OutputFile& output, const std::string& text) { output.write(text.data(), text.size()); }
+
+std::vector<std::string> entries(const TemporaryDirectory& directory) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(directory.path())) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+mode_t mode_of(const std::string& path) {
+  struct stat status {};
+  EXPECT_EQ(stat(path.c_str(), &status), 0) << path;
+  return status.st_mode & 07777;
+}
+
+// What the OutputError of `action` says; fails where there is none.
+template <typename Action>
+std::string error_of(const Action& action) {
+  try {
+    action();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no OutputError";
+  return {};
+}
+
+class Umask {
+ public:
+  explicit Umask(mode_t mask) : saved_(umask(mask)) {}
+  ~Umask() { umask(saved_); }
+  Umask(const Umask&) = delete;
+  Umask& operator=(const Umask&) = delete;
+
+ private:
+  mode_t saved_;
+};
+
+TEST(OutputFile, AppearsOnlyWhenCommitted) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out");
+  write(output, "hello");
+  output.flush();
+  EXPECT_FALSE(std::filesystem::exists(directory / "out"));
+  output.commit();
+  EXPECT_EQ(contents(directory / "out"), "hello");
+  EXPECT_EQ(entries(directory).size(), 1U);
+}
+
+TEST(OutputFile, LeavesNoDebrisWhenNotCommitted) {
+  const TemporaryDirectory directory;
+  {
+    OutputFile output(directory / "out");
+    write(output, "hello");
+    output.flush();
+    ASSERT_EQ(entries(directory).size(), 1U);
+  }
+  EXPECT_TRUE(entries(directory).empty());
+}
+
+TEST(OutputFile, KeepsTheOldFileWhenNotCommitted) {
+  const TemporaryDirectory directory;
+  put(directory / "out", "old");
+  {
+    OutputFile output(directory / "out");
+    write(output, "new");
+  }
+  EXPECT_EQ(contents(directory / "out"), "old");
+}
+
+TEST(OutputFile, RemoveTemporaryFilesRemovesThemOnly) {
+  const TemporaryDirectory directory;
+  put(directory / "other", "kept");
+  OutputFile committed(directory / "committed");
+  committed.commit();
+  OutputFile first(directory / "first");
+  OutputFile second(directory / "second");
+  ASSERT_EQ(entries(directory).size(), 4U);
+  remove_temporary_files();
+  EXPECT_EQ(entries(directory).size(), 2U);
+  EXPECT_TRUE(std::filesystem::exists(directory / "other"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "committed"));
+}
+
+TEST(OutputFile, ManyMayBeOpenAtOnce) {
+  const TemporaryDirectory directory;
+  std::vector<std::unique_ptr<OutputFile>> outputs;
+  for (int i = 0; i < 50; ++i) outputs.push_back(std::make_unique<OutputFile>(directory / std::to_string(i)));
+  for (auto& output : outputs) output->commit();
+  EXPECT_EQ(entries(directory).size(), 50U);
+}
+
+TEST(OutputFile, HasModeOfTheUmask) {
+  const TemporaryDirectory directory;
+  const Umask mask(027);
+  OutputFile output(directory / "out");
+  output.commit();
+  EXPECT_EQ(mode_of(directory / "out"), 0640U);
+}
+
+TEST(OutputFile, HasModeOfTheFileItReplaces) {
+  const TemporaryDirectory directory;
+  const Umask mask(077);
+  put(directory / "out", "old");
+  ASSERT_EQ(chmod((directory / "out").c_str(), 0664), 0);
+  OutputFile output(directory / "out");
+  write(output, "new");
+  output.commit();
+  EXPECT_EQ(mode_of(directory / "out"), 0664U);
+  EXPECT_EQ(contents(directory / "out"), "new");
+}
+
+TEST(OutputFile, FollowsSymbolicLinks) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory(directory / "real");
+  put(directory / "real/file", "old");
+  std::filesystem::create_symlink("real/file", directory / "middle");
+  std::filesystem::create_symlink(directory / "middle", directory / "link");
+  OutputFile output(directory / "link");
+  write(output, "new");
+  output.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
+  EXPECT_EQ(contents(directory / "real/file"), "new");
+}
+
+TEST(OutputFile, CreatesTheTargetOfADanglingLink) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("missing", directory / "link");
+  OutputFile output(directory / "link", /*no_clobber=*/true);
+  write(output, "new");
+  output.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
+  EXPECT_EQ(contents(directory / "missing"), "new");
+}
+
+TEST(OutputFile, RefusesALoopOfLinks) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("loop", directory / "loop");
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "loop"); }),
+            directory / "loop" + ": cannot write: Too many levels of symbolic links");
+}
+
+TEST(OutputFile, WritesToAFifoWithoutReplacingIt) {
+  const TemporaryDirectory directory;
+  const std::string fifo = directory / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  std::string received;
+  std::thread reader([&] { received = contents(fifo); });
+  {
+    OutputFile output(fifo);
+    EXPECT_FALSE(output.seekable());
+    write(output, "through the pipe");
+    output.commit();
+  }
+  reader.join();
+  EXPECT_EQ(received, "through the pipe");
+  EXPECT_TRUE(std::filesystem::is_fifo(fifo));
+}
+
+TEST(OutputFile, WritesToANamedDescriptor) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  {
+    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
+    write(output, "hello");
+    output.commit();
+  }
+  close(ends[1]);
+  char text[6] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof text), 5);
+  EXPECT_STREQ(text, "hello");
+  close(ends[0]);
+}
+
+// `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
+TEST(OutputFile, WritesToANamedDescriptorOfARegularFileWhereItStands) {
+  const TemporaryDirectory directory;
+  put(directory / "log", "before ");
+  const int descriptor = open((directory / "log").c_str(), O_WRONLY | O_APPEND);
+  ASSERT_GE(descriptor, 0);
+  std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(descriptor), directory / "link");
+  OutputFile output(directory / "link");
+  EXPECT_FALSE(output.seekable());
+  write(output, "after");
+  output.commit();
+  close(descriptor);
+  EXPECT_EQ(contents(directory / "log"), "before after");
+}
+
+TEST(OutputFile, RefusesADescriptorThatIsNotOpenForWriting) {
+  const int descriptor = open("/dev/null", O_RDONLY);
+  const std::string name = "/dev/fd/" + std::to_string(descriptor);
+  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
+  close(descriptor);
+  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
+}
+
+TEST(OutputFile, WritesToTheNullDeviceEvenWithNoClobber) {
+  OutputFile output("/dev/null", /*no_clobber=*/true);
+  write(output, "hello");
+  output.commit();
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(OutputFile, ReportsAFullDisk) {
+  OutputFile output("/dev/full");
+  write(output, "buffered");
+  EXPECT_EQ(error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
+}
+
+TEST(OutputFile, ReportsAFullDiskOnTheWayToo) {
+  OutputFile output("/dev/full");
+  const std::string much(std::size_t{3} << 20, 'x');
+  EXPECT_EQ(error_of([&] { write(output, much); }), "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(error_of([&] { write(output, "x"); }), "/dev/full: cannot write: No space left on device");
+}
+
+TEST(OutputFile, ReportsErrorsOfTheStreamInCommit) {
+  OutputFile output("/dev/full");
+  output.stream() << std::string(std::size_t{3} << 20, 'x');
+  EXPECT_EQ(error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
+}
+
+TEST(OutputFile, ReportsAClosedPipeWhereTheSignalIsIgnored) {
+  const auto saved = std::signal(SIGPIPE, SIG_IGN);
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  close(ends[0]);
+  const std::string name = "/dev/fd/" + std::to_string(ends[1]);
+  {
+    OutputFile output(name);
+    write(output, "hello");
+    EXPECT_EQ(error_of([&] { output.flush(); }), name + ": cannot write: Broken pipe");
+  }
+  close(ends[1]);
+  std::signal(SIGPIPE, saved);
+}
+
+TEST(OutputFile, WaitsForAReaderWhereThePipeIsNonBlocking) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
+  const std::string much(std::size_t{1} << 20, 'x');  // more than a pipe holds
+  std::size_t received = 0;
+  std::thread reader([&] {
+    std::vector<char> bytes(65536);
+    for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) > 0;) {
+      received += static_cast<std::size_t>(count);
+    }
+  });
+  {
+    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
+    write(output, much);
+    output.commit();
+  }
+  close(ends[1]);
+  reader.join();
+  close(ends[0]);
+  EXPECT_EQ(received, much.size());
+}
+
+TEST(OutputFile, RefusesADirectory) {
+  const TemporaryDirectory directory;
+  const std::string name = directory.path().string();
+  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": is a directory");
+}
+
+TEST(OutputFile, NamesAMissingDirectory) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "missing/out"); }),
+            directory / "missing/out" + ": cannot create a file in " + (directory / "missing") +
+                ": No such file or directory");
+}
+
+TEST(OutputFile, RefusesAFileUsedAsADirectory) {
+  const TemporaryDirectory directory;
+  put(directory / "file", "");
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "file/out"); }),
+            directory / "file/out" + ": cannot write: Not a directory");
+}
+
+TEST(OutputFile, RefusesADirectoryWithoutPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "permissions do not bind root";
+  const TemporaryDirectory directory;
+  ASSERT_EQ(chmod(directory.path().c_str(), 0500), 0);
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "out"); }),
+            directory / "out" + ": cannot create a file in " + directory.path().string() + ": Permission denied");
+  ASSERT_EQ(chmod(directory.path().c_str(), 0700), 0);
+}
+
+TEST(OutputFile, TakesTheLongestNames) {
+  const TemporaryDirectory directory;
+  const std::string name(NAME_MAX, 'n');
+  OutputFile output(directory / name);
+  output.commit();
+  EXPECT_EQ(entries(directory), std::vector<std::string>{name});
+  EXPECT_EQ(error_of([&] { OutputFile(directory / (name + 'n')); }),
+            directory / (name + 'n') + ": cannot write: File name too long");
+}
+
+TEST(OutputFile, TakesNamesWithoutDirectory) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(directory.path());
+  OutputFile output("out");
+  write(output, "hello");
+  output.commit();
+  std::filesystem::current_path(before);
+  EXPECT_EQ(contents(directory / "out"), "hello");
+}
+
+TEST(OutputFile, NoClobberRefusesAnExistingFileAtOnce) {
+  const TemporaryDirectory directory;
+  put(directory / "out", "old");
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "out", true); }),
+            directory / "out" + ": already exists (--no-clobber)");
+  EXPECT_EQ(entries(directory).size(), 1U);
+}
+
+TEST(OutputFile, NoClobberDoesNotReplaceAFileThatAppearedMeanwhile) {
+  const TemporaryDirectory directory;
+  {
+    OutputFile output(directory / "out", /*no_clobber=*/true);
+    put(directory / "out", "theirs");
+    EXPECT_EQ(error_of([&] { output.commit(); }), directory / "out" + ": already exists (--no-clobber)");
+  }
+  EXPECT_EQ(contents(directory / "out"), "theirs");
+  EXPECT_EQ(entries(directory).size(), 1U);
+}
+
+TEST(OutputFile, OverwritesInPlaceAndGoesOnAtTheEnd) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out");
+  ASSERT_TRUE(output.seekable());
+  write(output, "????, world");
+  output.overwrite(0, "Hell", 4);
+  output.overwrite(3, "lo", 1);
+  write(output, "!");
+  output.commit();
+  EXPECT_EQ(contents(directory / "out"), "Hell, world!");
+}
+
+TEST(OutputFile, StreamAndWriteShareOneBuffer) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out");
+  write(output, "a");
+  output.stream() << "bc";
+  EXPECT_EQ(output.stream().tellp(), 3);
+  output.stream().seekp(1);
+  output.stream() << 'B';
+  output.stream().seekp(3);
+  write(output, std::string(std::size_t{3} << 20, 'd'));  // more than the buffer holds
+  EXPECT_EQ(output.stream().tellp(), 3 + (3 << 20));
+  output.commit();
+  const std::string text = contents(directory / "out");
+  EXPECT_EQ(text.substr(0, 5), "aBcdd");
+  EXPECT_EQ(text.size(), 3U + (std::size_t{3} << 20));
+}
+
+TEST(SpoolFile, CopiesItsFinalBytes) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out");
+  SpoolFile spool(output.name());
+  const std::string much(std::size_t{3} << 20, 'x');
+  spool.stream() << "????" << much;
+  spool.stream().seekp(0);
+  spool.stream() << "head";
+  spool.copy_to(output);
+  output.commit();
+  EXPECT_EQ(contents(directory / "out"), "head" + much);
+}
+
+}  // namespace
+}  // namespace raycone

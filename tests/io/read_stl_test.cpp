@@ -1,0 +1,160 @@
+// The STL reader on good and on broken files, ASCII and binary.
+#include <gtest/gtest.h>
+
+#include "io/read_mesh.h"
+#include "tests/support/reader_checks.h"
+
+namespace raycone {
+namespace {
+
+using test::bytes_of;
+using test::count_loading_prefixes;
+
+ParsedMesh parse(const std::string& bytes) { return test::parse(read_stl, bytes); }
+std::string error_of(const std::string& bytes) { return test::error_of(read_stl, bytes); }
+
+const std::string kFacet =
+    "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+const std::vector<Vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+
+// A header of 80 bytes that starts with `title`, `announced` as the number of triangles, then `triangles` of them.
+std::string binary_file(std::string title, std::uint32_t announced, int triangles) {
+  title.resize(80, ' ');
+  std::string bytes = title + bytes_of({announced});
+  for (int i = 0; i < triangles; ++i) {
+    bytes += bytes_of({0.f, 0.f, 1.f});
+    for (const Vec3& corner : kCorners)
+      bytes += bytes_of({static_cast<float>(corner.x), static_cast<float>(corner.y), static_cast<float>(corner.z)});
+    bytes += bytes_of<std::uint16_t>({0xffff});
+  }
+  return bytes;
+}
+
+TEST(ReadStl, AsciiTrianglesHaveThreeVerticesEach) {
+  const ParsedMesh parsed = parse("solid a\n" + kFacet + kFacet + "endsolid a\n");
+  std::vector<Vec3> twice = kCorners;
+  twice.insert(twice.end(), kCorners.begin(), kCorners.end());
+  EXPECT_EQ(parsed.mesh.vertices, twice);
+  EXPECT_EQ(parsed.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_TRUE(parsed.warnings.empty());
+}
+
+TEST(ReadStl, BinaryTrianglesHaveThreeVerticesEach) {
+  const ParsedMesh parsed = parse(binary_file("", 2, 2));
+  EXPECT_EQ(parsed.mesh.vertices.size(), 6u);
+  EXPECT_EQ(parsed.mesh.vertices[1], kCorners[1]);
+  EXPECT_EQ(parsed.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_TRUE(parsed.warnings.empty());
+}
+
+TEST(ReadStl, BinaryWhoseHeaderStartsWithSolidIsBinary) {
+  EXPECT_EQ(parse(binary_file("solid a\nfacet normal", 2, 2)).mesh.triangles.size(), 2u);
+  EXPECT_EQ(parse(binary_file("solid a", 2, 2) + "x").mesh.triangles.size(), 2u);  // nor is its size exact
+}
+
+TEST(ReadStl, AsciiMayHoldSeveralSolids) {
+  const ParsedMesh parsed = parse("solid a\n" + kFacet + "endsolid a\nsolid b\n" + kFacet + "endsolid b\n");
+  EXPECT_EQ(parsed.mesh.triangles.size(), 2u);
+}
+
+TEST(ReadStl, AsciiMayStartWithBlanksOrAByteOrderMark) {
+  EXPECT_EQ(parse(" \r\n\tsolid a\n" + kFacet + "endsolid a").mesh.vertices, kCorners);
+  EXPECT_EQ(parse("\xEF\xBB\xBFsolid a\n" + kFacet + "endsolid a").mesh.vertices, kCorners);
+}
+
+TEST(ReadStl, AsciiKeywordsMayBeInAnyCase) {
+  EXPECT_EQ(parse("SOLID\nFACET Normal 0 0 1\nOUTER LOOP\nVertex 0 0 0\nvertex 1 0 0\nVERTEX 0 1 0\nEndLoop\nENDFACET\n"
+                  "EndSolid\n")
+                .mesh.vertices,
+            kCorners);
+}
+
+TEST(ReadStl, AsciiNumbersMayHaveExponents) {
+  const ParsedMesh parsed = parse(
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 1.5e+01 -2E-1 +3e0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\nendsolid\n");
+  EXPECT_EQ(parsed.mesh.vertices[0], (Vec3{15, -0.2, 3}));
+}
+
+TEST(ReadStl, AsciiNamesMayBeAnyBytes) {
+  EXPECT_EQ(parse("solid \xff\xfe facet\n" + kFacet + "endsolid \xe6\x9c\n").mesh.vertices, kCorners);
+}
+
+TEST(ReadStl, AsciiNormalsMayBeAnything) {
+  EXPECT_EQ(parse("solid\nfacet normal nan -1.#IND 1.#QNAN\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                  "endloop\nendfacet\nendsolid\n")
+                .mesh.vertices,
+            kCorners);
+}
+
+TEST(ReadStl, AsciiLinesMayEndInAnyWay) {
+  for (const std::string line_end : {"\r\n", "\r"}) {
+    std::string text = "solid a\n" + kFacet + "endsolid a\n";
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += line_end.size())
+      text.replace(at, 1, line_end);
+    EXPECT_EQ(parse(text).mesh.vertices, kCorners);
+  }
+}
+
+TEST(ReadStl, AsciiMayLackTheLastEndsolid) { EXPECT_EQ(parse("solid a\n" + kFacet).mesh.vertices, kCorners); }
+
+TEST(ReadStl, AsciiWithoutFacetsHasNoTriangles) { EXPECT_TRUE(parse("solid a\nendsolid a\n").mesh.triangles.empty()); }
+
+TEST(ReadStl, AsciiLoopOfFourVerticesIsFannedAndOfTwoSkipped) {
+  const ParsedMesh parsed = parse(
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n");
+  EXPECT_EQ(parsed.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"1 face with fewer than three corners skipped"});
+}
+
+TEST(ReadStl, AsciiErrorsNameTheLine) {
+  EXPECT_EQ(error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 x 0\n"),
+            "f:5: expected a coordinate, found 'x'");
+  EXPECT_EQ(error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendfacet\n"),
+            "f:5: expected 'vertex' or 'endloop', found 'endfacet'");
+  EXPECT_EQ(error_of("solid\nfacet normal 0 0 1\nvertex 0 0 0\n"), "f:3: expected 'outer', found 'vertex'");
+  EXPECT_EQ(error_of("solid\nface normal 0 0 1\n"), "f:2: expected 'facet' or 'endsolid', found 'face'");
+  EXPECT_EQ(error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
+            "f:5: expected 'vertex' or 'endloop', found the end of the file");
+  EXPECT_EQ(error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 nan 0\nvertex 0 0 0\nvertex 1 1 1\nendloop\n"
+                     "endfacet\n"),
+            "f:4: a vertex that faces use has a coordinate that is not finite, expected finite numbers");
+}
+
+TEST(ReadStl, Utf16IsRefused) {
+  EXPECT_EQ(error_of(std::string("\xFF\xFEs\0o\0", 6)), "f:1: the text is UTF-16, expected UTF-8 or ASCII");
+}
+
+TEST(ReadStl, BinaryCountBeyondTheLengthIsAnErrorThatNamesBoth) {
+  EXPECT_EQ(error_of(binary_file("", 3, 2)), "f:byte 80: 3 triangles announced, but only 2 follow");
+  EXPECT_EQ(error_of(binary_file("", 0xffffffff, 2)), "f:byte 80: 4294967295 triangles announced, but only 2 follow");
+}
+
+TEST(ReadStl, BytesAfterTheLastBinaryTriangleAreWarnedAbout) {
+  const ParsedMesh parsed = parse(binary_file("", 1, 2) + "x");
+  EXPECT_EQ(parsed.mesh.triangles.size(), 1u);
+  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"bytes after the announced number of triangles (1) ignored: 51"});
+}
+
+TEST(ReadStl, FilesTooShortForAHeaderAreRefused) {
+  EXPECT_EQ(error_of("x"), "f:1: expected 'solid' or the 84 bytes that open a binary STL, the file has only 1");
+}
+
+TEST(ReadStl, BinaryNonFiniteCoordinateIsAnErrorAtItsByte) {
+  std::string bytes = binary_file("", 1, 1);
+  bytes.replace(84 + 12 + 12 + 4, 4, bytes_of({std::numeric_limits<float>::quiet_NaN()}));
+  EXPECT_EQ(error_of(bytes),
+            "f:byte 108: a vertex that faces use has a coordinate that is not finite, expected finite numbers");
+}
+
+TEST(ReadStl, EveryTruncationLoadsOrIsRefused) {
+  const std::string text = "solid a\n" + kFacet + "endsolid a\n";
+  EXPECT_GT(count_loading_prefixes(read_stl, text), 0);
+  // From "solid" up to the first byte of the count, which is no zero, this is an ASCII file without facets.
+  EXPECT_EQ(count_loading_prefixes(read_stl, binary_file("solid", 2, 2)), 77);
+  EXPECT_EQ(count_loading_prefixes(read_stl, binary_file("x", 2, 2)), 0);
+}
+
+}  // namespace
+}  // namespace raycone

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "io/field_writer.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone {
+namespace {
+
+using test::contents;
+using test::TemporaryDirectory;
+
+std::string points_csv(const std::vector<Vec3>& points, const std::vector<double>& values) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt);
+  writer->write(points, values);
+  writer->finish();
+  return contents(directory / "out.csv");
+}
+
+std::string lattice_csv(const Lattice& lattice, const std::vector<double>& values, const std::string& field) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  FieldDescription description;
+  description.field = field;
+  test::write_in_slabs(FieldFormat::kCsv, output, lattice, description, values, 1);
+  return contents(directory / "out.csv");
+}
+
+TEST(WriteCsv, PrintsPointsInOrderAsShortestText) {
+  EXPECT_EQ(points_csv({{0.1, -2, 1e300}, {0, 5e-324, 0.5}}, {0.30000000000000004, 1}),
+            "x,y,z,w\n"
+            "0.1,-2,1e+300,0.30000000000000004\n"
+            "0,5e-324,0.5,1\n");
+}
+
+TEST(WriteCsv, PrintsNegativeZeroAsZero) { EXPECT_EQ(points_csv({{-0.0, -0.0, -0.0}}, {-0.0}), "x,y,z,w\n0,0,0,0\n"); }
+
+TEST(WriteCsv, HasAHeaderWithoutPoints) { EXPECT_EQ(points_csv({}, {}), "x,y,z,w\n"); }
+
+TEST(WriteCsv, RoundTripsEveryBit) {
+  std::mt19937_64 random(1);
+  std::vector<Vec3> points;
+  std::vector<double> values;
+  const auto finite = [&] {
+    double value;
+    do {
+      value = std::bit_cast<double>(random());
+    } while (!(std::abs(value) <= std::numeric_limits<double>::max()));
+    return value;
+  };
+  for (int n = 0; n < 5000; ++n) {
+    points.push_back({finite(), finite(), finite()});
+    values.push_back(finite());
+  }
+  points.push_back({-2.2250738585072014e-308, -2.2250738585072014e-308, -2.2250738585072014e-308});  // the longest
+  values.push_back(-2.2250738585072014e-308);
+
+  std::istringstream text(points_csv(points, values));
+  std::string line;
+  std::getline(text, line);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    ASSERT_TRUE(std::getline(text, line));
+    const char* at = line.c_str();
+    for (const double expected : {points[n].x, points[n].y, points[n].z, values[n]}) {
+      char* end = nullptr;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(std::strtod(at, &end)), std::bit_cast<std::uint64_t>(expected)) << line;
+      at = end + 1;
+    }
+  }
+  EXPECT_FALSE(std::getline(text, line));
+}
+
+TEST(WriteCsv, PrintsLatticesWithIFastest) {
+  Lattice lattice;
+  lattice.origin = {0.5, 0, -1};
+  lattice.spacing = {0.1, 1, 2};
+  lattice.index_min = {-1, 3, 7};
+  lattice.counts = {2, 2, 2};
+  EXPECT_EQ(lattice_csv(lattice, {0, 1, 2, 3, 4, 5, 6, 0.25}, "winding"),
+            "i,j,k,x,y,z,w\n"
+            "-1,3,7,0.4,3,13,0\n"
+            "0,3,7,0.5,3,13,1\n"
+            "-1,4,7,0.4,4,13,2\n"
+            "0,4,7,0.5,4,13,3\n"
+            "-1,3,8,0.4,3,15,4\n"
+            "0,3,8,0.5,3,15,5\n"
+            "-1,4,8,0.4,4,15,6\n"
+            "0,4,8,0.5,4,15,0.25\n");
+}
+
+TEST(WriteCsv, NamesTheColumnAfterTheField) {
+  EXPECT_EQ(lattice_csv({{}, {1, 1, 1}, {}, {1, 1, 1}}, {1}, "inside"), "i,j,k,x,y,z,inside\n0,0,0,0,0,0,1\n");
+}
+
+TEST(WriteCsv, HasRoomForTheLongestRows) {
+  Lattice lattice;
+  const double longest = -2.2250738585072014e-308;
+  lattice.origin = {longest, longest, longest};
+  lattice.spacing = {5e-324, 5e-324, 5e-324};
+  lattice.index_min = {-1000000, -1000000, -1000000};
+  lattice.counts = {3000, 1, 1};
+  const std::string text = lattice_csv(lattice, std::vector<double>(3000, longest), "winding");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3001);
+  EXPECT_TRUE(text.ends_with(",-2.2250738585072014e-308\n"));
+}
+
+TEST(WriteCsv, FlushHandsRowsToTheSystem) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  {
+    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
+    const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt);
+    writer->write(std::vector<Vec3>{{1, 2, 3}}, std::vector<double>{4});
+    writer->flush();
+    char text[64] = {};
+    EXPECT_GT(read(ends[0], text, sizeof text - 1), 0);
+    EXPECT_STREQ(text, "x,y,z,w\n1,2,3,4\n");
+    writer->finish();
+  }
+  close(ends[0]);
+  close(ends[1]);
+}
+
+}  // namespace
+}  // namespace raycone

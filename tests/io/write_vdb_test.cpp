@@ -1,0 +1,539 @@
+#include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/threads.h"
+#include "io/field_writer.h"
+#include "io/file_error.h"
+#include "io/read_vdb.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone {
+namespace {
+
+using test::contents;
+using test::TemporaryDirectory;
+
+struct Field {
+  Lattice lattice;
+  std::vector<double> values;
+};
+
+// A field on an anisotropic lattice whose indices start and end inside leaf blocks, on either side of 0.
+Field field_of(const std::array<std::int64_t, 3>& counts,
+               const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& value) {
+  Field field;
+  field.lattice = {{0.1, -20.7, 1e-3}, {0.1, 0.3, 1.0 / 3}, {-13, -3, -21}, counts};
+  for (std::int64_t z = 0; z < counts[2]; ++z) {
+    for (std::int64_t y = 0; y < counts[1]; ++y) {
+      for (std::int64_t x = 0; x < counts[0]; ++x) field.values.push_back(value(x, y, z));
+    }
+  }
+  return field;
+}
+
+Field random_field() {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  return field_of({29, 18, 37}, [&](auto, auto, auto) { return random() % 4 == 0 ? 0.0 : normal(random); });
+}
+
+// 0 outside a ball, 1 inside, random between: leaves, tiles and nothing, all in one grid.
+Field ball_field() {
+  std::mt19937 random(1);
+  return field_of({70, 65, 66}, [&](auto x, auto y, auto z) {
+    const double r = std::hypot(static_cast<double>(x) - 35, static_cast<double>(y) - 32, static_cast<double>(z) - 33);
+    return r < 20 ? 1.0 : r > 25 ? 0.0 : std::uniform_real_distribution<double>(0, 1)(random);
+  });
+}
+
+FieldDescription described() {
+  FieldDescription description;
+  description.mesh = "bunny.obj";
+  description.mesh_sha256 = "0123456789abcdef";
+  description.faces = 5'000'000'000;  // beyond 32 bits
+  description.exterior_edges = 42;
+  return description;
+}
+
+void write_vdb(const std::string& path, const Field& field, const FieldDescription& description = described(),
+               std::int64_t thickness = 8) {
+  OutputFile output(path);
+  test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9});
+}
+
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr read_grid(const std::string& path, const std::string& name = "winding") {
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open(false);
+  return openvdb::gridPtrCast<Grid>(file.readGrid(name));
+}
+
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr written_grid(const Field& field, const FieldDescription& description = described()) {
+  const TemporaryDirectory directory;
+  write_vdb(directory / "out.vdb", field, description);
+  return read_grid<Grid>(directory / "out.vdb");
+}
+
+// Every voxel of the lattice, and one layer around it, has the value and activity that the field asks for.
+template <typename Grid>
+void expect_holds(const Grid& grid, const Field& field) {
+  using Value = typename Grid::ValueType;
+  const Lattice& lattice = field.lattice;
+  auto accessor = grid.getConstAccessor();
+  const auto inside = [&](std::int64_t n, std::size_t axis) { return 0 <= n && n < lattice.counts[axis]; };
+  std::size_t active = 0;
+  for (std::int64_t z = -1; z <= lattice.counts[2]; ++z) {
+    for (std::int64_t y = -1; y <= lattice.counts[1]; ++y) {
+      for (std::int64_t x = -1; x <= lattice.counts[0]; ++x) {
+        Value expected = 0;
+        if (inside(x, 0) && inside(y, 1) && inside(z, 2)) {
+          const std::int64_t n = (z * lattice.counts[1] + y) * lattice.counts[0] + x;
+          expected = static_cast<Value>(field.values[static_cast<std::size_t>(n)]);
+        }
+        const openvdb::Coord at(static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),
+                                static_cast<int>(lattice.index_min[2] + z));
+        ASSERT_EQ(accessor.getValue(at), expected) << at;
+        ASSERT_EQ(accessor.isValueOn(at), expected != 0) << at;
+        active += expected != 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(grid.activeVoxelCount(), active);
+}
+
+template <typename Action>
+std::string output_error_of(const Action& action) {
+  try {
+    action();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no OutputError";
+  return {};
+}
+
+TEST(WriteVdb, HoldsEveryVoxel) { expect_holds(*written_grid(random_field()), random_field()); }
+
+TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_field()), ball_field()); }
+
+TEST(WriteVdb, HoldsDoublesOnRequest) {
+  FieldDescription description = described();
+  description.double_precision = true;
+  expect_holds(*written_grid<openvdb::DoubleGrid>(random_field(), description), random_field());
+}
+
+TEST(WriteVdb, HoldsASingleSample) {
+  const Field field = field_of({1, 1, 1}, [](auto, auto, auto) { return 0.25; });
+  expect_holds(*written_grid(field), field);
+}
+
+TEST(WriteVdb, DoesNotDependOnTheSlabs) {
+  const TemporaryDirectory directory;
+  write_vdb(directory / "aligned", ball_field(), described(), 66);
+  for (const std::int64_t thickness : {1, 3, 8, 13}) {
+    write_vdb(directory / "other", ball_field(), described(), thickness);
+    EXPECT_EQ(contents(directory / "other"), contents(directory / "aligned")) << thickness;
+  }
+}
+
+TEST(WriteVdb, StoresNothingForZeros) {
+  const auto grid = written_grid(field_of({40, 40, 40}, [](auto, auto, auto) { return -0.0; }));
+  EXPECT_TRUE(grid->tree().empty());
+}
+
+// What is 0 in single precision is background, however it was computed.
+TEST(WriteVdb, StoredValuesDecideActivity) {
+  const auto grid = written_grid(field_of({9, 9, 9}, [](auto x, auto, auto) { return x == 4 ? 1e-300 : -0.0; }));
+  EXPECT_TRUE(grid->tree().empty());
+}
+
+TEST(WriteVdb, NegativeZeroIsStoredAsZero) {
+  const auto grid = written_grid(field_of({9, 9, 9}, [](auto x, auto, auto) { return x == 4 ? 1.0 : -0.0; }));
+  auto accessor = grid->getConstAccessor();
+  EXPECT_EQ(accessor.getValue({-9, 0, -20}), 1.0F);
+  EXPECT_FALSE(std::signbit(accessor.getValue({-8, 0, -20})));
+}
+
+TEST(WriteVdb, ConstantBlocksAreTiles) {
+  Field field = field_of({64, 64, 64}, [](auto, auto, auto) { return 1.0; });
+  field.lattice.index_min = {-32, 0, 64};
+  const auto grid = written_grid(field);
+  EXPECT_EQ(grid->tree().leafCount(), 0U);
+  EXPECT_EQ(grid->tree().activeTileCount(), 512U);
+  expect_holds(*grid, field);
+}
+
+TEST(WriteVdb, LargeConstantBlocksAreLargeTiles) {
+  Field field = field_of({128, 128, 128}, [](auto, auto, auto) { return 1.0; });
+  field.lattice.index_min = {-128, 0, 128};
+  EXPECT_EQ(written_grid(field)->tree().activeTileCount(), 1U);
+}
+
+TEST(WriteVdb, TransformPlacesSamplesWhereTheyWereTaken) {
+  const Field field = random_field();
+  const auto grid = written_grid(field);
+  const openvdb::Vec3d world = grid->transform().indexToWorld(openvdb::Coord(-13, 5, 2));
+  EXPECT_EQ(world.x(), field.lattice.coordinate(0, -13));
+  EXPECT_EQ(world.y(), field.lattice.coordinate(1, 5));
+  EXPECT_EQ(world.z(), field.lattice.coordinate(2, 2));
+  EXPECT_FALSE(grid->transform().hasUniformScale());
+}
+
+// OpenVDB's constructors of transforms would round these spacings to one.
+TEST(WriteVdb, TransformIsExact) {
+  Field field = field_of({2, 2, 2}, [](auto, auto, auto) { return 1.0; });
+  field.lattice.spacing = {0.1, std::nextafter(0.1, 1.0), std::nextafter(0.1, 0.0)};
+  field.lattice.origin = {1e6, -1e-6, 0.3};
+  const TemporaryDirectory directory;
+  write_vdb(directory / "out.vdb", field);
+  const Lattice actual = read_vdb_lattice(directory / "out.vdb", "");
+  EXPECT_EQ(actual.spacing, field.lattice.spacing);
+  EXPECT_EQ(actual.origin, field.lattice.origin);
+}
+
+TEST(WriteVdb, CubicVoxelsHaveUniformScale) {
+  Field field = random_field();
+  field.lattice.spacing = {0.1, 0.1, 0.1};
+  const auto grid = written_grid(field);
+  EXPECT_TRUE(grid->transform().hasUniformScale());
+  EXPECT_EQ(grid->transform().indexToWorld(openvdb::Coord(-13, 5, 2)).x(), field.lattice.coordinate(0, -13));
+}
+
+TEST(WriteVdb, DescribesItself) {
+  FieldDescription description = described();
+  description.rule = "threshold=0.5";
+  const auto grid = written_grid(random_field(), description);
+  EXPECT_EQ(grid->getName(), "winding");
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_UNKNOWN);
+  EXPECT_EQ(grid->background(), 0.0F);
+  EXPECT_FALSE(grid->metaValue<std::string>("raycone_version").empty());
+  EXPECT_EQ(grid->metaValue<std::string>("raycone_field"), "winding");
+  EXPECT_EQ(grid->metaValue<std::string>("raycone_rule"), "threshold=0.5");
+  EXPECT_EQ(grid->metaValue<std::string>("raycone_mesh"), "bunny.obj");
+  EXPECT_EQ(grid->metaValue<std::string>("raycone_sha256"), "0123456789abcdef");
+  EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("raycone_index_min"), openvdb::Vec3i(-13, -3, -21));
+  EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("raycone_index_max"), openvdb::Vec3i(15, 14, 15));
+  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_faces"), 5'000'000'000);
+  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_exterior_edges"), 42);
+  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_degenerate"), 7);
+  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_on_surface"), 9);
+}
+
+TEST(WriteVdb, HasNoRuleWhereTheFieldHasNone) {
+  const auto grid = written_grid(random_field());
+  EXPECT_EQ((*grid)["raycone_rule"], nullptr);
+}
+
+// Neither the clock, nor the directory, nor OpenVDB's random identifier show.
+TEST(WriteVdb, IsByteIdenticalOnEveryRun) {
+  const TemporaryDirectory first;
+  const TemporaryDirectory second;
+  write_vdb(first / "out.vdb", ball_field());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  write_vdb(second / "out.vdb", ball_field());
+  EXPECT_EQ(contents(first / "out.vdb"), contents(second / "out.vdb"));
+}
+
+TEST(WriteVdb, IsByteIdenticalForAnyNumberOfThreads) {
+  const TemporaryDirectory directory;
+  for (const int threads : {1, 2, 7}) {
+    const ThreadLimit limit(threads);
+    write_vdb(directory / std::to_string(threads), ball_field());
+  }
+  EXPECT_EQ(contents(directory / "1"), contents(directory / "2"));
+  EXPECT_EQ(contents(directory / "1"), contents(directory / "7"));
+}
+
+std::string identifier_in(const std::string& vdb) { return vdb.substr(21, 36); }
+
+TEST(WriteVdb, IdentifierFollowsTheContent) {
+  const TemporaryDirectory directory;
+  Field field = ball_field();
+  write_vdb(directory / "one", field);
+  field.values[field.values.size() / 2] += 0.5;
+  write_vdb(directory / "other", field);
+  const std::string identifier = identifier_in(contents(directory / "one"));
+  EXPECT_NE(identifier, identifier_in(contents(directory / "other")));
+  for (std::size_t n = 0; n < identifier.size(); ++n) {
+    const bool hyphen = n == 8 || n == 13 || n == 18 || n == 23;
+    EXPECT_TRUE(hyphen ? identifier[n] == '-' : std::isxdigit(identifier[n]) != 0) << identifier;
+  }
+}
+
+TEST(WriteVdb, IsTheSameThroughAPipe) {
+  const TemporaryDirectory directory;
+  write_vdb(directory / "file", ball_field());
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  std::string received;
+  std::thread reader([&] {
+    std::vector<char> bytes(65536);
+    for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) > 0;) {
+      received.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+  });
+  write_vdb("/dev/fd/" + std::to_string(ends[1]), ball_field());
+  close(ends[1]);
+  reader.join();
+  close(ends[0]);
+  EXPECT_EQ(received, contents(directory / "file"));
+}
+
+TEST(WriteVdb, ReportsAFullDisk) {
+  EXPECT_EQ(output_error_of([] { write_vdb("/dev/full", ball_field()); }),
+            "/dev/full: cannot write: No space left on device");
+}
+
+// The failure happens inside OpenVDB, which does not look at its stream.
+TEST(WriteVdb, ReportsTheFileSizeLimit) {
+  const TemporaryDirectory directory;
+  rlimit saved{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &saved), 0);
+  const auto saved_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, saved.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message = output_error_of([&] { write_vdb(directory / "out.vdb", random_field()); });
+  setrlimit(RLIMIT_FSIZE, &saved);
+  std::signal(SIGXFSZ, saved_handler);
+  EXPECT_EQ(message, directory / "out.vdb" + ": cannot write: File too large");
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+}
+
+TEST(WriteVdb, RefusesVoxelsThatOpenVdbTakesForSingular) {
+  const TemporaryDirectory directory;
+  Field field = field_of({1, 1, 1}, [](auto, auto, auto) { return 1.0; });
+  const auto write = [&] { write_vdb(directory / "out.vdb", field); };
+  field.lattice.spacing = {1.2e-9, 1e-9, 1e-9};
+  EXPECT_EQ(output_error_of(write), directory / "out.vdb" +
+                                        ": voxel volume 1.2e-27 is below 3e-15, which OpenVDB cannot represent; "
+                                        "scale the mesh (--scale 1e9)");
+  field.lattice.spacing = {1e-200, 1e-200, 1e-200};
+  EXPECT_TRUE(output_error_of(write).ends_with("(--scale 1e200)"));
+  field.lattice.spacing = {1e-5, 1e-5, 2.9e-5};
+  EXPECT_TRUE(output_error_of(write).ends_with("(--scale 1e5)"));
+  field.lattice.spacing = {1e-5, 1e-5, 3.1e-5};
+  write();
+  EXPECT_EQ(read_vdb_lattice(directory / "out.vdb", "").spacing, field.lattice.spacing);
+}
+
+TEST(WriteVdb, RefusesIndicesBeyond32Bits) {
+  const TemporaryDirectory directory;
+  Field field = field_of({2, 1, 1}, [](auto, auto, auto) { return 1.0; });
+  field.lattice.index_min[0] = 2147483646;
+  write_vdb(directory / "out.vdb", field);
+  EXPECT_EQ(read_grid(directory / "out.vdb")->tree().getValue({2147483647, -3, -21}), 1.0F);
+  field.lattice.index_min[0] = 2147483647;
+  EXPECT_EQ(output_error_of([&] { write_vdb(directory / "out.vdb", field); }),
+            directory / "out.vdb" + ": lattice indices 2147483647 to 2147483648 do not fit in the 32 bits of OpenVDB");
+}
+
+TEST(WriteVdb, PyopenvdbReadsIt) {
+  if (!test::python_has("pyopenvdb, numpy")) GTEST_SKIP() << "no pyopenvdb and numpy in /usr/bin/python3";
+  const TemporaryDirectory directory;
+  const Field field = ball_field();
+  write_vdb(directory / "out.vdb", field);
+  OutputFile npy(directory / "out.npy");
+  test::write_in_slabs(FieldFormat::kNpy, npy, field.lattice, {}, field.values, 8);
+  EXPECT_EQ(test::run_python("import numpy, pyopenvdb, sys\n"
+                             "path = sys.argv[1] + '/out.vdb'\n"
+                             "grid = pyopenvdb.read(path, 'winding')\n"
+                             "expected = numpy.load(sys.argv[1] + '/out.npy')\n"
+                             "actual = numpy.empty(expected.shape, numpy.float32)\n"
+                             "grid.copyToArray(actual, ijk=grid.metadata['raycone_index_min'])\n"
+                             "assert (actual == expected).all()\n"
+                             "assert grid.activeVoxelCount() == numpy.count_nonzero(expected)\n"
+                             "assert grid.transform.indexToWorld((1, 1, 0)) == (0.1 + 0.1, -20.7 + 0.3, 1e-3)\n"
+                             "assert grid.metadata['raycone_faces'] == 5000000000\n"
+                             "head, = pyopenvdb.readAllGridMetadata(path)\n"
+                             "assert head.name == 'winding' and head.metadata['raycone_mesh'] == 'bunny.obj'\n",
+                             {directory.path().string()}),
+            "");
+}
+
+// --- read_vdb_lattice
+
+// Writes grids as another program would.
+void write_grids(const std::string& path, const openvdb::GridCPtrVec& grids) { openvdb::io::File(path).write(grids); }
+
+openvdb::FloatGrid::Ptr named_grid(const std::string& name, const openvdb::math::Transform::Ptr& transform) {
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create();
+  grid->setName(name);
+  grid->setTransform(transform);
+  grid->tree().setValue({-5, 2, 30}, 1.0F);
+  grid->tree().setValue({4, 2, 100}, 1.0F);
+  return grid;
+}
+
+openvdb::math::Transform::Ptr cubic(double size) { return openvdb::math::Transform::createLinearTransform(size); }
+
+std::string input_error_of(const std::string& path, const std::string& name) {
+  try {
+    (void)read_vdb_lattice(path, name);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no InputError";
+  return {};
+}
+
+void expect_same(const Lattice& actual, const Lattice& expected) {
+  EXPECT_EQ(actual.origin, expected.origin);
+  EXPECT_EQ(actual.spacing, expected.spacing);
+  EXPECT_EQ(actual.index_min, expected.index_min);
+  EXPECT_EQ(actual.counts, expected.counts);
+}
+
+TEST(ReadVdbLattice, ReturnsTheLatticeThatRayconeRecorded) {
+  const TemporaryDirectory directory;
+  const Field field = ball_field();  // zero at its borders
+  write_vdb(directory / "out.vdb", field);
+  expect_same(read_vdb_lattice(directory / "out.vdb", ""), field.lattice);
+  expect_same(read_vdb_lattice(directory / "out.vdb", "winding"), field.lattice);
+}
+
+TEST(ReadVdbLattice, ReturnsTheRecordedLatticeOfAnEmptyGrid) {
+  const TemporaryDirectory directory;
+  const Field field = field_of({4, 5, 6}, [](auto, auto, auto) { return 0.0; });
+  write_vdb(directory / "out.vdb", field);
+  expect_same(read_vdb_lattice(directory / "out.vdb", ""), field.lattice);
+}
+
+TEST(ReadVdbLattice, ReturnsTheBoxOfActiveVoxelsOfOtherPrograms) {
+  const TemporaryDirectory directory;
+  const auto transform = cubic(0.5);
+  transform->postTranslate(openvdb::Vec3d(1, 2, 3));
+  write_grids(directory / "in.vdb", {named_grid("density", transform)});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{1, 2, 3}, {0.5, 0.5, 0.5}, {-5, 2, 30}, {10, 1, 71}});
+}
+
+TEST(ReadVdbLattice, ReadsTheTreeWhereTheFileHasNoStatistics) {
+  const TemporaryDirectory directory;
+  const auto grid = named_grid("density", cubic(2));
+  openvdb::io::File file(directory / "in.vdb");
+  file.setGridStatsMetadataEnabled(false);
+  file.write(openvdb::GridCPtrVec{grid});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
+}
+
+TEST(ReadVdbLattice, ReadsStreamsWithoutTableOfContents) {
+  const TemporaryDirectory directory;
+  {
+    const openvdb::GridCPtrVec grids{named_grid("a", cubic(1)), named_grid("b", cubic(2))};
+    std::ofstream file(directory / "in.vdb", std::ios::binary);
+    openvdb::io::Stream(file).write(grids);
+  }
+  expect_same(read_vdb_lattice(directory / "in.vdb", "b"), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
+}
+
+// As other programs store it: OpenVDB's own constructors would turn it into a map of scale and translation.
+openvdb::math::Transform::Ptr affine_transform(const openvdb::Mat4d& matrix) {
+  openvdb::initialize();
+  const openvdb::math::AffineMap map(matrix);
+  std::stringstream bytes;
+  openvdb::writeString(bytes, map.type());
+  map.write(bytes);
+  openvdb::io::setCurrentVersion(bytes);
+  auto transform = std::make_shared<openvdb::math::Transform>();
+  transform->read(bytes);
+  return transform;
+}
+
+TEST(ReadVdbLattice, AcceptsAnAffineMapThatScalesOnly) {
+  const TemporaryDirectory directory;
+  const openvdb::Mat4d matrix(0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0);
+  write_grids(directory / "in.vdb", {named_grid("density", affine_transform(matrix))});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{7, 8, 9}, {0.1, 0.2, 0.3}, {-5, 2, 30}, {10, 1, 71}});
+}
+
+TEST(ReadVdbLattice, FindsGridsByName) {
+  const TemporaryDirectory directory;
+  write_grids(directory / "in.vdb", {named_grid("b", cubic(2)), named_grid("a", cubic(1))});
+  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "a").spacing.x, 1.0);
+  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "").spacing.x, 2.0);
+  EXPECT_EQ(input_error_of(directory / "in.vdb", "c"),
+            directory / "in.vdb" + ": has no grid 'c', expected one of: b, a");
+}
+
+TEST(ReadVdbLattice, RefusesOtherTransforms) {
+  const TemporaryDirectory directory;
+  const auto message = [&](const openvdb::math::Transform::Ptr& transform) {
+    write_grids(directory / "in.vdb", {named_grid("g", transform)});
+    const std::string text = input_error_of(directory / "in.vdb", "");
+    return text.substr((directory / "in.vdb").size());
+  };
+  const std::string expected = ", expected scale and translation only";
+  const auto rotated = cubic(1);
+  rotated->postRotate(0.5, openvdb::math::X_AXIS);
+  EXPECT_EQ(message(rotated), ": grid 'g' has a transform with rotation or shear" + expected);
+  const auto sheared = cubic(1);
+  sheared->postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+  EXPECT_EQ(message(sheared), ": grid 'g' has a transform with rotation or shear" + expected);
+  const auto mirrored = cubic(1);
+  mirrored->postScale(openvdb::Vec3d(1, -1, 1));
+  EXPECT_EQ(message(mirrored), ": grid 'g' has a transform with negative scale" + expected);
+  const openvdb::BBoxd box(openvdb::Vec3d(0), openvdb::Vec3d(10));
+  EXPECT_EQ(message(openvdb::math::Transform::createFrustumTransform(box, 0.5, 10)),
+            ": grid 'g' has a frustum transform" + expected);
+}
+
+TEST(ReadVdbLattice, RefusesAnEmptyGridWithoutRecordedLattice) {
+  const TemporaryDirectory directory;
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create();
+  grid->setName("g");
+  write_grids(directory / "in.vdb", {grid});
+  EXPECT_EQ(input_error_of(directory / "in.vdb", ""),
+            directory / "in.vdb" + ": grid 'g' has no active voxels, expected some, or a lattice recorded by raycone");
+}
+
+TEST(ReadVdbLattice, RefusesWhatIsNotAnOpenVdbFile) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(input_error_of(directory / "missing", ""),
+            directory / "missing" + ": cannot read: No such file or directory");
+  EXPECT_EQ(input_error_of(directory.path().string(), ""),
+            directory.path().string() + ": cannot read: not a regular file");
+  std::ofstream(directory / "empty").flush();
+  EXPECT_TRUE(
+      input_error_of(directory / "empty", "").starts_with(directory / "empty" + ": not a readable OpenVDB file"));
+  std::ofstream(directory / "text") << "solid cube";
+  EXPECT_TRUE(input_error_of(directory / "text", "").starts_with(directory / "text" + ": not a readable OpenVDB file"));
+}
+
+// Cut anywhere, a file is refused or, from where its head is complete, read as before.
+TEST(ReadVdbLattice, SurvivesTruncatedFiles) {
+  const TemporaryDirectory directory;
+  const Field field = field_of({9, 9, 9}, [](auto x, auto y, auto z) { return static_cast<double>(x + y + z); });
+  write_vdb(directory / "whole", field);
+  const std::string whole = contents(directory / "whole");
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    const std::string cut = directory / std::to_string(size);
+    std::ofstream(cut, std::ios::binary) << whole.substr(0, size);
+    try {
+      expect_same(read_vdb_lattice(cut, ""), field.lattice);
+    } catch (const InputError&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raycone

@@ -1,0 +1,15 @@
+// Exit statuses, as promised to scripts (README, "Exit status").
+#pragma once
+
+namespace raycone {
+
+enum class ExitCode : int {
+  kDone = 0,
+  kUsage = 1,
+  kInput = 2,
+  kOutput = 3,
+  kLimit = 4,
+  kInternal = 6,
+};
+
+}  // namespace raycone

@@ -1,0 +1,41 @@
+// What a run may use: threads, memory, time; and what it did use.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace raycone {
+
+// RAYCONE_THREADS where set (UsageError where it is no number of threads), else the CPUs that this process may use:
+// its affinity mask, capped by its cgroup's quota. At least 1.
+[[nodiscard]] int default_threads();
+
+// Largest number of threads that may be asked for.
+inline constexpr int kMaxThreads = 4096;
+
+// Bytes that the machine, the cgroup and `ulimit -v` leave to this process.
+[[nodiscard]] std::uint64_t available_memory();
+
+// Makes allocations from here on fail with std::bad_alloc once they exceed `bytes`, not counting what libraries and
+// `threads` threads map without using it.
+void cap_memory(std::uint64_t bytes, int threads);
+
+// Largest resident size so far, in bytes.
+[[nodiscard]] std::uint64_t peak_memory();
+
+// Throws LimitError with both numbers if `more` bytes on top of what is in use exceed `limit`. `name`: the file
+// concerned.
+void check_memory(const std::string& name, double more, std::uint64_t limit);
+
+// "8 GB", "34 GB", "1.5 MB": powers of 1024, as --memory-limit reads them.
+[[nodiscard]] std::string readable_bytes(double bytes);
+
+// CPUs by the tightest quota of the cgroup (v1 or v2) of this process and those above it. `root` stands in for "/".
+[[nodiscard]] std::optional<double> cgroup_cpus(const std::filesystem::path& root = "/");
+
+// Bytes that these cgroups leave: their limits less what is in use and not reclaimable file cache.
+[[nodiscard]] std::optional<std::uint64_t> cgroup_memory(const std::filesystem::path& root = "/");
+
+}  // namespace raycone

@@ -1,0 +1,79 @@
+// The command line as data. Everything that needs no file is checked here; CLI11 stays behind options.cpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/lattice_choice.h"
+#include "app/progress.h"
+#include "core/weld.h"
+#include "io/field_writer.h"
+#include "io/read_mesh.h"
+#include "io/read_points.h"
+
+namespace raycone {
+
+struct MeshOptions {
+  std::string path;  // "-": standard input
+  ReadMeshOptions reading;
+  Weld weld;
+};
+
+struct RunOptions {
+  std::optional<int> threads;                 // else default_threads()
+  std::optional<std::uint64_t> memory_limit;  // bytes; else available_memory()
+  std::optional<double> timeout;              // seconds
+  ProgressMode progress = ProgressMode::kAuto;
+  bool quiet = false;
+  bool strict = false;
+};
+
+struct OutputOptions {
+  std::string path;  // "-": standard output
+  FieldFormat format = FieldFormat::kCsv;
+  bool double_precision = false;
+  bool no_clobber = false;
+  std::optional<std::string> report;
+};
+
+// A grid of an OpenVDB file; an empty name is its only or first one.
+struct GridReference {
+  std::string path;
+  std::string name;
+};
+
+struct LatticeCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  OutputOptions output;
+  std::variant<LatticeRequest, GridReference> lattice;
+};
+
+struct PointsCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  OutputOptions output;
+  std::string points;  // "-": standard input
+  ReadPointsOptions reading;
+};
+
+struct InfoCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  bool json = false;
+};
+
+// --help and --version: their text is a result.
+struct PrintCommand {
+  std::string text;
+};
+
+using Command = std::variant<LatticeCommand, PointsCommand, InfoCommand, PrintCommand>;
+
+// `arguments` without the program's name. Throws UsageError.
+[[nodiscard]] Command parse_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace raycone

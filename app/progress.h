@@ -1,0 +1,44 @@
+// The progress line on standard error: percentage, rate, time left.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace raycone {
+
+enum class ProgressMode { kAuto, kAlways, kNever };
+
+// Whether to show progress: on a terminal that is not already busy with the results, unless told otherwise.
+[[nodiscard]] bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output);
+
+// Rewrites one line about `done` from a thread of its own, at most ten times a second, until stop().
+class Progress {
+ public:
+  // `total` samples, where known.
+  Progress(bool shown, std::optional<std::uint64_t> total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // The count of finished samples, to be increased by the work.
+  [[nodiscard]] std::atomic<std::uint64_t>* done() { return &done_; }
+  // Erases the line; nothing is written afterwards.
+  void stop();
+
+ private:
+  void show_until_stopped();
+
+  std::optional<std::uint64_t> total_;
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopped_ = false;  // guarded by mutex_
+  std::thread thread_;    // runs only where progress is shown
+};
+
+}  // namespace raycone

@@ -1,0 +1,66 @@
+// One line per message, its wording made where the cause is known.
+#include "app/report.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "app/usage_error.h"
+#include "io/file_error.h"
+
+namespace raycone {
+namespace {
+
+ExitCode print_error(const char* message, ExitCode code) {
+  print_message(message);
+  return code;
+}
+
+// "1 face", "2 faces"
+std::string counted(std::uint64_t count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string summary_line(const RunReport& report) {
+  const Seconds& s = report.seconds;
+  char times[160];
+  std::snprintf(times, sizeof times, " in %.2f s (read %.2f, prepare %.2f, evaluate %.2f, write %.2f) -> ", s.total,
+                s.read, s.prepare, s.evaluate, s.write);
+  return report.mesh + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") +
+         ", " + counted(report.samples, "sample") + times + (report.output == "-" ? "standard output" : report.output);
+}
+
+std::string message_line(std::string_view message) {
+  std::string line = "raycone: ";
+  for (const char character : message) {
+    const bool control = static_cast<unsigned char>(character) < 0x20 || character == 0x7f;
+    line += control ? '?' : character;
+  }
+  return line + '\n';
+}
+
+void print_message(std::string_view message) { std::fputs(message_line(message).c_str(), stderr); }
+
+ExitCode report_current_exception() {
+  try {
+    throw;
+  } catch (const UsageError& error) {
+    return print_error(error.what(), ExitCode::kUsage);
+  } catch (const InputError& error) {
+    return print_error(error.what(), ExitCode::kInput);
+  } catch (const OutputError& error) {
+    return print_error(error.what(), ExitCode::kOutput);
+  } catch (const LimitError& error) {
+    return print_error(error.what(), ExitCode::kLimit);
+  } catch (const std::bad_alloc&) {
+    return print_error("out of memory", ExitCode::kLimit);
+  } catch (const std::exception& error) {
+    return print_error((std::string("internal error, please report: ") + error.what()).c_str(), ExitCode::kInternal);
+  } catch (...) {
+    return print_error("internal error, please report", ExitCode::kInternal);
+  }
+}
+
+}  // namespace raycone

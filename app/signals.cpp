@@ -1,0 +1,101 @@
+// Everything called by the handlers is async-signal-safe (signal-safety(7)).
+#include "app/signals.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "app/exit_code.h"
+#include "app/report.h"
+#include "io/output_file.h"
+
+namespace raycone {
+namespace {
+
+// setitimer(2) need not accept more.
+constexpr double kMaxTimeout = 1e8;
+
+// A handler can reach nothing else; written before the timer starts, constant afterwards.
+char timeout_message[8192];
+
+void write_to_stderr(const char* text) {
+  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // nobody left to tell
+}
+
+// The progress line, if any, must not stay in front of what follows.
+void erase_progress_line() {
+  if (isatty(STDERR_FILENO)) write_to_stderr("\r\033[K");
+}
+
+// Installed with SA_RESETHAND: the signal raised again takes its default action as soon as this returns.
+extern "C" void clean_up_and_die(int signal) {
+  remove_temporary_files();
+  if (signal != SIGPIPE) erase_progress_line();
+  raise(signal);
+}
+
+extern "C" void time_out(int /*signal*/) {
+  remove_temporary_files();
+  erase_progress_line();
+  write_to_stderr(timeout_message);
+  _exit(static_cast<int>(ExitCode::kLimit));
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigfillset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+bool inherited_as_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// A write to a closed standard output shall fail, not go to whatever file got its number.
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) != -1) continue;
+    if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+}  // namespace
+
+void set_up_process() {
+  occupy_standard_descriptors();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    if (!inherited_as_ignored(signal)) handle(signal, clean_up_and_die);
+  }
+  handle(SIGXCPU, clean_up_and_die);
+  handle(SIGPIPE, clean_up_and_die);
+  signal(SIGXFSZ, SIG_IGN);
+  sigset_t ours;
+  sigemptyset(&ours);
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGPIPE, SIGALRM}) sigaddset(&ours, signal);
+  pthread_sigmask(SIG_UNBLOCK, &ours, nullptr);
+}
+
+void start_timeout(double seconds, const std::string& name) {
+  char limit[32];
+  std::snprintf(limit, sizeof limit, "%g", seconds);
+  const std::string line = message_line(name + ": not finished within " + limit + " seconds (--timeout)");
+  line.copy(timeout_message, sizeof timeout_message - 1);
+  handle(SIGALRM, time_out);
+  const double capped = std::min(seconds, kMaxTimeout);
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(capped);
+  timer.it_value.tv_usec = static_cast<suseconds_t>((capped - std::floor(capped)) * 1e6);
+  if (timer.it_value.tv_sec == 0) timer.it_value.tv_usec = std::max<suseconds_t>(timer.it_value.tv_usec, 1);
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+}  // namespace raycone

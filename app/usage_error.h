@@ -1,0 +1,15 @@
+// The command line itself is wrong: exit status 1.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace raycone {
+
+// what() is one complete line without the leading "raycone: ".
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace raycone

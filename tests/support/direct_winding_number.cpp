@@ -1,102 +1,61 @@
 #include "tests/support/direct_winding_number.h"
 
-#include <quadmath.h>
-
 #include <cmath>
+#include <numbers>
+
+#include "core/direct_sum.h"
+#include "core/floating_point.h"
 
 namespace raycone::test {
 namespace {
 
-using Quad = __float128;
+using Wide = long double;
 
-// Cancellation beyond this leaves no digit of 113 bits: a triangle of zero area seen from its own line, whose term is 0
-// / 0.
-const Quad kNothingLeft = 1e30;
-const Quad kTwoPi = 8 * atanq(1);
-
-long double square_root(long double x) { return std::sqrt(x); }
-long double arc_tangent(long double y, long double x) { return std::atan2(y, x); }
-Quad square_root(Quad x) { return sqrtq(x); }
-Quad arc_tangent(Quad y, Quad x) { return atan2q(y, x); }
-
-template <class Real>
-Real absolute(Real x) {
-  return x < 0 ? -x : x;
-}
-
-template <class Real>
-struct Vector {
-  Real x, y, z;
+struct WideVec3 {
+  Wide x, y, z;
 };
 
-template <class Real>
-Vector<Real> minus(const Vec3& v, const Vector<Real>& q) {
-  return {Real(v.x) - q.x, Real(v.y) - q.y, Real(v.z) - q.z};
-}
+WideVec3 minus(const Vec3& v, const Vec3& q) { return {Wide(v.x) - q.x, Wide(v.y) - q.y, Wide(v.z) - q.z}; }
 
-template <class Real>
-Real dot(const Vector<Real>& a, const Vector<Real>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+Wide dot(const WideVec3& a, const WideVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Half the solid angle of a triangle, as an argument, and how much its real and imaginary parts cancel.
-template <class Real>
+// Half the solid angle with 64 bits, and how much cancels in it.
 struct Term {
-  Real half_angle;
-  Real cancellation;  // sum of absolute terms / |z|
+  Wide half_angle;
+  Wide cancellation;  // sum of absolute terms / |z|
 };
 
-template <class Real>
-Term<Real> term(const Vec3& va, const Vec3& vb, const Vec3& vc, const Vector<Real>& q) {
-  const Vector<Real> a = minus(va, q), b = minus(vb, q), c = minus(vc, q);
-  const Real la = square_root(dot(a, a)), lb = square_root(dot(b, b)), lc = square_root(dot(c, c));
-  const Real ab = dot(a, b) * lc, bc = dot(b, c) * la, ca = dot(c, a) * lb;
-  const Real re = la * lb * lc + ab + bc + ca;
-  const Real im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
-  const Real magnitude = absolute(re) + absolute(im);
-  return {arc_tangent(im, re), 10 * la * lb * lc / magnitude};
-}
-
-template <class Visit>
-void for_each_triangle(const TriangleMesh& mesh, const Visit& visit) {
-  for (const Triangle& t : mesh.triangles) visit(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-}
-
-Quad sum_in_quad(const TriangleMesh& mesh, const Vector<Quad>& q) {
-  Quad sum = 0;
-  for_each_triangle(mesh, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Term<Quad> t = term<Quad>(a, b, c, q);
-    if (t.cancellation < kNothingLeft) sum += t.half_angle;  // a triangle of zero area seen from its own line: 0 / 0
-  });
-  return sum;
+Term term(const Vec3& va, const Vec3& vb, const Vec3& vc, const Vec3& q) {
+  const WideVec3 a = minus(va, q), b = minus(vb, q), c = minus(vc, q);
+  const Wide la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
+  const Wide re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  const Wide im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  return {std::atan2(im, re), 10 * la * lb * lc / (std::abs(re) + std::abs(im))};
 }
 
 }  // namespace
 
 double direct_winding_number(const TriangleMesh& mesh, const Vec3& q) {
-  constexpr long double kTwelveBits = 4096;
-  const Vector<long double> extended{q.x, q.y, q.z};
-  const Vector<Quad> quad{q.x, q.y, q.z};
+  constexpr Wide kTwelveBits = 4096;
   Quad sum = 0;
-  for_each_triangle(mesh, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Term<long double> t = term<long double>(a, b, c, extended);
-    if (t.cancellation < kTwelveBits) {
-      sum += t.half_angle;
-      return;
-    }
-    const Term<Quad> careful = term<Quad>(a, b, c, quad);
-    if (careful.cancellation < kNothingLeft) sum += careful.half_angle;
-  });
-  return static_cast<double>(sum / kTwoPi);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Term wide = term(a, b, c, q);
+    // Not less: a triangle of zero area seen from its own line is 0 / 0, and counts 0.
+    sum += wide.cancellation < kTwelveBits ? Quad(wide.half_angle) : half_solid_angle(a, b, c, {q.x, q.y, q.z}).value;
+  }
+  return static_cast<double>(static_cast<Wide>(sum) / (2 * std::numbers::pi_v<Wide>));
 }
 
-__float128 direct_winding_number_quad(const TriangleMesh& mesh, const Vec3& q) {
-  return sum_in_quad(mesh, {q.x, q.y, q.z}) / kTwoPi;
+Quad direct_winding_number_quad(const TriangleMesh& mesh, const Vec3& q) {
+  const DefaultFloatingPoint guard;
+  return raycone::direct_winding_number(mesh, {q.x, q.y, q.z}).value;
 }
 
 double perturbed_winding_number(const TriangleMesh& mesh, const Vec3& q, double step) {
+  const DefaultFloatingPoint guard;
   const Quad e = step;
-  return static_cast<double>(sum_in_quad(mesh, {q.x + e, q.y + e * e, q.z + e * e * e}) / kTwoPi);
+  return static_cast<double>(raycone::direct_winding_number(mesh, {q.x + e, q.y + e * e, q.z + e * e * e}).value);
 }
 
 }  // namespace raycone::test

@@ -1,0 +1,29 @@
+// The winding number by its definition: the sum of the solid angles of all triangles (Van Oosterom and Strackee 1983,
+// eq. 8), in 113-bit arithmetic. For verification: it shares nothing with the evaluator, and costs microseconds per
+// triangle.
+#pragma once
+
+#include "core/triangle_mesh.h"
+
+namespace raycone {
+
+using Quad = __float128;
+
+struct QuadVec3 {
+  Quad x, y, z;
+};
+
+// A number and how far it may be off.
+struct QuadWithin {
+  Quad value;
+  Quad error;
+};
+
+// Half the solid angle of the triangle at q, in (-pi, pi]. The error grows with the triangle's size over the distance
+// of q from its edges, and is pi where no digit is left (closer than 1e-30).
+[[nodiscard]] QuadWithin half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const QuadVec3& q);
+
+// w at q in turns of the full solid angle. Not defined on the surface. Triangles of zero area count nothing.
+[[nodiscard]] QuadWithin direct_winding_number(const TriangleMesh& mesh, const QuadVec3& q);
+
+}  // namespace raycone

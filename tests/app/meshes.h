@@ -1,0 +1,53 @@
+// Small meshes as text, for tests of the command line.
+#pragma once
+
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
+#include <string>
+
+namespace raycone::test {
+
+// The cube [0, 1]^3, closed, outward.
+inline const char* const kCube = R"(v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
+
+// The triangle (0, 0, 0), (1, 0, 0), (0, 1, 0): flat along z, open.
+inline const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+// Unconnected triangles in the unit cube: each has three exterior edges.
+inline std::string triangle_soup(int triangles) {
+  std::mt19937 random(1);
+  const auto coordinate = [&random] { return static_cast<double>(random()) * 0x1p-32; };
+  std::ostringstream obj;
+  for (int i = 0; i < 3 * triangles; ++i) {
+    obj << "v " << coordinate() << ' ' << coordinate() << ' ' << coordinate() << '\n';
+  }
+  for (int i = 0; i < triangles; ++i) obj << "f " << 3 * i + 1 << ' ' << 3 * i + 2 << ' ' << 3 * i + 3 << '\n';
+  return obj.str();
+}
+
+inline void write_text(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+inline std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace raycone::test

@@ -1,0 +1,65 @@
+// How lattices are cut for evaluation.
+#include "app/slabs.h"
+
+#include <gtest/gtest.h>
+
+namespace raycone::test {
+namespace {
+
+// Slabs of `lattice` along `axis`: each where its predecessor ended, each ending at a multiple of `alignment` but for
+// the last, none empty or above `most` samples; together all samples.
+void expect_partition(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t most) {
+  const auto a = static_cast<std::size_t>(axis);
+  std::int64_t next = lattice.index_min[a];
+  while (next <= lattice.index_max(axis)) {
+    const LatticeBlock slab = slab_from(lattice, axis, alignment, next);
+    ASSERT_EQ(slab.first[a], next);
+    ASSERT_GT(slab.counts[a], 0);
+    EXPECT_LE(slab.size(), most);
+    next += slab.counts[a];
+    EXPECT_TRUE(next % alignment == 0 || next == lattice.index_max(axis) + 1) << next;
+    for (std::size_t other = 0; other < 3; ++other) {
+      const bool across = other != a;
+      EXPECT_TRUE(!across || slab.counts[other] == lattice.counts[other]);
+    }
+  }
+  EXPECT_EQ(next, lattice.index_max(axis) + 1);
+  EXPECT_EQ(slab_from(lattice, axis, alignment, next).size(), 0) << "behind the end there is nothing";
+}
+
+TEST(SlabFrom, PartitionsTheLatticeAtAlignedIndices) {
+  Lattice lattice;
+  lattice.index_min = {0, 0, -13};
+  lattice.counts = {300, 300, 200};
+  expect_partition(lattice, 2, 8, std::int64_t{1} << 22);
+  expect_partition(lattice, 0, 1, std::int64_t{1} << 22);
+}
+
+TEST(SlabFrom, HoldsOneAlignedGroupWhereLayersAreLarge) {
+  Lattice lattice;
+  lattice.index_min = {0, 0, 3};
+  lattice.counts = {4000, 4000, 40};
+  expect_partition(lattice, 2, 8, 8 * 16'000'000);
+  expect_partition(lattice, 2, 1, 16'000'000);
+}
+
+TEST(SlabFrom, HoldsSmallLatticesWhole) {
+  Lattice lattice;
+  lattice.index_min = {-5, -5, -5};
+  lattice.counts = {50, 50, 50};
+  EXPECT_EQ(slab_from(lattice, 2, 8, -5).size(), 125'000);
+}
+
+TEST(SlabMemory, IsThatOfItsDoubles) { EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}), 64e6); }
+
+TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
+  Lattice lattice;
+  lattice.counts = {1000, 1000, 1000};
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, false, false), 0.0);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, false, false), 4e9 + 4 * 8e6);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, true, false), 8e9 + 8 * 8e6);
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, false, true), 1e8);
+}
+
+}  // namespace
+}  // namespace raycone::test

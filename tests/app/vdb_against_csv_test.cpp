@@ -1,0 +1,85 @@
+// The whole pipeline, twice: every voxel of the OpenVDB file equals the value in the CSV, at the world position in the
+// CSV.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "tests/app/meshes.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+struct Sample {
+  openvdb::Coord index;
+  openvdb::Vec3d position;
+  double value;
+};
+
+std::vector<Sample> read_csv(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "i,j,k,x,y,z,w");
+  std::vector<Sample> samples;
+  while (std::getline(file, line)) {
+    std::istringstream row(line);
+    Sample s;
+    char comma = 0;
+    row >> s.index[0] >> comma >> s.index[1] >> comma >> s.index[2];
+    row >> comma >> s.position[0] >> comma >> s.position[1] >> comma >> s.position[2] >> comma >> s.value;
+    EXPECT_FALSE(row.fail()) << line;
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+openvdb::FloatGrid::Ptr read_grid(const std::string& path) {
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open();
+  return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("winding"));
+}
+
+void compare(const std::string& mesh, const std::vector<std::string>& options) {
+  const TemporaryDirectory dir;
+  const std::string path = dir / "mesh.obj";
+  std::ofstream(path) << mesh;
+  for (const std::string name : {"out.csv", "out.vdb"}) {
+    std::vector<std::string> arguments{"lattice", path, "-o", dir / name};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    ASSERT_EQ(run_raycone(arguments).status, 0);
+  }
+  const std::vector<Sample> samples = read_csv(dir / "out.csv");
+  const openvdb::FloatGrid::Ptr grid = read_grid(dir / "out.vdb");
+  ASSERT_TRUE(grid);
+  ASSERT_GT(samples.size(), 100U);
+  std::uint64_t active = 0;
+  for (const Sample& s : samples) {
+    EXPECT_EQ(grid->tree().getValue(s.index), static_cast<float>(s.value));
+    EXPECT_EQ(grid->tree().isValueOn(s.index), static_cast<float>(s.value) != grid->background());
+    active += grid->tree().isValueOn(s.index);
+    const openvdb::Vec3d world = grid->indexToWorld(s.index);
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(world[axis], s.position[axis], 1e-12);  // some roundings of values below 10
+  }
+  EXPECT_EQ(grid->activeVoxelCount(), active);  // nothing beside the samples
+}
+
+TEST(VdbAgainstCsv, ClosedMesh) { compare(kCube, {"--resolution", "20", "--padding", "3v"}); }
+
+TEST(VdbAgainstCsv, ClosedMeshWithAnisotropicVoxelsAndNegativeIndices) {
+  compare(kCube, {"--voxel-size", ".11,.07,.05", "--padding", ".3"});
+}
+
+TEST(VdbAgainstCsv, OpenMesh) { compare(triangle_soup(20), {"--resolution", "17,9,23"}); }
+
+TEST(VdbAgainstCsv, FlatMesh) { compare(kTriangle, {"--resolution", "30"}); }
+
+}  // namespace
+}  // namespace raycone::test

@@ -1,0 +1,37 @@
+#!/bin/sh
+# The layers are kept, and tests/check_layers.sh notices each kind of violation when one is planted in a copy.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+sh "$root/tests/check_layers.sh" "$root"
+
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+cp -R "$root/core" "$root/io" "$root/app" "$copy"
+sh "$root/tests/check_layers.sh" "$copy"
+
+# plant FILE INCLUDE: the check must fail with the line added, and name the file.
+plant() {
+  cp "$copy/$1" "$copy/saved"
+  printf '%s\n' "$2" >>"$copy/$1"
+  if output=$(sh "$root/tests/check_layers.sh" "$copy" 2>&1); then
+    echo "not noticed: $2 in $1" >&2
+    exit 1
+  fi
+  case $output in
+    *"$1"*) ;;
+    *) echo "noticed, but $1 not named: $output" >&2; exit 1 ;;
+  esac
+  mv "$copy/saved" "$copy/$1"
+}
+
+plant core/weld.cpp '#include "io/read_mesh.h"'
+plant core/vec3.h '#  include "app/exit_code.h"'
+plant io/read_mesh.cpp '#include "app/exit_code.h"'
+plant io/read_mesh.h '#include "core/winding_number.h"'
+plant core/weld.cpp '#include <embree3/rtcore.h>'
+plant core/weld.cpp '#include <CGAL/Origin.h>'
+plant app/exit_code.h '#include <tbb/parallel_for.h>'
+plant app/exit_code.h '#include <openvdb/openvdb.h>'
+plant io/read_mesh.cpp '#include <nlohmann/json.hpp>'
+plant io/read_mesh.cpp '#include <nettle/sha2.h>'
+plant app/exit_code.h '#include <CLI/CLI.hpp>'

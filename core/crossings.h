@@ -1,6 +1,7 @@
 // Signed crossings of the rays of a row with triangles.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,21 +11,49 @@
 
 namespace raycone {
 
-// What the triangles say about each sample of a row.
+// Where a triangle's plane meets lines along x, in floating point.
+struct TrianglePlane {
+  Vec3 normal;  // (b - a) x (c - a), rounded
+  double error =
+      0;  // bound of |x^ - x| where a line through the triangle's box meets the plane; infinite where none is known
+
+  TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c);
+};
+
+// What one triangle says about the samples of a row. Each statement holds for a range of them.
+struct TriangleCrossing {
+  int sigma = 0;  // +-1: crossed by the rays of the samples [0, crossed), sign of the normal's x
+  std::size_t crossed = 0;
+  int ties = 0;  // edges with D = 0, of a triangle whose closed box meets the rays of the samples [0, met)
+  std::size_t met = 0;
+  std::size_t on_begin = 0;  // the samples [on_begin, on_end) lie on the closed triangle
+  std::size_t on_end = 0;
+};
+
+// Exact. `plane` is that of the triangle; nullptr: predicates alone decide, which is cheaper for a single sample. Needs
+// DefaultFloatingPoint.
+[[nodiscard]] TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,
+                                                 const TrianglePlane* plane);
+
+// What all triangles say about a row.
 struct RowCrossings {
-  std::vector<std::int64_t> crossings;   // n(q): triangles crossed by the ray, with the sign of their normal's x
-  std::vector<std::int64_t> degenerate;  // edge sides that were ties, once per edge of each triangle whose closed box
-                                         // meets the closed ray
-  std::vector<std::uint8_t> on_surface;  // 1 where the sample lies on a closed triangle
+  struct Ending {
+    std::size_t samples;  // counted by the samples [0, samples)
+    int count;
+  };
+  struct Range {
+    std::size_t begin;
+    std::size_t end;
+  };
+  std::vector<Ending> crossings;
+  std::vector<Ending> ties;
+  std::vector<Range> on_surface;
 
-  // Sets everything to that of the row against the `candidates` of `mesh`: a superset of the triangles whose closed box
-  // meets the closed ray from the row's first sample, each once; the result does not depend on their order nor on more
-  // of them. Exact.
-  void count(const TriangleMesh& mesh, std::span<const std::uint32_t> candidates, const Row& row);
+  void clear();
+  void add(const TriangleCrossing& crossing);
 
- private:
-  void add(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row);
-  void mark_on_surface(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, std::size_t begin, std::size_t end);
+  // The sum of the endings' counts at each sample; sorts the endings.
+  static void sum(std::vector<Ending>& endings, std::span<std::int64_t> sums);
 };
 
 }  // namespace raycone

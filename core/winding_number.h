@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "core/lattice.h"
 #include "core/triangle_mesh.h"
 
@@ -30,19 +31,18 @@ struct Tally {
   }
 };
 
-// What is known of each value besides itself. Every span has the values' size.
-struct Diagnostics {
-  std::span<std::int64_t> crossings;   // n(q)
-  std::span<std::int64_t> degenerate;  // ties, as in Tally
-  std::span<std::uint8_t> on_surface;  // 1 on the surface, where the value is that of the perturbed query
-  std::span<double> error_bound;  // of |w - true w| in turns, rigorous (docs/method.md, "Error bound"); 0 if closed
+// How the triangles along rays are found. Values do not depend on it.
+enum class RayEngine {
+  kScan,    // lattices: scan conversion; points: a grid over the projected triangles, or Embree where that would be
+            // coarse
+  kEmbree,  // Embree for all
 };
 
 class WindingNumberEvaluator {
  public:
-  // Prepares all that depends on the mesh alone: exterior edges and the acceleration structure of the rays.
-  // `mesh` is welded (core/weld.h); vertices used by triangles are finite. Throws std::bad_alloc.
-  explicit WindingNumberEvaluator(TriangleMesh mesh);
+  // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/weld.h); vertices used
+  // by triangles are finite. Throws std::bad_alloc.
+  explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan);
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;
@@ -56,6 +56,9 @@ class WindingNumberEvaluator {
   // as long for open meshes. Const calls may run concurrently.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
+
+  // Builds the acceleration structure that points need and lattices may not; else the first evaluation of points does.
+  void prepare_points() const;
 
   // Winding numbers (turns) at finite points, in their order: values.size() == points.size().
   Tally evaluate(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done = nullptr,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/projected_grid.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -23,8 +24,9 @@ std::vector<std::uint32_t> triangles_along(const TriangleMesh& mesh, const Vec3&
   return found;
 }
 
+template <class Finder>
 std::uint64_t check_candidates(const TriangleMesh& mesh, const std::vector<Vec3>& origins) {
-  const RayCaster rays(mesh);
+  const Finder rays(mesh);
   std::vector<std::uint32_t> candidates;
   std::uint64_t total = 0;
   for (const Vec3& q : origins) {
@@ -38,17 +40,23 @@ std::uint64_t check_candidates(const TriangleMesh& mesh, const std::vector<Vec3>
   return total;
 }
 
-TEST(RayCaster, FindsEveryTriangleOfDegenerateLattices) {
+// Both ways to find the triangles along a ray.
+template <class Finder>
+class CandidateFinder : public testing::Test {};
+using Finders = testing::Types<RayCaster, ProjectedGrid>;
+TYPED_TEST_SUITE(CandidateFinder, Finders);
+
+TYPED_TEST(CandidateFinder, FindsEveryTriangleOfDegenerateLattices) {
   test::Random random(1);
   const TriangleMesh mesh = test::random_cells(random, 12);
   std::vector<Vec3> origins;
   for (int j = 0; j <= 24; ++j) {
     for (int k = 0; k <= 24; ++k) origins.push_back({-1.0 + j % 5, 0.5 * j, 0.5 * k});
   }
-  EXPECT_GT(check_candidates(mesh, origins), 10000U);
+  EXPECT_GT(check_candidates<TypeParam>(mesh, origins), 10000U);
 }
 
-TEST(RayCaster, FindsEveryTriangleThroughVerticesOfARealisticMesh) {
+TYPED_TEST(CandidateFinder, FindsEveryTriangleThroughVerticesOfARealisticMesh) {
   for (const auto& [factors, shift] :
        {std::pair<Vec3, Vec3>{{1, 1, 1}, {0, 0, 0}}, {{1, 1e7, 1e-7}, {3, 5e5, 4.6e6}}}) {
     const TriangleMesh mesh = test::moved(test::sphere(40), factors, shift);
@@ -57,7 +65,7 @@ TEST(RayCaster, FindsEveryTriangleThroughVerticesOfARealisticMesh) {
       origins.push_back(v);
       origins.push_back({shift.x - 10 * factors.x, v.y, v.z});
     }
-    EXPECT_GT(check_candidates(mesh, origins), 10000U);
+    EXPECT_GT(check_candidates<TypeParam>(mesh, origins), 10000U);
   }
 }
 

@@ -412,6 +412,29 @@ TEST(WindingNumber, OnLatticesEqualsThatAtTheirPointsToTheBit) {
   EXPECT_EQ(part.back(), on_lattice[static_cast<std::size_t>((5 * 9 + 3) * 70 + 27)]);
 }
 
+// Lattices through the vertices of degenerate meshes, a lattice that misses them, and one that is a single column.
+TEST(WindingNumber, EnginesAgreeToTheBit) {
+  Random random(20);
+  for (int i = 0; i < 12; ++i) {
+    const TriangleMesh mesh = i % 3 == 0   ? test::random_cells(random, 3)
+                              : i % 3 == 1 ? test::lattice_soup(random, 30, 3)
+                                           : test::joined(test::sphere(6), test::fan(5, 3));
+    const WindingNumberEvaluator scan(mesh, RayEngine::kScan), embree(mesh, RayEngine::kEmbree);
+    for (const Lattice& lattice : {Lattice{{-1, -1, -1}, {0.25, 0.5, 0.5}, {0, 0, 0}, {21, 11, 11}},
+                                   Lattice{{-0.7, 0.1, 0.2}, {0.173, 0.31, 0.37}, {-2, 0, 1}, {25, 9, 8}},
+                                   Lattice{{0, 1, 1}, {0.5, 0.5, 0.5}, {-3, 0, 0}, {15, 1, 1}},
+                                   Lattice{{1, 0, 0}, {0.5, 0.5, 0.5}, {0, 0, 0}, {1, 7, 7}}}) {
+      const auto size = static_cast<std::size_t>(whole(lattice).size());
+      std::vector<double> a(size), b(size);
+      const Tally of_scan = scan.evaluate(lattice, whole(lattice), a);
+      const Tally of_embree = embree.evaluate(lattice, whole(lattice), b);
+      EXPECT_EQ(a, b);
+      EXPECT_EQ(of_scan.degenerate, of_embree.degenerate);
+      EXPECT_EQ(of_scan.on_surface, of_embree.on_surface);
+    }
+  }
+}
+
 TEST(WindingNumber, DoesNotDependOnThreads) {
   Random random(18);
   const TriangleMesh mesh = weld(test::soup(random, 50), {});

@@ -21,15 +21,18 @@ struct Sample {
   std::int64_t degenerate;
   bool on_surface;
   double error_bound;
+
+  friend bool operator==(const Sample&, const Sample&) = default;
 };
 
-std::vector<Sample> evaluate(const TriangleMesh& mesh, const std::vector<Vec3>& queries, bool& closed) {
+std::vector<Sample> evaluate(const TriangleMesh& mesh, RayEngine engine, const std::vector<Vec3>& queries,
+                             bool& closed) {
   const std::size_t n = queries.size();
   std::vector<double> values(n), bounds(n);
   std::vector<std::int64_t> crossings(n), degenerate(n);
   std::vector<std::uint8_t> on_surface(n);
   const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-  const WindingNumberEvaluator evaluator(mesh);
+  const WindingNumberEvaluator evaluator(mesh, engine);
   evaluator.evaluate(queries, values, nullptr, &diagnostics);
   closed = evaluator.exterior_edges() == 0;
   std::vector<Sample> samples;
@@ -177,7 +180,12 @@ std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>
   const DefaultFloatingPoint guard;
   CheckCounts unused;
   bool closed = false;
-  for (const Sample& s : evaluate(welded, queries, closed)) {
+  const std::vector<Sample> samples = evaluate(welded, RayEngine::kScan, queries, closed);
+  const std::vector<Sample> by_embree = evaluate(welded, RayEngine::kEmbree, queries, closed);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& s = samples[i];
+    if (!(s == by_embree[i]))
+      return Failure{s.query, text("scan gives %.17g, Embree %.17g%.0s", s.value, by_embree[i].value, 0)};
     if (const auto what = wrong_sample(welded, closed, s, counts ? *counts : unused)) return Failure{s.query, *what};
   }
   return std::nullopt;

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/row.h"
+#include "core/cone_kernel.h"
 #include "core/triangle_mesh.h"
 
 namespace raycone {
@@ -35,25 +35,20 @@ class Cone {
 
   [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
 
-  // Replaces cone[i] by the cone's winding number at sample i of the row, sign as in w = n - w_cone. Rounding errors of
-  // some u per edge; needs DefaultFloatingPoint. Thread-safe. cone.size() == row.xs.size().
-  void winding_numbers(const Row& row, std::span<Turns> cone) const;
+  // Sets cone[i] to the cone's winding number at sample i, sign as in w = n - w_cone. Rounding errors of some u per
+  // edge; needs DefaultFloatingPoint. Thread-safe. cone.size() == samples.count, at least 1.
+  void winding_numbers(SampleTile& samples, std::span<Turns> cone) const;
 
   // The same in extended precision with a rigorous bound of its error, by running error analysis (docs/method.md,
   // "Error bound"). Some ten times slower, and a check of the above: it shares the signs and the order of edges, not
   // the arithmetic.
-  void enclose(const Row& row, std::span<TurnsWithin> cone) const;
+  [[nodiscard]] TurnsWithin enclose(const Vec3& q) const;
 
  private:
-  // Edges of one |multiplicity|: their product is common. A chain lists consecutive vertices.
-  struct Step {
-    Vec3 to;
-    bool joined;    // the edge from the previous step's vertex to this one is there; else a chain begins here
-    bool reversed;  // its multiplicity is negative
-  };
+  // Edges of one |multiplicity|: their product is common.
   struct Group {
     std::int32_t multiplicity = 1;  // positive
-    std::vector<Step> steps;
+    std::vector<ChainStep> steps;
   };
 
   std::uint64_t edges_ = 0;

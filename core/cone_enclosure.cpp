@@ -115,23 +115,21 @@ void add(TurnsWithin& cone, std::int32_t multiplicity, const Product& product) {
 
 }  // namespace
 
-void Cone::enclose(const Row& row, std::span<TurnsWithin> cone) const {
-  for (std::size_t i = 0; i < row.xs.size(); ++i) {
-    const Vec3 q = row.query(i);
-    cone[i] = {};
-    for (const Group& group : groups_) {
-      Product product;
-      Corner previous;
-      for (const Step& step : group.steps) {
-        const Corner here(step.to, q);
-        if (step.joined) {
-          if (const auto f = factor_of(previous, here, step.reversed, q)) product.multiply(*f);
-        }
-        previous = here;
+TurnsWithin Cone::enclose(const Vec3& q) const {
+  TurnsWithin cone;
+  for (const Group& group : groups_) {
+    Product product;
+    Corner previous;
+    for (const ChainStep& step : group.steps) {
+      const Corner here(step.to, q);
+      if (step.joined) {
+        if (const auto f = factor_of(previous, here, step.reversed, q)) product.multiply(*f);
       }
-      add(cone[i], group.multiplicity, product);
+      previous = here;
     }
+    add(cone, group.multiplicity, product);
   }
+  return cone;
 }
 
 }  // namespace raycone

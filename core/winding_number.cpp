@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "core/cone.h"
 #include "core/crossings.h"
 #include "core/lattice_scan.h"
-#include "core/projected_grid.h"
+#include "core/projected_tree.h"
 #include "core/ray_caster.h"
 #include "core/row.h"
 #include "core/scale.h"
@@ -46,9 +47,10 @@ class TallySum {
 struct Scratch {
   std::vector<std::uint32_t> candidates;
   RowCrossings crossings;
+  std::array<RowCrossings, ProjectedTree::kGroup> group;  // of points
   std::vector<std::int64_t> sums;
-  std::vector<Turns> cone;
-  std::vector<TurnsWithin> enclosure;
+  SampleTile tile;
+  std::array<Turns, kTile> cone;
 };
 
 // Diagnostics of the samples [begin, begin + count).
@@ -83,28 +85,29 @@ double error_bound(double w, std::int64_t n, const TurnsWithin& enclosure) {
 class Candidates {
  public:
   Candidates(const TriangleMesh& mesh, RayEngine engine) {
-    // With more candidates per cell a query takes longer than Embree's descent.
-    constexpr double kMostCandidates = 64;
-    if (engine == RayEngine::kScan) grid_.emplace(mesh);
-    if (!grid_ || grid_->expected_candidates() > kMostCandidates) {
+    if (engine == RayEngine::kScan) {
+      tree_.emplace(mesh);
+    } else {
       rays_.emplace(mesh);
-      grid_.reset();
     }
   }
 
-  void find(const Vec3& origin, std::vector<std::uint32_t>& candidates) const {
-    if (grid_) {
-      grid_->find_candidates(origin, candidates);
-    } else {
-      rays_->find_candidates(origin, candidates);
+  // Calls visit(i, triangle) for each origin and candidate. At most ProjectedTree::kGroup origins.
+  template <class Visit>
+  void find(std::span<const Vec3> origins, std::vector<std::uint32_t>& buffer, const Visit& visit) const {
+    if (tree_) return tree_->find(origins, visit);
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      rays_->find_candidates(origins[i], buffer);
+      for (const std::uint32_t triangle : buffer) visit(i, triangle);
     }
   }
 
   // Queries in the order of this number are close together.
-  [[nodiscard]] std::uint64_t place(const Vec3& origin) const { return grid_ ? grid_->cell_of(origin) : 0; }
+  [[nodiscard]] std::size_t place(const Vec3& origin) const { return tree_ ? tree_->place(origin) : 0; }
+  [[nodiscard]] std::size_t places() const { return tree_ ? ProjectedTree::kPlaces : 1; }
 
  private:
-  std::optional<ProjectedGrid> grid_;
+  std::optional<ProjectedTree> tree_;
   std::optional<RayCaster> rays_;
 };
 
@@ -142,46 +145,93 @@ class Engine {
 
   // Sets scratch.crossings to what the candidate triangles say about a row.
   void find_crossings(const Row& row, Scratch& scratch) const {
-    candidates().find(row.query(0), scratch.candidates);
     scratch.crossings.clear();
-    for (const std::uint32_t candidate : scratch.candidates) {
-      const Triangle& t = mesh_.triangles[candidate];
-      scratch.crossings.add(
-          triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr));
-    }
+    const Vec3 origin = row.query(0);
+    candidates().find({&origin, 1}, scratch.candidates,
+                      [&](std::size_t, std::uint32_t triangle) { scratch.crossings.add(crossing(triangle, row)); });
   }
 
   // w = n - w_cone at each sample of a row in the engine's scale, n from scratch.crossings.
   Tally evaluate_row(const Row& row, std::span<double> values, const Diagnostics* diagnostics, Scratch& scratch) const {
     scratch.sums.resize(row.xs.size());
     RowCrossings::sum(scratch.crossings.crossings, scratch.sums);
-    if (cone_.exterior_edges() > 0) {
-      scratch.cone.resize(row.xs.size());
-      cone_.winding_numbers(row, scratch.cone);
-      for (std::size_t i = 0; i < row.xs.size(); ++i) {
-        values[i] = static_cast<double>(scratch.sums[i] - scratch.cone[i].whole) - scratch.cone[i].rest;
-      }
-    } else {
-      std::copy(scratch.sums.begin(), scratch.sums.end(), values.begin());
-    }
+    subtract_cone(
+        scratch.sums, [&](std::size_t i) { return row.query(i); }, values, scratch);
     if (diagnostics) diagnose(row, values, *diagnostics, scratch);
     return tally_of(scratch.crossings, row.xs.size());
   }
 
+  // w = n - w_cone at the points, which are in the engine's scale.
+  Tally evaluate_points(std::span<const Vec3> points, std::span<double> values, const Diagnostics* diagnostics,
+                        Scratch& scratch) const {
+    constexpr std::size_t kGroup = ProjectedTree::kGroup;
+    Tally tally;
+    std::vector<std::int64_t> n(points.size());
+    std::array<RowCrossings, kGroup>& crossings = scratch.group;
+    for (std::size_t begin = 0; begin < points.size(); begin += kGroup) {
+      const std::span<const Vec3> group = points.subspan(begin, std::min(kGroup, points.size() - begin));
+      candidates().find(group, scratch.candidates, [&](std::size_t i, std::uint32_t triangle) {
+        crossings[i].add(crossing(triangle, {group[i].y, group[i].z, {&group[i].x, 1}}));
+      });
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        for (const RowCrossings::Ending& e : crossings[i].crossings) n[begin + i] += e.count;
+        tally += tally_of(crossings[i], 1);
+        if (diagnostics) diagnose_crossings(crossings[i], part(*diagnostics, begin + i, 1));
+        crossings[i].clear();
+      }
+    }
+    subtract_cone(
+        n, [&](std::size_t i) { return points[i]; }, values, scratch);
+    for (std::size_t i = 0; diagnostics && i < points.size(); ++i) {
+      diagnostics->crossings[i] = n[i];
+      diagnostics->error_bound[i] = error_bound_at(points[i], values[i], n[i]);
+    }
+    return tally;
+  }
+
  private:
+  [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
+  }
+
+  // values[i] = n[i] - w_cone(query(i)).
+  template <class Query>
+  void subtract_cone(std::span<const std::int64_t> n, const Query& query, std::span<double> values,
+                     Scratch& scratch) const {
+    if (cone_.exterior_edges() == 0) {
+      std::copy(n.begin(), n.end(), values.begin());
+      return;
+    }
+    for (std::size_t begin = 0; begin < n.size(); begin += kTile) {
+      scratch.tile.clear();
+      for (std::size_t i = begin; i < std::min(begin + kTile, n.size()); ++i) scratch.tile.add(query(i));
+      cone_.winding_numbers(scratch.tile, {scratch.cone.data(), scratch.tile.count});
+      for (std::size_t i = 0; i < scratch.tile.count; ++i) {
+        values[begin + i] = static_cast<double>(n[begin + i] - scratch.cone[i].whole) - scratch.cone[i].rest;
+      }
+    }
+  }
+
+  [[nodiscard]] double error_bound_at(const Vec3& q, double w, std::int64_t n) const {
+    return cone_.exterior_edges() > 0 ? error_bound(w, n, cone_.enclose(q)) : 0.0;
+  }
+
+  // Ties and the samples on the surface; sorts the crossings.
+  static void diagnose_crossings(RowCrossings& crossings, const Diagnostics& diagnostics) {
+    RowCrossings::sum(crossings.ties, diagnostics.degenerate);
+    std::fill(diagnostics.on_surface.begin(), diagnostics.on_surface.end(), std::uint8_t{0});
+    for (const RowCrossings::Range& range : crossings.on_surface) {
+      for (std::size_t i = range.begin; i < range.end; ++i) diagnostics.on_surface[i] = 1;
+    }
+  }
+
   void diagnose(const Row& row, std::span<const double> values, const Diagnostics& diagnostics,
                 Scratch& scratch) const {
-    const bool open = cone_.exterior_edges() > 0;
-    scratch.enclosure.resize(row.xs.size());
-    if (open) cone_.enclose(row, scratch.enclosure);
+    diagnose_crossings(scratch.crossings, diagnostics);
     for (std::size_t i = 0; i < row.xs.size(); ++i) {
       diagnostics.crossings[i] = scratch.sums[i];
-      diagnostics.on_surface[i] = 0;
-      diagnostics.error_bound[i] = open ? error_bound(values[i], scratch.sums[i], scratch.enclosure[i]) : 0.0;
-    }
-    RowCrossings::sum(scratch.crossings.ties, diagnostics.degenerate);
-    for (const RowCrossings::Range& range : scratch.crossings.on_surface) {
-      for (std::size_t i = range.begin; i < range.end; ++i) diagnostics.on_surface[i] = 1;
+      diagnostics.error_bound[i] = error_bound_at(row.query(i), values[i], scratch.sums[i]);
     }
   }
 
@@ -238,6 +288,64 @@ Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const Lattice
   });
   return total.sum();
 }
+
+// The indices of the points in an order in which neighbours share candidates (a counting sort by place).
+std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t places = engine.candidates().places();
+  if (places == 1) return order;
+  std::vector<std::size_t> place(points.size()), begin(places + 1, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    place[i] = engine.candidates().place(engine.to_scale(points[i]));
+    ++begin[place[i] + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (std::size_t i = 0; i < points.size(); ++i) order[begin[place[i]]++] = i;
+  return order;
+}
+
+// Points that are evaluated together, and where their values belong.
+class PointTile {
+ public:
+  [[nodiscard]] bool full() const { return points_.size() == kTile; }
+
+  void add(std::size_t index, const Vec3& scaled_point) {
+    indices_.push_back(index);
+    points_.push_back(scaled_point);
+  }
+
+  // Evaluates the points, if any, and forgets them.
+  Tally evaluate(const Engine& engine, std::span<double> values, const Diagnostics* diagnostics) {
+    const std::span<double> here(values_.data(), points_.size());
+    const Diagnostics diagnostics_here{{crossings_.data(), points_.size()},
+                                       {degenerate_.data(), points_.size()},
+                                       {on_surface_.data(), points_.size()},
+                                       {error_bound_.data(), points_.size()}};
+    const Tally tally = engine.evaluate_points(points_, here, diagnostics ? &diagnostics_here : nullptr, scratch_);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      values[indices_[i]] = values_[i];
+      if (!diagnostics) continue;
+      diagnostics->crossings[indices_[i]] = crossings_[i];
+      diagnostics->degenerate[indices_[i]] = degenerate_[i];
+      diagnostics->on_surface[indices_[i]] = on_surface_[i];
+      diagnostics->error_bound[indices_[i]] = error_bound_[i];
+    }
+    indices_.clear();
+    points_.clear();
+    return tally;
+  }
+
+ private:
+  std::vector<std::size_t> indices_;
+  std::vector<Vec3> points_;
+  std::array<double, kTile> values_;
+  std::array<std::int64_t, kTile> crossings_;
+  std::array<std::int64_t, kTile> degenerate_;
+  std::array<std::uint8_t, kTile> on_surface_;
+  std::array<double, kTile> error_bound_;
+  Scratch scratch_;
+};
 
 }  // namespace
 
@@ -304,18 +412,20 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
+  const std::vector<std::size_t> order = coherent_order(implementation_->scaled, points);
   TallySum total;
-  parallel_for(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-    Scratch scratch;
+  parallel_for(points.size(), 4 * kTile, [&](std::size_t begin, std::size_t end) {
+    PointTile tile;
     Tally tally;
     for (std::size_t i = begin; i < end; ++i) {
-      const Engine& engine = implementation_->engine_for(implementation_->scaled.can_take(points[i]));
-      const Vec3 q = engine.to_scale(points[i]);
-      const Row row{q.y, q.z, {&q.x, 1}};
-      engine.find_crossings(row, scratch);
-      const Diagnostics of_point = diagnostics ? part(*diagnostics, i, 1) : Diagnostics{};
-      tally += engine.evaluate_row(row, values.subspan(i, 1), diagnostics ? &of_point : nullptr, scratch);
+      const std::size_t index = order[i];
+      const bool exact = implementation_->scaled.can_take(points[index]);
+      if (!exact) tally += tile.evaluate(implementation_->scaled, values, diagnostics);
+      const Engine& engine = implementation_->engine_for(exact);
+      tile.add(index, engine.to_scale(points[index]));
+      if (!exact || tile.full()) tally += tile.evaluate(engine, values, diagnostics);
     }
+    tally += tile.evaluate(implementation_->scaled, values, diagnostics);
     if (done) done->fetch_add(end - begin, std::memory_order_relaxed);
     total.add(tally);
   });

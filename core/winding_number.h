@@ -33,8 +33,7 @@ struct Tally {
 
 // How the triangles along rays are found. Values do not depend on it.
 enum class RayEngine {
-  kScan,    // lattices: scan conversion; points: a grid over the projected triangles, or Embree where that would be
-            // coarse
+  kScan,    // lattices: scan conversion; points: a packed tree over the projected triangles
   kEmbree,  // Embree for all
 };
 

@@ -4,8 +4,9 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <array>
 
-#include "core/projected_grid.h"
+#include "core/projected_tree.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -24,13 +25,37 @@ std::vector<std::uint32_t> triangles_along(const TriangleMesh& mesh, const Vec3&
   return found;
 }
 
+void find(const RayCaster& rays, const Vec3& q, std::vector<std::uint32_t>& candidates) {
+  rays.find_candidates(q, candidates);
+}
+
+// In a group with neighbours and with a distant one, which must get the same as alone.
+void find(const ProjectedTree& tree, const Vec3& q, std::vector<std::uint32_t>& candidates) {
+  candidates.clear();
+  std::vector<std::uint32_t> in_group, far_apart;
+  const std::array<Vec3, 3> near{q + Vec3{-1, 1e-9, 0}, q, q + Vec3{1, 0, 1e-9}};
+  const std::array<Vec3, 2> distant{q, q + Vec3{0, 1e9, 0}};
+  tree.find({&q, 1}, [&](std::size_t, std::uint32_t triangle) { candidates.push_back(triangle); });
+  tree.find(near, [&](std::size_t i, std::uint32_t triangle) {
+    if (i == 1) in_group.push_back(triangle);
+  });
+  tree.find(distant, [&](std::size_t i, std::uint32_t triangle) {
+    if (i == 0) far_apart.push_back(triangle);
+  });
+  EXPECT_EQ(far_apart, candidates);
+  std::sort(in_group.begin(), in_group.end());
+  std::vector<std::uint32_t> sorted = candidates;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(in_group, sorted);
+}
+
 template <class Finder>
 std::uint64_t check_candidates(const TriangleMesh& mesh, const std::vector<Vec3>& origins) {
   const Finder rays(mesh);
   std::vector<std::uint32_t> candidates;
   std::uint64_t total = 0;
   for (const Vec3& q : origins) {
-    rays.find_candidates(q, candidates);
+    find(rays, q, candidates);
     std::sort(candidates.begin(), candidates.end());
     EXPECT_EQ(std::adjacent_find(candidates.begin(), candidates.end()), candidates.end()) << "reported twice";
     const std::vector<std::uint32_t> needed = triangles_along(mesh, q);
@@ -43,7 +68,7 @@ std::uint64_t check_candidates(const TriangleMesh& mesh, const std::vector<Vec3>
 // Both ways to find the triangles along a ray.
 template <class Finder>
 class CandidateFinder : public testing::Test {};
-using Finders = testing::Types<RayCaster, ProjectedGrid>;
+using Finders = testing::Types<RayCaster, ProjectedTree>;
 TYPED_TEST_SUITE(CandidateFinder, Finders);
 
 TYPED_TEST(CandidateFinder, FindsEveryTriangleOfDegenerateLattices) {

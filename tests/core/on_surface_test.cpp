@@ -1,0 +1,149 @@
+// On the surface: the value is that of the perturbed query, flagged, and depends on query and mesh alone.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/threads.h"
+#include "core/weld.h"
+#include "core/winding_number.h"
+#include "tests/property/check.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+
+struct Diagnosed {
+  std::vector<double> values;
+  std::vector<std::int64_t> crossings, degenerate;
+  std::vector<std::uint8_t> on_surface;
+  std::vector<double> error_bounds;
+
+  explicit Diagnosed(std::size_t n) : values(n), crossings(n), degenerate(n), on_surface(n), error_bounds(n) {}
+  [[nodiscard]] Diagnostics spans() { return {crossings, degenerate, on_surface, error_bounds}; }
+  [[nodiscard]] std::size_t on_surface_count() const {
+    return static_cast<std::size_t>(std::count(on_surface.begin(), on_surface.end(), 1));
+  }
+  friend bool operator==(const Diagnosed&, const Diagnosed&) = default;
+};
+
+Diagnosed at_points(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine = RayEngine::kScan) {
+  Diagnosed result(queries.size());
+  const Diagnostics spans = result.spans();
+  WindingNumberEvaluator(mesh, engine).evaluate(queries, result.values, nullptr, &spans);
+  return result;
+}
+
+Diagnosed on_lattice(const TriangleMesh& mesh, const Lattice& lattice, RayEngine engine = RayEngine::kScan) {
+  Diagnosed result(static_cast<std::size_t>(whole(lattice).size()));
+  const Diagnostics spans = result.spans();
+  WindingNumberEvaluator(mesh, engine).evaluate(lattice, whole(lattice), result.values, nullptr, &spans);
+  return result;
+}
+
+// Half nodes of {0 .. 3}^3 and one more layer: on meshes with corners on the nodes most of them are vertices, middles
+// of edges, or inside faces.
+constexpr Lattice kHalfNodes{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {0, 0, 0}, {9, 9, 9}};
+
+std::vector<Vec3> points_of(const Lattice& lattice) {
+  std::vector<Vec3> points;
+  for (std::int64_t k = 0; k < lattice.counts[2]; ++k) {
+    for (std::int64_t j = 0; j < lattice.counts[1]; ++j) {
+      for (std::int64_t i = 0; i < lattice.counts[0]; ++i) {
+        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
+      }
+    }
+  }
+  return points;
+}
+
+// Closed, open, and with faces that are duplicated, reversed and of zero area.
+std::vector<TriangleMesh> meshes(Random& random) {
+  TriangleMesh cancelling = test::joined(test::random_cells(random, 3), test::lattice_soup(random, 10, 3));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Triangle t = cancelling.triangles[5 * i];
+    cancelling.triangles.push_back(i % 2 == 0 ? Triangle{t[0], t[2], t[1]} : Triangle{t[1], t[2], t[0]});
+  }
+  return {test::random_cells(random, 3), test::lattice_soup(random, 30, 3), cancelling};
+}
+
+TEST(OnSurface, IsFlaggedAndHasThePerturbedQuerysValue) {
+  Random random(1);
+  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (const TriangleMesh& mesh : meshes(random)) {
+    const auto failure = test::check(mesh, queries);
+    EXPECT_FALSE(failure) << test::describe(mesh, *failure);
+    EXPECT_GT(at_points(mesh, queries).on_surface_count(), 100U);
+  }
+}
+
+TEST(OnSurface, DoesNotDependOnTheOrderOfFacesAndVertices) {
+  Random random(2);
+  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (const TriangleMesh& mesh : meshes(random)) {
+    const Diagnosed points = at_points(mesh, queries), lattice = on_lattice(mesh, kHalfNodes);
+    for (int i = 0; i < 5; ++i) {
+      const TriangleMesh other = test::shuffled(mesh, random);
+      EXPECT_TRUE(at_points(other, queries) == points);
+      EXPECT_TRUE(on_lattice(other, kHalfNodes) == lattice);
+    }
+  }
+}
+
+TEST(OnSurface, DoesNotDependOnTheEngineNorOnLatticeOrPoints) {
+  Random random(3);
+  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (const TriangleMesh& mesh : meshes(random)) {
+    const Diagnosed expected = at_points(mesh, queries);
+    EXPECT_TRUE(at_points(mesh, queries, RayEngine::kEmbree) == expected);
+    EXPECT_TRUE(on_lattice(mesh, kHalfNodes) == expected);
+    EXPECT_TRUE(on_lattice(mesh, kHalfNodes, RayEngine::kEmbree) == expected);
+  }
+}
+
+TEST(OnSurface, DoesNotDependOnThreads) {
+  Random random(4);
+  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (const TriangleMesh& mesh : meshes(random)) {
+    const Diagnosed expected = at_points(mesh, queries);
+    for (const int threads : {1, 2, 7}) {
+      const ThreadLimit limit(threads);
+      EXPECT_TRUE(at_points(mesh, queries) == expected);
+      EXPECT_TRUE(on_lattice(mesh, kHalfNodes) == expected);
+    }
+  }
+}
+
+// Formats differ in how they store a mesh: vertices once per face or shared, with or without unused ones, zeros of
+// either sign.
+TEST(OnSurface, DoesNotDependOnHowTheMeshWasStored) {
+  Random random(5);
+  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (const TriangleMesh& mesh : meshes(random)) {
+    TriangleMesh soup;
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) {
+        Vec3 p = mesh.vertices[v];
+        for (int axis = 0; axis < 3; ++axis) {
+          if (p[axis] == 0.0 && random() % 2 == 0) p[axis] = -0.0;
+        }
+        soup.vertices.push_back(p);
+      }
+      const auto n = static_cast<std::uint32_t>(soup.vertices.size());
+      soup.triangles.push_back({n - 3, n - 2, n - 1});
+      soup.vertices.push_back({7, 7, 7});
+    }
+    EXPECT_TRUE(at_points(weld(soup, {}), queries) == at_points(mesh, queries));
+  }
+}
+
+TEST(OnSurface, AStepAsideChangesTheFlag) {  // negative control: the flags are not all the same
+  Random random(6);
+  std::vector<Vec3> queries = points_of(kHalfNodes);
+  for (Vec3& q : queries) q = q + Vec3{0.1, 0.013, 0.0017};
+  for (const TriangleMesh& mesh : meshes(random)) EXPECT_LT(at_points(mesh, queries).on_surface_count(), 20U);
+}
+
+}  // namespace
+}  // namespace raycone

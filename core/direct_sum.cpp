@@ -25,7 +25,8 @@ QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, cons
   const Quad re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   const Quad im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
   const Quad error = kRoundings * la * lb * lc / (fabsq(re) + fabsq(im));
-  if (!(error < 0.001)) return {0, kPi};
+  // No digit is left; or, next to the inside of the triangle, the sign of a half turn is not.
+  if (!(error < 0.001) || (re < 0 && fabsq(im) <= error * (fabsq(re) + fabsq(im)))) return {0, kPi};
   return {atan2q(im, re), error};
 }
 

@@ -21,17 +21,14 @@ Quad square_root(Quad x) {
   return guess + (x - guess * guess) / (2 * guess);
 }
 
-// A difference of two doubles, exactly: high + low, both doubles (Knuth's two-sum).
+// A difference of two doubles, exactly, as the two terms of a sum: nothing is rounded, nothing overflows.
 struct Difference {
-  double high;
-  double low;
+  double plus;
+  double minus;
+  [[nodiscard]] Quad rounded() const { return Quad(plus) + minus; }
 };
 
-Difference difference(double x, double y) {
-  const double high = x - y;
-  const double part = high - x;
-  return {high, (x - (high - part)) - (y + part)};
-}
+Difference difference(double x, double y) { return {x, -y}; }
 
 // The exact sum of the terms added, as a non-overlapping expansion (Shewchuk 1997, grow-expansion).
 class ExactSum {
@@ -57,8 +54,8 @@ class ExactSum {
 };
 
 void add_product(ExactSum& sum, const Difference& x, const Difference& y, int sign) {
-  for (const double a : {x.high, x.low}) {
-    for (const double b : {y.high, y.low}) sum.add(Quad(sign) * a * b);  // 106 bits: exact
+  for (const double a : {x.plus, x.minus}) {
+    for (const double b : {y.plus, y.minus}) sum.add(Quad(sign) * a * b);  // 106 bits: exact
   }
 }
 
@@ -83,7 +80,7 @@ struct Corner {
       : x(difference(v.x, q.x)),
         y(difference(v.y, q.y)),
         z(difference(v.z, q.z)),
-        p{Quad(x.high) + x.low, Quad(y.high) + y.low, Quad(z.high) + z.low} {
+        p{x.rounded(), y.rounded(), z.rounded()} {
     const Quad across = p.y * p.y + p.z * p.z;
     norm = square_root(p.x * p.x + across);
     s = p.x > 0 ? across / (norm + p.x) : norm - p.x;

@@ -19,17 +19,18 @@ namespace raycone {
 namespace {
 
 // The monotone map of one axis from double to Embree's float: [lower - size, upper + size] to [1, 2], what lies outside
-// clamped. Boxes and ray origins go through the same map, so that rounding cannot part them.
+// clamped. Boxes and ray origins go through the same map, so that rounding cannot part them. All is scaled by 1/8
+// first, lest sizes overflow.
 struct AxisMap {
   double lower = 0.0;
   double width = 0.0;
 
   AxisMap(double mesh_lower, double mesh_upper)
-      : lower(mesh_lower - (mesh_upper - mesh_lower)), width(3.0 * (mesh_upper - mesh_lower)) {}
+      : lower(mesh_lower / 8 - (mesh_upper / 8 - mesh_lower / 8)), width(3.0 * (mesh_upper / 8 - mesh_lower / 8)) {}
 
   [[nodiscard]] float operator()(double x) const {
     if (!(width > 0.0)) return 1.5F;  // a flat axis tells nothing apart
-    return static_cast<float>(1.0 + std::clamp((x - lower) / width, 0.0, 1.0));
+    return static_cast<float>(1.0 + std::clamp((x / 8 - lower) / width, 0.0, 1.0));
   }
 };
 

@@ -26,7 +26,7 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
   return mesh;
 }
 
-// Queries beyond this are as good as at it: a mesh of size 1 has vanished, and products stay finite.
+// Queries that scaling up brings beyond this are as good as at it: a mesh of size 1 has vanished.
 constexpr double kFarthest = 0x1p1000;
 
 // Tallies of threads, added under a lock: sums of integers, so their order does not matter.
@@ -136,11 +136,13 @@ class Engine {
   // Whether scaling a query coordinate loses nothing that a predicate could see.
   [[nodiscard]] bool can_take(double x) const {
     const double y = scale_(x);
-    return inverse_(y) == x || std::abs(y) > kFarthest;
+    return inverse_(y) == x || std::abs(y) > kFarthest;  // scaled up, and clamped
   }
   [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
 
-  [[nodiscard]] double to_scale(double x) const { return std::clamp(scale_(x), -kFarthest, kFarthest); }
+  [[nodiscard]] double to_scale(double x) const {
+    return scale_.exponent() > 0 ? std::clamp(scale_(x), -kFarthest, kFarthest) : scale_(x);
+  }
   [[nodiscard]] Vec3 to_scale(const Vec3& q) const { return {to_scale(q.x), to_scale(q.y), to_scale(q.z)}; }
 
   // Sets scratch.crossings to what the candidate triangles say about a row.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "core/floating_point.h"
 #include "tests/support/shapes.h"
@@ -35,22 +36,27 @@ TEST(EdgeSide, IsExactWhereRoundingWouldDecide) {
   EXPECT_GT(naive_failures, 100);  // else the grid tests nothing
 }
 
+// Coordinates of different magnitudes, so that their differences are rounded.
+Vec3 point_of_many_bits(test::Random& random) {
+  const auto coordinate = [&] { return std::ldexp(test::uniform(random, -1, 1), -static_cast<int>(random() % 8)); };
+  const double x = coordinate(), y = coordinate();
+  return {x, y, coordinate()};
+}
+
 // Queries rounded onto the edge, where the floating-point sign is wrong for one in several; at the smaller scales its
 // products underflow.
 TEST(EdgeSide, IsExactForQueriesRoundedOntoTheEdge) {
   test::Random random(5);
   const DefaultFloatingPoint guard;
-  for (const double scale : {1.0, 0x1p-505, 0x1p-515, 0x1p-525, 0x1p-1000, 0x1p500}) {
+  for (const double scale : {1.0, 0x1p-500, 0x1p-510, 0x1p-515, 0x1p-520, 0x1p-1000, 0x1p500}) {
     int misjudged = 0;
     for (int i = 0; i < 50000; ++i) {
-      const Box unit{{0, 0, 0}, {1, 1, 1}};
-      const Vec3 a = scale * test::uniform_point(random, unit), b = scale * test::uniform_point(random, unit);
+      const Vec3 a = scale * point_of_many_bits(random), b = scale * point_of_many_bits(random);
       const double t = test::uniform(random, 0, 1);
       const Vec3 q{0, a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
       const int exact = exact_edge_orientation(a, b, q);
       ASSERT_EQ(edge_side(a, b, q).sign, exact != 0 ? exact : broken_tie(a, b).sign) << scale;
-      const double value = edge_determinant(a, b, q).value;
-      misjudged += (value > 0) - (value < 0) != exact;
+      misjudged += sign(edge_determinant(a, b, q).value) != exact;
     }
     EXPECT_GT(misjudged, 1000) << scale;  // else nothing has been tested
   }

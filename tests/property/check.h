@@ -22,9 +22,10 @@ struct CheckCounts {
   std::uint64_t undecided = 0;   // on the surface within 1e-30 of another vertex's coordinate: no step tells
 };
 
-// For each query: the value is the direct sum in 113 or 700 bits within the value's own error bound (on the surface:
-// the sum at the query moved as the symbolic perturbation has it), an integer with bound 0 if the mesh is closed;
-// on_surface and degenerate are what their definitions give. Nothing where all holds.
+// For each query: the value is the direct sum in 113 to 3000 bits within the value's own error bound (on the surface:
+// the sum at the query moved as the symbolic perturbation has it), and that bound is below 1e-12; the value is an
+// integer with bound 0 if the mesh is closed; on_surface and degenerate are what their definitions give. Nothing where
+// all holds.
 [[nodiscard]] std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>& queries,
                                            CheckCounts* counts = nullptr);
 

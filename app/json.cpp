@@ -27,6 +27,14 @@ Json to_object(const Seconds& seconds) {
           {"total", seconds.total}};
 }
 
+Json to_object(const Verification& verification) {
+  return {{"samples", verification.samples},
+          {"on_surface", verification.on_surface},
+          {"unresolved", verification.unresolved},
+          {"largest_difference", verification.largest_difference},
+          {"largest_bound", verification.largest_bound}};
+}
+
 // File names may hold any bytes; JSON is UTF-8.
 std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -51,6 +59,7 @@ std::string to_json(const RunReport& report) {
                 {"warnings", report.warnings},
                 {"seconds", to_object(report.seconds)}};
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
+  if (report.verification) document["verify"] = to_object(*report.verification);
   return to_text(document);
 }
 

@@ -39,6 +39,11 @@ struct OutputOptions {
   std::optional<std::string> report;
 };
 
+struct FieldOptions {
+  bool diagnostics = false;
+  std::uint64_t verify = 0;  // samples to be computed again as direct sums
+};
+
 // A grid of an OpenVDB file; an empty name is its only or first one.
 struct GridReference {
   std::string path;
@@ -48,6 +53,7 @@ struct GridReference {
 struct LatticeCommand {
   MeshOptions mesh;
   RunOptions run;
+  FieldOptions field;
   OutputOptions output;
   std::variant<LatticeRequest, GridReference> lattice;
 };
@@ -55,6 +61,7 @@ struct LatticeCommand {
 struct PointsCommand {
   MeshOptions mesh;
   RunOptions run;
+  FieldOptions field;
   OutputOptions output;
   std::string points;  // "-": standard input
   ReadPointsOptions reading;

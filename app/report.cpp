@@ -21,6 +21,14 @@ std::string counted(std::uint64_t count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
 }
 
+std::string verification_clause(const Verification& verification) {
+  char difference[64];
+  std::snprintf(difference, sizeof difference, ", largest difference %.2g", verification.largest_difference);
+  const std::uint64_t skipped = verification.on_surface + verification.unresolved;
+  return ", verified " + counted(verification.samples, "sample") + difference +
+         (skipped > 0 ? ", skipped " + std::to_string(skipped) + " at the surface" : "");
+}
+
 }  // namespace
 
 std::string summary_line(const RunReport& report) {
@@ -29,7 +37,8 @@ std::string summary_line(const RunReport& report) {
   std::snprintf(times, sizeof times, " in %.2f s (read %.2f, prepare %.2f, evaluate %.2f, write %.2f) -> ", s.total,
                 s.read, s.prepare, s.evaluate, s.write);
   return report.mesh + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") +
-         ", " + counted(report.samples, "sample") + times + (report.output == "-" ? "standard output" : report.output);
+         ", " + counted(report.samples, "sample") + times + (report.output == "-" ? "standard output" : report.output) +
+         (report.verification ? verification_clause(*report.verification) : "");
 }
 
 std::string message_line(std::string_view message) {

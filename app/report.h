@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/exit_code.h"
+#include "app/verify.h"
 #include "core/lattice.h"
 #include "core/winding_number.h"
 
@@ -32,12 +33,14 @@ struct RunReport {
   std::optional<Lattice> lattice;  // absent for points
   int threads = 0;
   Tally tally;
+  std::optional<Verification> verification;  // where asked for
   std::uint64_t peak_memory_bytes = 0;
   std::vector<std::string> warnings;
   Seconds seconds;
 };
 
-// "bunny.obj: 69451 faces, 223 exterior edges, 125000 samples in 0.42 s (read 0.05, ...) -> bunny.vdb"
+// "bunny.obj: 69451 faces, 223 exterior edges, 125000 samples in 0.42 s (read 0.05, ...) -> bunny.vdb", and, where
+// asked for, ", verified 100 samples, largest difference 3e-16"
 [[nodiscard]] std::string summary_line(const RunReport& report);
 
 // "raycone: ", `message` and a line feed: one line, whatever bytes its file names hold.

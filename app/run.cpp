@@ -16,9 +16,11 @@
 #include "app/limits.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "app/sample_values.h"
 #include "app/signals.h"
 #include "app/slabs.h"
 #include "app/usage_error.h"
+#include "app/verify.h"
 #include "core/mesh_statistics.h"
 #include "core/threads.h"
 #include "core/weld.h"
@@ -131,13 +133,14 @@ Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std
   return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
 }
 
-FieldDescription description_of(const RunReport& report, bool double_precision) {
+FieldDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
   FieldDescription description;
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;
   description.faces = report.faces;
   description.exterior_edges = report.exterior_edges;
-  description.double_precision = double_precision;
+  description.double_precision = output.double_precision;
+  description.diagnostics = field.diagnostics;
   return description;
 }
 
@@ -147,14 +150,14 @@ LatticeBlock first_slab(const Lattice& lattice, const LatticeWriter& writer) {
 }
 
 // Refuses lattices that cannot fit, before any work on them.
-std::unique_ptr<LatticeWriter> open_writer(const OutputOptions& options, OutputFile& output, const RunReport& report,
+std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, OutputFile& output, const RunReport& report,
                                            const Limits& limits) {
-  const bool closed = report.exterior_edges == 0;
-  const bool wide = options.double_precision;
-  check_memory(report.mesh, writer_memory(*report.lattice, options.format, wide, closed), limits.memory());
-  std::unique_ptr<LatticeWriter> writer =
-      make_lattice_writer(options.format, output, *report.lattice, description_of(report, wide));
-  check_memory(report.mesh, slab_memory(first_slab(*report.lattice, *writer)), limits.memory());
+  const Lattice& lattice = *report.lattice;
+  const FieldFormat format = command.output.format;
+  const FieldDescription description = description_of(report, command.field, command.output);
+  check_memory(report.mesh, writer_memory(lattice, format, description), limits.memory());
+  std::unique_ptr<LatticeWriter> writer = make_lattice_writer(format, output, lattice, description);
+  check_memory(report.mesh, slab_memory(first_slab(lattice, *writer), description.diagnostics), limits.memory());
   return writer;
 }
 
@@ -163,30 +166,39 @@ LatticeBlock slab_behind(const LatticeBlock& slab, const Lattice& lattice, const
   return slab_from(lattice, writer.slab_axis(), writer.slab_alignment(), slab.first[axis] + slab.counts[axis]);
 }
 
-void evaluate_lattice(const WindingNumberEvaluator& evaluator, const Lattice& lattice, LatticeWriter& writer,
-                      Progress& progress, RunReport& report) {
-  std::vector<double> values;
+void evaluate_lattice(const WindingNumberEvaluator& evaluator, LatticeWriter& writer, SampleValues& samples,
+                      SampleDraw& draw, Progress& progress, RunReport& report) {
+  const Lattice& lattice = *report.lattice;
   for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
-    values.resize(static_cast<std::size_t>(slab.size()));
-    report.tally +=
-        timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, values, progress.done()); });
-    timed(report.seconds.write, [&] { writer.write(slab, values); });
+    samples.resize(static_cast<std::size_t>(slab.size()));
+    report.tally += timed(report.seconds.evaluate, [&] {
+      return evaluator.evaluate(lattice, slab, samples.values(), progress.done(), samples.diagnostics());
+    });
+    draw.offer(lattice, slab, samples.values());
+    timed(report.seconds.write, [&] { writer.write(slab, samples.values(), samples.diagnostics()); });
   }
 }
 
 // Answers are handed on whenever the next question would have to be waited for.
 void evaluate_points(const WindingNumberEvaluator& evaluator, PointReader& reader, PointWriter& writer,
-                     Progress& progress, RunReport& report) {
+                     SampleValues& samples, SampleDraw& draw, Progress& progress, RunReport& report) {
   std::vector<Vec3> points;
-  std::vector<double> values;
   for (;;) {
     if (reader.would_block()) writer.flush();
     if (!timed(report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
-    values.resize(points.size());
-    report.tally += timed(report.seconds.evaluate, [&] { return evaluator.evaluate(points, values, progress.done()); });
-    timed(report.seconds.write, [&] { writer.write(points, values); });
+    samples.resize(points.size());
+    report.tally += timed(report.seconds.evaluate, [&] {
+      return evaluator.evaluate(points, samples.values(), progress.done(), samples.diagnostics());
+    });
+    draw.offer(points, samples.values());
+    timed(report.seconds.write, [&] { writer.write(points, samples.values(), samples.diagnostics()); });
     report.samples += points.size();
   }
+}
+
+// The mesh that verification will need beside the evaluator's own.
+TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field) {
+  return field.verify > 0 ? mesh : TriangleMesh{};
 }
 
 void publish(RunReport& report, const RunOptions& options, OutputFile* report_file) {
@@ -222,12 +234,16 @@ void run(const LatticeCommand& command) {
   report.samples = sample_count(*report.lattice);
   warn(report.warnings, command.run, command.mesh.path);
 
+  const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
   report.exterior_edges = evaluator.exterior_edges();
-  const std::unique_ptr<LatticeWriter> writer = open_writer(command.output, output, report, limits);
+  const std::unique_ptr<LatticeWriter> writer = open_writer(command, output, report, limits);
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
-  evaluate_lattice(evaluator, *report.lattice, *writer, progress, report);
+  SampleValues samples(command.field.diagnostics);
+  SampleDraw draw(command.field.verify);
+  evaluate_lattice(evaluator, *writer, samples, draw, progress, report);
+  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   progress.stop();
   total.reset();
@@ -251,12 +267,18 @@ void run(const PointsCommand& command) {
   TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
   file.parsed.mesh = {};
 
+  const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
+  timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
   report.exterior_edges = evaluator.exterior_edges();
-  const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size());
+  const std::unique_ptr<PointWriter> writer =
+      make_point_writer(command.output.format, output, reader->size(), command.field.diagnostics);
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), reader->size());
-  evaluate_points(evaluator, *reader, *writer, progress, report);
+  SampleValues samples(command.field.diagnostics);
+  SampleDraw draw(command.field.verify);
+  evaluate_points(evaluator, *reader, *writer, samples, draw, progress, report);
+  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
   timed(report.seconds.write, [&] { writer->finish(); });
   progress.stop();
   total.reset();

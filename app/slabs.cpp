@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/sample_values.h"
+
 namespace raycone {
 namespace {
 
@@ -32,19 +34,23 @@ LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment,
   return slab;
 }
 
-double slab_memory(const LatticeBlock& slab) {
-  return static_cast<double>(sizeof(double)) * static_cast<double>(slab.size());
+double slab_memory(const LatticeBlock& slab, bool diagnostics) {
+  return static_cast<double>(bytes_per_sample(diagnostics)) * static_cast<double>(slab.size());
 }
 
-double writer_memory(const Lattice& lattice, FieldFormat format, bool double_precision, bool closed) {
+double writer_memory(const Lattice& lattice, FieldFormat format, const FieldDescription& description) {
   if (format != FieldFormat::kVdb) return 0.0;
   const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
   const double samples = layer * static_cast<double>(lattice.counts[2]);
   // Leaves that a surface through the whole lattice meets at least.
   const double surface_leaves = std::pow(samples / kLeafVoxels, 2.0 / 3.0);
-  const double stored = closed ? surface_leaves * kLeafVoxels : samples;
-  const double value_bytes = double_precision ? sizeof(double) : sizeof(float);
-  return value_bytes * (stored + kLeafSide * layer);
+  const bool closed = description.exterior_edges == 0;
+  const double value_bytes = description.double_precision ? sizeof(double) : sizeof(float);
+  const double values = value_bytes * ((closed ? surface_leaves * kLeafVoxels : samples) + kLeafSide * layer);
+  if (!description.diagnostics) return values;
+  constexpr double kBlocksInTheMaking = 3 * sizeof(float) + sizeof(std::uint8_t);
+  const double bounds = closed ? 0.0 : sizeof(float) * samples;
+  return values + bounds + kBlocksInTheMaking * kLeafSide * layer;
 }
 
 }  // namespace raycone

@@ -31,12 +31,12 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
 }
 
 std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
-                                               std::optional<std::uint64_t> size) {
+                                               std::optional<std::uint64_t> size, bool diagnostics) {
   switch (format) {
     case FieldFormat::kCsv:
-      return make_csv_point_writer(output);
+      return make_csv_point_writer(output, diagnostics);
     case FieldFormat::kNpy:
-      return make_npy_point_writer(output, size);
+      return make_npy_point_writer(output, size, diagnostics);
     case FieldFormat::kVdb:
       break;  // holds lattices only; options are checked before anything is opened
   }

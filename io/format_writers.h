@@ -18,7 +18,8 @@ namespace raycone {
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                      const FieldDescription& description);
 
-[[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output);
-[[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size);
+[[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output, bool diagnostics);
+[[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
+                                                                 bool diagnostics);
 
 }  // namespace raycone

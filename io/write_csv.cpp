@@ -13,7 +13,14 @@ namespace {
 
 // The longest double is -2.2250738585072014e-308, the longest integer -9223372036854775808.
 constexpr std::size_t kMaxNumber = 24;
-constexpr std::size_t kMaxRow = 7 * (kMaxNumber + 1);
+constexpr std::size_t kMaxRow = 11 * (kMaxNumber + 1);
+
+constexpr std::string_view kDiagnosticColumns = ",crossings,degenerate,on_surface,error_bound";
+
+// The last columns of the header: the value's, and those of the diagnostics where wanted.
+std::string value_columns(const std::string& value, bool diagnostics) {
+  return value + std::string(diagnostics ? kDiagnosticColumns : "") + '\n';
+}
 
 // Prints at `at`, where there is room for kMaxNumber characters, and returns the end. -0 prints as 0.
 template <typename Number>
@@ -49,6 +56,16 @@ class RowBuffer {
   }
   void append(char c) { *end_++ = c; }
   void append(double value) { end_ = print(end_, value); }
+  // Sample n's columns of diagnostics, each with a comma before it.
+  void append(const Diagnostics& diagnostics, std::size_t n) {
+    for (const std::int64_t number :
+         {diagnostics.crossings[n], diagnostics.degenerate[n], std::int64_t{diagnostics.on_surface[n]}}) {
+      *end_++ = ',';
+      end_ = print(end_, number);
+    }
+    *end_++ = ',';
+    end_ = print(end_, diagnostics.error_bound[n]);
+  }
   void hand_over() {
     output_.write(bytes_.data(), static_cast<std::size_t>(end_ - bytes_.data()));
     end_ = bytes_.data();
@@ -62,9 +79,10 @@ class RowBuffer {
 
 class CsvLatticeWriter final : public LatticeWriter {
  public:
-  CsvLatticeWriter(OutputFile& output, const Lattice& lattice, const std::string& column)
+  // `columns`: the header behind the sample's indices and coordinates.
+  CsvLatticeWriter(OutputFile& output, const Lattice& lattice, const std::string& columns)
       : output_(output), lattice_(lattice), rows_(output) {
-    const std::string header = "i,j,k,x,y,z," + column + '\n';
+    const std::string header = "i,j,k,x,y,z," + columns;
     output_.write(header.data(), header.size());
     // The texts of one axis are the same in every row; printing them once makes rows three times as fast.
     for (std::int64_t n = 0; n < lattice.counts[0]; ++n) {
@@ -77,12 +95,12 @@ class CsvLatticeWriter final : public LatticeWriter {
   int slab_axis() const override { return 2; }
   std::int64_t slab_alignment() const override { return 1; }
 
-  void write(const LatticeBlock& block, std::span<const double> values) override {
-    const double* row = values.data();
+  void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics* diagnostics) override {
+    std::size_t row = 0;
     for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
       for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-        write_row(j, k, row);
-        row += block.counts[0];
+        write_row(j, k, row, values, diagnostics);
+        row += i_texts_.size();
       }
     }
     rows_.hand_over();
@@ -91,7 +109,9 @@ class CsvLatticeWriter final : public LatticeWriter {
   void finish(const FieldTotals&) override { output_.commit(); }
 
  private:
-  void write_row(std::int64_t j, std::int64_t k, const double* values) {
+  // The samples of `values` from `begin` on.
+  void write_row(std::int64_t j, std::int64_t k, std::size_t begin, std::span<const double> values,
+                 const Diagnostics* diagnostics) {
     const std::string jk = joined(j, k);
     const std::string yz = joined(lattice_.coordinate(1, j), lattice_.coordinate(2, k));
     for (std::size_t n = 0; n < i_texts_.size(); ++n) {
@@ -100,7 +120,8 @@ class CsvLatticeWriter final : public LatticeWriter {
       rows_.append(jk);
       rows_.append(x_texts_[n]);
       rows_.append(yz);
-      rows_.append(values[n]);
+      rows_.append(values[begin + n]);
+      if (diagnostics) rows_.append(*diagnostics, begin + n);
       rows_.append('\n');
     }
   }
@@ -114,12 +135,12 @@ class CsvLatticeWriter final : public LatticeWriter {
 
 class CsvPointWriter final : public PointWriter {
  public:
-  explicit CsvPointWriter(OutputFile& output) : output_(output), rows_(output) {
-    constexpr std::string_view kHeader = "x,y,z,w\n";
-    output_.write(kHeader.data(), kHeader.size());
+  CsvPointWriter(OutputFile& output, bool diagnostics) : output_(output), rows_(output) {
+    const std::string header = "x,y,z," + value_columns("w", diagnostics);
+    output_.write(header.data(), header.size());
   }
 
-  void write(std::span<const Vec3> points, std::span<const double> values) override {
+  void write(std::span<const Vec3> points, std::span<const double> values, const Diagnostics* diagnostics) override {
     for (std::size_t n = 0; n < points.size(); ++n) {
       rows_.begin_row();
       for (const double number : {points[n].x, points[n].y, points[n].z}) {
@@ -127,6 +148,7 @@ class CsvPointWriter final : public PointWriter {
         rows_.append(',');
       }
       rows_.append(values[n]);
+      if (diagnostics) rows_.append(*diagnostics, n);
       rows_.append('\n');
     }
     rows_.hand_over();
@@ -145,11 +167,11 @@ class CsvPointWriter final : public PointWriter {
 std::unique_ptr<LatticeWriter> make_csv_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                        const FieldDescription& description) {
   const std::string column = description.field == "winding" ? "w" : description.field;
-  return std::make_unique<CsvLatticeWriter>(output, lattice, column);
+  return std::make_unique<CsvLatticeWriter>(output, lattice, value_columns(column, description.diagnostics));
 }
 
-std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output) {
-  return std::make_unique<CsvPointWriter>(output);
+std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output, bool diagnostics) {
+  return std::make_unique<CsvPointWriter>(output, diagnostics);
 }
 
 }  // namespace raycone

@@ -74,7 +74,7 @@ class NpyLatticeWriter final : public LatticeWriter {
   int slab_axis() const override { return 0; }
   std::int64_t slab_alignment() const override { return 1; }
 
-  void write(const LatticeBlock& block, std::span<const double> values) override {
+  void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics*) override {
     const std::vector<Element> elements = transposed<Element>(block, values);
     output_.write(elements.data(), elements.size() * sizeof(Element));
   }
@@ -85,10 +85,23 @@ class NpyLatticeWriter final : public LatticeWriter {
   OutputFile& output_;
 };
 
+// Rows of five: the value and its diagnostics.
+std::vector<double> interleaved(std::span<const double> values, const Diagnostics& diagnostics) {
+  std::vector<double> elements;
+  elements.reserve(5 * values.size());
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    elements.insert(elements.end(), {values[n], static_cast<double>(diagnostics.crossings[n]),
+                                     static_cast<double>(diagnostics.degenerate[n]),
+                                     static_cast<double>(diagnostics.on_surface[n]), diagnostics.error_bound[n]});
+  }
+  return elements;
+}
+
 // Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.
 class NpyPointWriter final : public PointWriter {
  public:
-  NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size) : output_(output), announced_(size) {
+  NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, bool diagnostics)
+      : output_(output), announced_(size), shape_end_(diagnostics ? ", 5)" : ",)") {
     if (announced_ || output_.seekable()) {
       write_header(announced_.value_or(0));
     } else {
@@ -96,13 +109,12 @@ class NpyPointWriter final : public PointWriter {
     }
   }
 
-  void write(std::span<const Vec3>, std::span<const double> values) override {
+  void write(std::span<const Vec3>, std::span<const double> values, const Diagnostics* diagnostics) override {
     count_ += values.size();
-    if (spool_) {
-      spool_->stream().write(reinterpret_cast<const char*>(values.data()),
-                             static_cast<std::streamsize>(values.size_bytes()));
+    if (diagnostics) {
+      append(interleaved(values, *diagnostics));
     } else {
-      output_.write(values.data(), values.size_bytes());
+      append(values);
     }
   }
 
@@ -121,8 +133,16 @@ class NpyPointWriter final : public PointWriter {
   }
 
  private:
-  static std::string header_of(std::uint64_t count) {
-    return npy_header(kDescriptor<double>, '(' + std::to_string(count) + ",)");
+  void append(std::span<const double> elements) {
+    if (spool_) {
+      spool_->stream().write(reinterpret_cast<const char*>(elements.data()),
+                             static_cast<std::streamsize>(elements.size_bytes()));
+    } else {
+      output_.write(elements.data(), elements.size_bytes());
+    }
+  }
+  [[nodiscard]] std::string header_of(std::uint64_t count) const {
+    return npy_header(kDescriptor<double>, '(' + std::to_string(count) + shape_end_);
   }
   void write_header(std::uint64_t count) {
     const std::string header = header_of(count);
@@ -131,6 +151,7 @@ class NpyPointWriter final : public PointWriter {
 
   OutputFile& output_;
   std::optional<std::uint64_t> announced_;
+  std::string shape_end_;  // of the tuple, behind the count
   std::optional<SpoolFile> spool_;
   std::uint64_t count_ = 0;
 };
@@ -143,8 +164,9 @@ std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const
   return std::make_unique<NpyLatticeWriter<float>>(output, lattice);
 }
 
-std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size) {
-  return std::make_unique<NpyPointWriter>(output, size);
+std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
+                                                   bool diagnostics) {
+  return std::make_unique<NpyPointWriter>(output, size, diagnostics);
 }
 
 }  // namespace raycone

@@ -1,5 +1,6 @@
-// OpenVDB grids of a field on a lattice: index (i, j, k) is the sample's, background 0, active where the stored value
-// differs from 0. Blocks of 8^3 samples become leaves, or tiles where all samples are stored alike.
+// OpenVDB grids of a field and its diagnostics on a lattice: index (i, j, k) is the sample's, background 0, active
+// where the stored value differs from 0. Blocks of 8^3 samples become leaves, or tiles where all samples are stored
+// alike.
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
@@ -10,9 +11,11 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <streambuf>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/threads.h"
@@ -88,6 +91,8 @@ class LeafLayer {
  public:
   using Value = typename Tree::ValueType;
   using Leaf = typename Tree::LeafNodeType;
+  // How a value waits for its leaf: a vector of bool could not be written to by several threads.
+  using Stored = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>;
 
   explicit LeafLayer(const Lattice& lattice) : lattice_(lattice) {
     for (std::size_t a = 0; a < 2; ++a) {
@@ -97,11 +102,14 @@ class LeafLayer {
     values_.resize(leaf_count() * kLeafVoxels);
   }
 
-  // Takes the planes z_begin <= z < z_end, all in this layer, from a slab of the lattice.
-  void gather(const LatticeBlock& slab, std::span<const double> values, std::int64_t z_begin, std::int64_t z_end) {
+  // Takes the planes z_begin <= z < z_end, all in this layer, from a slab of the lattice; store(number) is what is kept
+  // of each sample's number.
+  template <typename Number, typename Store>
+  void gather(const LatticeBlock& slab, std::span<Number> numbers, std::int64_t z_begin, std::int64_t z_end,
+              const Store& store) {
     parallel_for(static_cast<std::size_t>(counts_[1]), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
-        for (std::int64_t z = z_begin; z < z_end; ++z) gather_row(slab, values, row, z);
+        for (std::int64_t z = z_begin; z < z_end; ++z) gather_row(slab, numbers, row, z, store);
       }
     });
   }
@@ -114,14 +122,14 @@ class LeafLayer {
     });
     openvdb::tree::ValueAccessor<Tree> accessor(tree);
     for (std::size_t n = 0; n < leaves.size(); ++n) {
-      const Value value = values_[n * kLeafVoxels];
+      const Stored value = values_[n * kLeafVoxels];
       if (leaves[n]) {
         accessor.addLeaf(leaves[n].release());
-      } else if (value != Value{0}) {
-        accessor.addTile(1, origin(n, leaf_z), value, true);
+      } else if (value != Stored{0}) {
+        accessor.addTile(1, origin(n, leaf_z), static_cast<Value>(value), true);
       }
     }
-    std::fill(values_.begin(), values_.end(), Value{0});
+    std::fill(values_.begin(), values_.end(), Stored{0});
   }
 
  private:
@@ -134,21 +142,22 @@ class LeafLayer {
   }
 
   // The samples at height z of one row of leaf blocks along x.
-  void gather_row(const LatticeBlock& slab, std::span<const double> values, std::size_t row, std::int64_t z) {
+  template <typename Number, typename Store>
+  void gather_row(const LatticeBlock& slab, std::span<Number> numbers, std::size_t row, std::int64_t z,
+                  const Store& store) {
     const std::int64_t leaf_y = first_[1] + static_cast<std::int64_t>(row);
     const std::int64_t y_begin = std::max(leaf_y * kLeafSize, slab.first[1]);
     const std::int64_t y_end = std::min((leaf_y + 1) * kLeafSize, slab.first[1] + slab.counts[1]);
     const std::int64_t x_begin = slab.first[0] - first_[0] * kLeafSize;  // counted from the first leaf
-    Value* const leaves = &values_[row * static_cast<std::size_t>(counts_[0]) * kLeafVoxels];
+    Stored* const leaves = &values_[row * static_cast<std::size_t>(counts_[0]) * kLeafVoxels];
     for (std::int64_t y = y_begin; y < y_end; ++y) {
       const std::int64_t line = (z - slab.first[2]) * slab.counts[1] + (y - slab.first[1]);
-      const double* source = &values[static_cast<std::size_t>(line * slab.counts[0])];
+      const Number* source = &numbers[static_cast<std::size_t>(line * slab.counts[0])];
       const auto yz = static_cast<std::size_t>((y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1)));
       for (std::int64_t x = x_begin; x < x_begin + slab.counts[0]; ++x) {
         const auto leaf = static_cast<std::size_t>(x >> kLeafLog2);
         const auto plane = static_cast<std::size_t>(x & (kLeafSize - 1));
-        // Adding 0 turns -0 into 0.
-        leaves[leaf * kLeafVoxels + plane * kLeafSize * kLeafSize + yz] = static_cast<Value>(*source++) + Value{0};
+        leaves[leaf * kLeafVoxels + plane * kLeafSize * kLeafSize + yz] = store(*source++);
       }
     }
   }
@@ -157,19 +166,124 @@ class LeafLayer {
   [[nodiscard]] std::unique_ptr<Leaf> make_leaf(std::size_t n, const openvdb::Coord& leaf_origin) const {
     const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(n * kLeafVoxels);
     const auto end = begin + kLeafVoxels;
-    if (std::all_of(begin + 1, end, [&](Value value) { return value == *begin; })) return nullptr;
+    if (std::all_of(begin + 1, end, [&](Stored value) { return value == *begin; })) return nullptr;
     auto leaf = std::make_unique<Leaf>(leaf_origin, Value{0}, false);
-    std::copy(begin, end, leaf->buffer().data());
     typename Leaf::NodeMaskType active;
-    for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) active.set(i, begin[i] != Value{0});
+    for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) active.set(i, begin[i] != Stored{0});
     leaf->setValueMask(active);
+    if constexpr (std::is_same_v<Value, bool>) {  // one bit a voxel, here that of its activity
+      leaf->buffer() = typename Leaf::Buffer(active);
+    } else {
+      std::copy(begin, end, leaf->buffer().data());
+    }
     return leaf;
   }
 
   Lattice lattice_;
   std::array<std::int64_t, 2> first_{};   // leaf coordinates along x and y
   std::array<std::int64_t, 2> counts_{};  // leaf blocks along x and y
-  std::vector<Value> values_;             // leaf by leaf, x fastest; in each leaf OpenVDB's order: z fastest
+  std::vector<Stored> values_;            // leaf by leaf, x fastest; in each leaf OpenVDB's order: z fastest
+};
+
+// --- The grids
+
+void insert(openvdb::GridBase& grid, const char* key, const std::string& value) {
+  grid.insertMeta(key, openvdb::StringMetadata(value));
+}
+void insert(openvdb::GridBase& grid, const char* key, std::uint64_t value) {
+  grid.insertMeta(key, openvdb::Int64Metadata(static_cast<openvdb::Int64>(value)));
+}
+void insert(openvdb::GridBase& grid, const char* key, const openvdb::Coord& value) {
+  grid.insertMeta(key, openvdb::Vec3IMetadata(value.asVec3i()));
+}
+
+void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescription& description) {
+  insert(grid, "raycone_version", RAYCONE_VERSION);
+  insert(grid, "raycone_field", grid.getName());
+  if (!description.rule.empty()) insert(grid, "raycone_rule", description.rule);
+  insert(grid, "raycone_mesh", description.mesh);
+  insert(grid, "raycone_sha256", description.mesh_sha256);
+  insert(grid, "raycone_index_min", to_coord(lattice.index_min[0], lattice.index_min[1], lattice.index_min[2]));
+  insert(grid, "raycone_index_max", to_coord(lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)));
+  insert(grid, "raycone_faces", description.faces);
+  insert(grid, "raycone_exterior_edges", description.exterior_edges);
+}
+
+// One grid in the making.
+template <typename Grid>
+class GridBuilder {
+ public:
+  GridBuilder(const std::string& name, const Lattice& lattice, const FieldDescription& description)
+      : lattice_(lattice), layer_(lattice), grid_(Grid::create()) {
+    grid_->setName(name);
+    grid_->setTransform(transform_of(lattice));
+    describe(*grid_, lattice, description);
+  }
+
+  // Takes the next slab of the lattice; store(number) is the voxel's value.
+  template <typename Number, typename Store>
+  void add(const LatticeBlock& slab, std::span<Number> numbers, const Store& store) {
+    const std::int64_t end = slab.first[2] + slab.counts[2];
+    for (std::int64_t z = slab.first[2]; z < end;) {
+      const std::int64_t leaf_z = z >> kLeafLog2;
+      const std::int64_t layer_end = std::min((leaf_z + 1) * kLeafSize, lattice_.index_max(2) + 1);
+      const std::int64_t next = std::min(layer_end, end);
+      layer_.gather(slab, numbers, z, next, store);
+      if (next == layer_end) layer_.move_to(grid_->tree(), leaf_z);
+      z = next;
+    }
+  }
+
+  // The complete grid.
+  [[nodiscard]] openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) {
+    insert(*grid_, "raycone_degenerate", totals.degenerate);
+    insert(*grid_, "raycone_on_surface", totals.on_surface);
+    openvdb::tools::pruneTiles(grid_->tree());
+    return grid_;
+  }
+
+ private:
+  Lattice lattice_;
+  LeafLayer<typename Grid::TreeType> layer_;
+  typename Grid::Ptr grid_;
+};
+
+// A bound in single precision that still is one.
+float rounded_up(double bound) {
+  const float nearest = static_cast<float>(bound);
+  return static_cast<double>(nearest) < bound ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+                                              : nearest;
+}
+
+class DiagnosticsGrids {
+ public:
+  DiagnosticsGrids(const Lattice& lattice, const FieldDescription& description)
+      : crossings_("crossings", lattice, description),
+        degenerate_("degenerate", lattice, description),
+        on_surface_("on_surface", lattice, description),
+        error_bound_("error_bound", lattice, description) {}
+
+  void add(const LatticeBlock& slab, const Diagnostics& diagnostics) {
+    const auto to_float = [](std::int64_t count) { return static_cast<float>(count); };
+    crossings_.add(slab, diagnostics.crossings, to_float);
+    degenerate_.add(slab, diagnostics.degenerate, to_float);
+    on_surface_.add(slab, diagnostics.on_surface, [](std::uint8_t flag) { return flag; });
+    error_bound_.add(slab, diagnostics.error_bound, rounded_up);
+  }
+
+  void finish(const FieldTotals& totals, openvdb::GridCPtrVec& grids) {
+    grids.push_back(crossings_.finish(totals));
+    grids.push_back(degenerate_.finish(totals));
+    grids.push_back(on_surface_.finish(totals));
+    grids.push_back(error_bound_.finish(totals));
+  }
+
+ private:
+  // pyopenvdb reads no file that holds a grid of integers.
+  GridBuilder<openvdb::FloatGrid> crossings_;
+  GridBuilder<openvdb::FloatGrid> degenerate_;
+  GridBuilder<openvdb::BoolGrid> on_surface_;
+  GridBuilder<openvdb::FloatGrid> error_bound_;
 };
 
 // --- The file
@@ -226,19 +340,19 @@ class HashingBuffer final : public std::streambuf {
 // OpenVDB offers files with the offsets that its file reader needs by name only, not on a stream.
 class SeekableArchive : public openvdb::io::Archive {
  public:
-  void write_to(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
-    write(stream, openvdb::GridCPtrVec{grid}, /*seekable=*/true);
+  void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
+    write(stream, grids, /*seekable=*/true);
   }
 };
 
-void write_archive(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) {
+void write_archive(std::ostream& stream, const openvdb::GridCPtrVec& grids) {
   HashingBuffer hashing(*stream.rdbuf());
   std::ostream hashed(&hashing);
   SeekableArchive archive;
   const bool blosc = openvdb::io::Archive::hasBloscCompression();
   archive.setCompression((blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP) |
                          openvdb::io::COMPRESS_ACTIVE_MASK);
-  archive.write_to(hashed, grid);
+  archive.write_to(hashed, grids);
   const std::streampos end = stream.tellp();
   stream.seekp(HashingBuffer::kIdentifierOffset);
   stream << hashing.identifier();
@@ -249,66 +363,37 @@ template <typename Grid>
 class VdbWriter final : public LatticeWriter {
  public:
   VdbWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& description)
-      : output_(output), lattice_(lattice), layer_(lattice), grid_(Grid::create()) {
-    grid_->setName(description.field);
-    grid_->setTransform(transform_of(lattice));
-    describe(description);
+      : output_(output), values_(description.field, lattice, description) {
+    if (description.diagnostics) diagnostics_.emplace(lattice, description);
   }
 
   int slab_axis() const override { return 2; }
   std::int64_t slab_alignment() const override { return kLeafSize; }
 
-  void write(const LatticeBlock& block, std::span<const double> values) override {
-    const std::int64_t end = block.first[2] + block.counts[2];
-    for (std::int64_t z = block.first[2]; z < end;) {
-      const std::int64_t leaf_z = z >> kLeafLog2;
-      const std::int64_t layer_end = std::min((leaf_z + 1) * kLeafSize, lattice_.index_max(2) + 1);
-      const std::int64_t next = std::min(layer_end, end);
-      layer_.gather(block, values, z, next);
-      if (next == layer_end) layer_.move_to(grid_->tree(), leaf_z);
-      z = next;
-    }
+  void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics* diagnostics) override {
+    using Value = typename Grid::ValueType;
+    // Adding 0 turns -0 into 0.
+    values_.add(block, values, [](double value) { return static_cast<Value>(value) + Value{0}; });
+    if (diagnostics) diagnostics_->add(block, *diagnostics);
   }
 
   void finish(const FieldTotals& totals) override {
-    insert("raycone_degenerate", totals.degenerate);
-    insert("raycone_on_surface", totals.on_surface);
-    openvdb::tools::pruneTiles(grid_->tree());
+    openvdb::GridCPtrVec grids{values_.finish(totals)};
+    if (diagnostics_) diagnostics_->finish(totals, grids);
     if (output_.seekable()) {
-      write_archive(output_.stream(), grid_);
+      write_archive(output_.stream(), grids);
     } else {
       SpoolFile spool(output_.name());
-      write_archive(spool.stream(), grid_);
+      write_archive(spool.stream(), grids);
       spool.copy_to(output_);
     }
     output_.commit();
   }
 
  private:
-  void insert(const char* key, const std::string& value) { grid_->insertMeta(key, openvdb::StringMetadata(value)); }
-  void insert(const char* key, std::uint64_t value) {
-    grid_->insertMeta(key, openvdb::Int64Metadata(static_cast<openvdb::Int64>(value)));
-  }
-  void insert(const char* key, const openvdb::Coord& value) {
-    grid_->insertMeta(key, openvdb::Vec3IMetadata(value.asVec3i()));
-  }
-
-  void describe(const FieldDescription& description) {
-    insert("raycone_version", RAYCONE_VERSION);
-    insert("raycone_field", description.field);
-    if (!description.rule.empty()) insert("raycone_rule", description.rule);
-    insert("raycone_mesh", description.mesh);
-    insert("raycone_sha256", description.mesh_sha256);
-    insert("raycone_index_min", to_coord(lattice_.index_min[0], lattice_.index_min[1], lattice_.index_min[2]));
-    insert("raycone_index_max", to_coord(lattice_.index_max(0), lattice_.index_max(1), lattice_.index_max(2)));
-    insert("raycone_faces", description.faces);
-    insert("raycone_exterior_edges", description.exterior_edges);
-  }
-
   OutputFile& output_;
-  Lattice lattice_;
-  LeafLayer<typename Grid::TreeType> layer_;
-  typename Grid::Ptr grid_;
+  GridBuilder<Grid> values_;
+  std::optional<DiagnosticsGrids> diagnostics_;
 };
 
 }  // namespace

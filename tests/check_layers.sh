@@ -26,7 +26,7 @@ only_in() {
 forbid 'core must not include io or app' '"(io|app)/' core/*.h core/*.cpp
 forbid 'io must not include app' '"app/' io/*.h io/*.cpp
 
-shared='core/(lattice|threads|triangle_mesh|vec3)\.h'
+shared='core/(diagnostics|lattice|threads|triangle_mesh|vec3)\.h'
 evaluators=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
 forbid 'io may include only the data headers of core, and threads.h' "\"(${evaluators%|})\"" io/*.h io/*.cpp
 

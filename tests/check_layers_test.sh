@@ -6,7 +6,7 @@ sh "$root/tests/check_layers.sh" "$root"
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-cp -R "$root/core" "$root/io" "$root/app" "$copy"
+cp -RL "$root/core" "$root/io" "$root/app" "$copy"
 sh "$root/tests/check_layers.sh" "$copy"
 
 # plant FILE INCLUDE: the check must fail with the line added, and name the file.

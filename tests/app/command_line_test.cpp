@@ -207,10 +207,10 @@ TEST_F(CommandLine, CommandsNotAvailableYetSaySo) {
 }
 
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  for (const char* const option : {"--rule", "--band", "--engine", "--simd", "--verify", "--depfile", "--grid-name"}) {
+  for (const char* const option : {"--rule", "--band", "--engine", "--simd", "--depfile", "--grid-name"}) {
     expect_not_available(lattice({option, "1"}), option);
   }
-  for (const char* const flag : {"--half", "--diagnostics"}) expect_not_available(lattice({flag}), flag);
+  expect_not_available(lattice({"--half"}), "--half");
   for (const char* const option : {"--sample", "--seed", "--raw"}) {
     expect_not_available(run_raycone({"points", mesh_, option, "1", "-o", "x.csv"}), option);
   }
@@ -236,7 +236,7 @@ TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
     EXPECT_NE(result.out.find("Usage: raycone"), std::string::npos);
     EXPECT_NE(result.out.find("Examples:\n  raycone "), std::string::npos);
     for (const char* const later : {"slice", "batch", "--rule", "--band", "vti", "npz", "--sample", "--half",
-                                    "--verify", "--engine", "--tolerance", "--diagnostics", "--raw", "inside", "sdf"}) {
+                                    "--engine", "--tolerance", "--raw", "inside", "sdf"}) {
       EXPECT_EQ(result.out.find(later), std::string::npos) << later;
     }
   }

@@ -50,15 +50,32 @@ TEST(SlabFrom, HoldsSmallLatticesWhole) {
   EXPECT_EQ(slab_from(lattice, 2, 8, -5).size(), 125'000);
 }
 
-TEST(SlabMemory, IsThatOfItsDoubles) { EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}), 64e6); }
+TEST(SlabMemory, IsThatOfItsDoubles) { EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}, false), 64e6); }
+
+TEST(SlabMemory, IncludesDiagnostics) {  // two 64-bit counts, a flag, a double
+  EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}, true), 64e6 + 8e6 * (8 + 8 + 1 + 8));
+}
 
 TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, false, false), 0.0);
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, false, false), 4e9 + 4 * 8e6);
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, true, false), 8e9 + 8 * 8e6);
-  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, false, true), 1e8);
+  FieldDescription description;
+  description.exterior_edges = 1;
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, description), 0.0);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 4e9 + 4 * 8e6);
+  description.double_precision = true;
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 8e9 + 8 * 8e6);
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}), 1e8);
+}
+
+TEST(WriterMemory, CountsTheErrorBoundsOfAnOpenMeshInFull) {
+  Lattice lattice;
+  lattice.counts = {1000, 1000, 1000};
+  FieldDescription description;
+  description.diagnostics = true;
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description), 3e8) << "closed: no bound differs from 0";
+  description.exterior_edges = 1;
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 2 * 4e9 + (4 + 3 * 4 + 1) * 8e6);
 }
 
 }  // namespace

@@ -129,12 +129,17 @@ void time_reading(benchmark::State& state, const Workload& workload) {
   state.counters["faces"] = static_cast<double>(workload.mesh.triangles.size());
 }
 
+// What points need beyond the preparation for lattices.
+void prepare_points(const WindingNumberEvaluator& evaluator) { evaluator.prepare_points(); }
+void prepare_points(const PaperTranscription&) {}
+
 // Preparation of either method begins with welding.
 template <class Method>
-void time_preparation(benchmark::State& state, const Workload& workload, int threads) {
+void time_preparation(benchmark::State& state, const Workload& workload, bool for_points, int threads) {
   const ThreadLimit limit(threads);
   for (auto _ : state) {
     const Method method(weld(workload.mesh, {}));
+    if (for_points) prepare_points(method);
     benchmark::DoNotOptimize(method.exterior_edges());
   }
 }
@@ -144,6 +149,7 @@ void time_evaluation(benchmark::State& state, const Workload& workload, const Sa
                      const std::vector<double>& reference, int threads) {
   const ThreadLimit limit(threads);
   const Method method(workload.welded);
+  prepare_points(method);
   std::vector<double> values(reference.size());
   for (auto _ : state) {
     evaluate(method, samples, values);
@@ -160,7 +166,9 @@ void add(const std::string& name, Body body) {
 template <class Method>
 void add_method(const Workload& workload, const std::string& method, int threads) {
   const std::string suffix = "/" + workload.name + "/" + method + "/" + std::to_string(threads);
-  add("prepare" + suffix, [&, threads](benchmark::State& s) { time_preparation<Method>(s, workload, threads); });
+  add("prepare" + suffix, [&, threads](benchmark::State& s) { time_preparation<Method>(s, workload, false, threads); });
+  add("prepare_points" + suffix,
+      [&, threads](benchmark::State& s) { time_preparation<Method>(s, workload, true, threads); });
   add("lattice" + suffix, [&, threads](benchmark::State& s) {
     time_evaluation<Method>(s, workload, workload.lattice, workload.lattice_reference, threads);
   });

@@ -23,8 +23,8 @@ using test::TemporaryDirectory;
 std::string points_csv(const std::vector<Vec3>& points, const std::vector<double>& values) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt);
-  writer->write(points, values);
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, false);
+  writer->write(points, values, nullptr);
   writer->finish();
   return contents(directory / "out.csv");
 }
@@ -116,13 +116,63 @@ TEST(WriteCsv, HasRoomForTheLongestRows) {
   EXPECT_TRUE(text.ends_with(",-2.2250738585072014e-308\n"));
 }
 
+TEST(WriteCsv, PrintsDiagnosticsBehindTheValuesOfPoints) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, true);
+  test::FourDiagnostics of;
+  const Diagnostics diagnostics = of.from(0, 2);
+  writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, std::vector<double>{0.5, -1}, &diagnostics);
+  writer->finish();
+  EXPECT_EQ(contents(directory / "out.csv"),
+            "x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
+            "1,2,3,0.5,0,0,0,5e-324\n"
+            "4,5,6,-1,-3,2,1,0.1\n");
+}
+
+TEST(WriteCsv, PrintsDiagnosticsOfLatticesSampleBySample) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  FieldDescription description;
+  description.diagnostics = true;
+  const Lattice lattice{{}, {1, 1, 1}, {}, {2, 1, 2}};
+  const auto writer = make_lattice_writer(FieldFormat::kCsv, output, lattice, description);
+  test::FourDiagnostics of;
+  const Diagnostics lower = of.from(0, 2), upper = of.from(2, 2);
+  writer->write({{0, 0, 0}, {2, 1, 1}}, std::vector<double>{1, 2}, &lower);
+  writer->write({{0, 0, 1}, {2, 1, 1}}, std::vector<double>{3, 4}, &upper);
+  writer->finish({});
+  EXPECT_EQ(contents(directory / "out.csv"),
+            "i,j,k,x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
+            "0,0,0,0,0,0,1,0,0,0,5e-324\n"
+            "1,0,0,1,0,0,2,-3,2,1,0.1\n"
+            "0,0,1,0,0,1,3,9007199254740993,1,0,0\n"
+            "1,0,1,1,0,1,4,1,0,0,1e-16\n");
+}
+
+TEST(WriteCsv, HasRoomForTheLongestRowsWithDiagnostics) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, true);
+  const double longest = -2.2250738585072014e-308;
+  std::vector<std::int64_t> counts(3000, std::numeric_limits<std::int64_t>::min());
+  std::vector<std::uint8_t> flags(3000, 1);
+  std::vector<double> bounds(3000, -longest);
+  const Diagnostics diagnostics{counts, counts, flags, bounds};
+  writer->write(std::vector<Vec3>(3000, {longest, longest, longest}), std::vector<double>(3000, longest), &diagnostics);
+  writer->finish();
+  const std::string text = contents(directory / "out.csv");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3001);
+  EXPECT_TRUE(text.ends_with(",-9223372036854775808,-9223372036854775808,1,2.2250738585072014e-308\n"));
+}
+
 TEST(WriteCsv, FlushHandsRowsToTheSystem) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   {
     OutputFile output("/dev/fd/" + std::to_string(ends[1]));
-    const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt);
-    writer->write(std::vector<Vec3>{{1, 2, 3}}, std::vector<double>{4});
+    const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, false);
+    writer->write(std::vector<Vec3>{{1, 2, 3}}, std::vector<double>{4}, nullptr);
     writer->flush();
     char text[64] = {};
     EXPECT_GT(read(ends[0], text, sizeof text - 1), 0);

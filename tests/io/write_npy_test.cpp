@@ -94,12 +94,12 @@ TEST(WriteNpy, LatticesDoNotDependOnTheSlabs) {
 void write_points(const std::string& name, const std::vector<double>& values, bool announce) {
   OutputFile output(name);
   const auto size = announce ? std::optional<std::uint64_t>(values.size()) : std::nullopt;
-  const auto writer = make_point_writer(FieldFormat::kNpy, output, size);
+  const auto writer = make_point_writer(FieldFormat::kNpy, output, size, false);
   const std::vector<Vec3> points(values.size());
   const std::size_t half = values.size() / 2;
-  writer->write(std::span(points).first(half), std::span(values).first(half));
+  writer->write(std::span(points).first(half), std::span(values).first(half), nullptr);
   writer->flush();
-  writer->write(std::span(points).subspan(half), std::span(values).subspan(half));
+  writer->write(std::span(points).subspan(half), std::span(values).subspan(half), nullptr);
   writer->finish();
 }
 
@@ -147,9 +147,35 @@ TEST(WriteNpy, PointsAreTheSameWhetherTheirNumberIsKnownOrNot) {
 TEST(WriteNpy, PointsMustBeAsManyAsAnnounced) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.npy");
-  const auto writer = make_point_writer(FieldFormat::kNpy, output, 2);
-  writer->write(std::vector<Vec3>(1), std::vector<double>(1));
+  const auto writer = make_point_writer(FieldFormat::kNpy, output, 2, false);
+  writer->write(std::vector<Vec3>(1), std::vector<double>(1), nullptr);
   EXPECT_THROW(writer->finish(), std::logic_error);
+}
+
+TEST(WriteNpy, PointsWithDiagnosticsAreRowsOfFive) {
+  const TemporaryDirectory directory;
+  test::FourDiagnostics of;
+  for (const std::size_t count : {0U, 4U}) {
+    OutputFile output(directory / "out.npy");
+    const auto writer = make_point_writer(FieldFormat::kNpy, output, std::nullopt, true);
+    const std::vector<double> values{0.25, 1, 0, -2};
+    for (std::size_t n = 0; n < count; n += 2) {
+      const Diagnostics half = of.from(n, 2);
+      writer->write(std::vector<Vec3>(2), std::span(values).subspan(n, 2), &half);
+    }
+    writer->finish();
+    const std::string npy = contents(directory / "out.npy");
+    EXPECT_NE(header_text(npy).find("'shape': (" + std::to_string(count) + ", 5), }"), std::string::npos);
+    std::vector<double> expected;
+    for (std::size_t n = 0; n < count; ++n) {
+      expected.insert(expected.end(),
+                      {values[n], static_cast<double>(of.crossings[n]), static_cast<double>(of.degenerate[n]),
+                       static_cast<double>(of.on_surface[n]), of.error_bound[n]});
+    }
+    if (count > 0) {
+      EXPECT_EQ(elements<double>(npy), expected);
+    }
+  }
 }
 
 TEST(WriteNpy, NumpyReadsIt) {

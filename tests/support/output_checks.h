@@ -18,9 +18,23 @@ inline std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// Diagnostics of four samples, each unlike the others.
+struct FourDiagnostics {
+  std::vector<std::int64_t> crossings{0, -3, 9007199254740993, 1};
+  std::vector<std::int64_t> degenerate{0, 2, 1, 0};
+  std::vector<std::uint8_t> on_surface{0, 1, 0, 0};
+  std::vector<double> error_bound{5e-324, 0.1, 0, 1e-16};
+
+  [[nodiscard]] Diagnostics from(std::size_t first, std::size_t count) {
+    return {std::span(crossings).subspan(first, count), std::span(degenerate).subspan(first, count),
+            std::span(on_surface).subspan(first, count), std::span(error_bound).subspan(first, count)};
+  }
+};
+
 // The values (x fastest) of the part of the lattice that `block` is.
-inline std::vector<double> part(const Lattice& lattice, const std::vector<double>& values, const LatticeBlock& block) {
-  std::vector<double> result;
+template <typename Value>
+std::vector<Value> part(const Lattice& lattice, const std::vector<Value>& values, const LatticeBlock& block) {
+  std::vector<Value> result;
   for (std::int64_t z = 0; z < block.counts[2]; ++z) {
     for (std::int64_t y = 0; y < block.counts[1]; ++y) {
       for (std::int64_t x = 0; x < block.counts[0]; ++x) {
@@ -54,7 +68,7 @@ inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice
     LatticeBlock slab = whole(lattice);
     slab.first[axis] += done;
     slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
-    writer->write(slab, part(lattice, values, slab));
+    writer->write(slab, part(lattice, values, slab), nullptr);
   }
   writer->finish(totals);
 }

@@ -1,0 +1,224 @@
+// `--diagnostics` and `--verify` from mesh to files. Black box: the real executable.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/app/meshes.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+// Longer than any answer should take, even under a sanitizer on a busy machine.
+constexpr std::chrono::seconds kPatience{20};
+
+class DiagnosticsOption : public testing::Test {
+ protected:
+  DiagnosticsOption() {
+    write_text(cube_, kCube);
+    write_text(soup_, triangle_soup(20));
+    std::ostringstream points;
+    for (int n = 0; n < 5000; ++n)
+      points << 0.002 * (n % 500) << ',' << 0.01 * (n % 97) << ',' << 0.01 * (n % 89) << '\n';
+    write_text(points_, points.str());
+  }
+
+  TemporaryDirectory dir_;
+  std::string cube_ = dir_ / "cube.obj";
+  std::string soup_ = dir_ / "soup.obj";
+  std::string points_ = dir_ / "points.csv";
+};
+
+using VerifyOption = DiagnosticsOption;
+
+// `csv` without its last four columns.
+std::string without_diagnostics(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::ostringstream result;
+  for (std::string line; std::getline(lines, line);) {
+    for (int column = 0; column < 4; ++column) line.erase(std::min(line.rfind(','), line.size()));
+    result << line << '\n';
+  }
+  return result.str();
+}
+
+TEST_F(DiagnosticsOption, AddsColumnsToPoints) {
+  const CommandResult result =
+      run_raycone({"points", cube_, "-", "--diagnostics"}, {.input = "0.5,0.5,0.25\n0,0,0\n2,0,0\n"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  std::istringstream lines(result.out);
+  std::string header, inside, corner, outside;
+  std::getline(lines, header);
+  std::getline(lines, inside);
+  std::getline(lines, corner);
+  std::getline(lines, outside);
+  EXPECT_EQ(header, "x,y,z,w,crossings,degenerate,on_surface,error_bound");
+  EXPECT_EQ(inside, "0.5,0.5,0.25,1,1,0,0,0");
+  EXPECT_TRUE(corner.starts_with("0,0,0,1,1,") && corner.ends_with(",1,0")) << corner;
+  EXPECT_EQ(outside, "2,0,0,0,0,0,0,0");
+}
+
+TEST_F(DiagnosticsOption, ChangesNoValue) {
+  const std::vector<std::vector<std::string>> runs{{"lattice", soup_, "-o", "-", "--resolution", "20"},
+                                                   {"points", soup_, points_}};
+  for (std::vector<std::string> arguments : runs) {
+    const std::string plain = run_raycone(arguments).out;
+    arguments.push_back("--diagnostics");
+    const CommandResult diagnosed = run_raycone(arguments);
+    EXPECT_EQ(diagnosed.status, 0) << diagnosed.err;
+    EXPECT_EQ(without_diagnostics(diagnosed.out), plain);
+    EXPECT_GT(plain.size(), 5000U * 8U);
+  }
+}
+
+TEST_F(DiagnosticsOption, BytesDependNotOnThreads) {
+  for (const std::vector<std::string>& run :
+       std::vector<std::vector<std::string>>{{"lattice", soup_, "-o", "-", "--resolution", "20"},
+                                             {"lattice", soup_, "-o", "-", "--resolution", "20", "--format", "vdb"},
+                                             {"points", soup_, points_},
+                                             {"points", soup_, points_, "-o", "-", "--format", "npy"}}) {
+    std::set<std::string> contents;
+    for (const std::string threads : {"1", "2", "7"}) {
+      std::vector<std::string> arguments = run;
+      arguments.insert(arguments.end(), {"--diagnostics", "--verify", "10", "--threads", threads});
+      const CommandResult result = run_raycone(arguments);
+      EXPECT_EQ(result.status, 0) << result.err;
+      contents.insert(result.out);
+    }
+    EXPECT_EQ(contents.size(), 1U);
+    EXPECT_GT(contents.begin()->size(), 5000U * 8U);
+  }
+}
+
+TEST_F(DiagnosticsOption, AnswersEachLineOfAReaderThatWaits) {
+  Command command(raycone_command({"points", cube_, "-", "--quiet", "--diagnostics"}));
+  EXPECT_EQ(command.read_line(kPatience), "x,y,z,w,crossings,degenerate,on_surface,error_bound");
+  for (int i = 0; i < 3; ++i) {
+    command.write("0.5 0.5 0.25\n");
+    EXPECT_EQ(command.read_line(kPatience), "0.5,0.5,0.25,1,1,0,0,0");
+  }
+  command.close_input();
+  EXPECT_EQ(command.wait().status, 0);
+}
+
+TEST_F(DiagnosticsOption, GridsOfAVdbAreTheColumnsOfTheCsv) {
+  const std::string path = dir_ / "out.vdb";
+  const std::vector<std::string> more{"--resolution", "12", "--diagnostics"};
+  std::vector<std::string> to_vdb{"lattice", soup_, "-o", path}, to_csv{"lattice", soup_, "-o", "-"};
+  to_vdb.insert(to_vdb.end(), more.begin(), more.end());
+  to_csv.insert(to_csv.end(), more.begin(), more.end());
+  ASSERT_EQ(run_raycone(to_vdb).status, 0);
+  std::istringstream csv(run_raycone(to_csv).out);
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open();
+  const auto crossings = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("crossings"));
+  const auto on_surface = openvdb::gridPtrCast<openvdb::BoolGrid>(file.readGrid("on_surface"));
+  const auto error_bound = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("error_bound"));
+  std::string line;
+  std::getline(csv, line);
+  int rows = 0, crossed = 0;
+  for (; std::getline(csv, line); ++rows) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream row(line);
+    openvdb::Coord at;
+    double x, y, z, w, crossings_in_csv, degenerate, on_surface_in_csv, bound;
+    row >> at[0] >> at[1] >> at[2] >> x >> y >> z >> w >> crossings_in_csv >> degenerate >> on_surface_in_csv >> bound;
+    ASSERT_FALSE(row.fail()) << line;
+    EXPECT_EQ(static_cast<double>(crossings->tree().getValue(at)), crossings_in_csv);
+    EXPECT_EQ(on_surface->tree().getValue(at), on_surface_in_csv != 0);
+    EXPECT_GE(static_cast<double>(error_bound->tree().getValue(at)), bound);
+    EXPECT_GT(bound, 0.0);
+    EXPECT_LT(bound, 1e-12);
+    crossed += crossings_in_csv != 0;
+  }
+  EXPECT_GT(rows, 1000);
+  EXPECT_GT(crossed, 0);
+}
+
+TEST_F(DiagnosticsOption, NpyOfALatticeIsAUsageErrorThatNamesTheFormats) {
+  const CommandResult result = run_raycone({"lattice", dir_ / "absent.obj", "-o", "out.npy", "--diagnostics"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.err, "raycone: --diagnostics: npy holds one number per sample, expected vdb or csv\n");
+}
+
+TEST_F(DiagnosticsOption, DoubleWidensTheValuesOnly) {
+  const std::string path = dir_ / "out.vdb";
+  ASSERT_EQ(run_raycone({"lattice", soup_, "-o", path, "--resolution", "8", "--double", "--diagnostics"}).status, 0);
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open();
+  EXPECT_TRUE(file.readGrid("winding")->isType<openvdb::DoubleGrid>());
+  EXPECT_TRUE(file.readGrid("error_bound")->isType<openvdb::FloatGrid>());
+  EXPECT_TRUE(file.readGrid("on_surface")->isType<openvdb::BoolGrid>());
+}
+
+TEST_F(VerifyOption, IsInSummaryAndReport) {
+  const std::string report = dir_ / "report.json";
+  const CommandResult result = run_raycone(
+      {"lattice", soup_, "-o", dir_ / "out.npy", "--resolution", "10", "--verify", "25", "--report", report});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find(", verified 25 samples, largest difference "), std::string::npos) << result.err;
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1);
+  const auto verify = nlohmann::json::parse(read_text(report))["verify"];
+  EXPECT_EQ(verify["samples"], 25);
+  EXPECT_EQ(verify["on_surface"], 0);
+  EXPECT_EQ(verify["unresolved"], 0);
+  EXPECT_GT(verify["largest_difference"], 0.0);
+  EXPECT_LE(verify["largest_difference"], verify["largest_bound"]);
+  EXPECT_LT(verify["largest_bound"], 1e-12);
+}
+
+TEST_F(VerifyOption, SamplesDependOnTheJobAlone) {
+  std::set<std::string> found;
+  for (const std::string format : {"csv", "npy", "vdb"}) {  // npy goes through the lattice in another direction
+    for (const std::string threads : {"1", "7"}) {
+      const std::string report = dir_ / "report.json";
+      EXPECT_EQ(run_raycone({"lattice", soup_, "-o", dir_ / "out", "--format", format, "--threads", threads, "--verify",
+                             "5", "--resolution", "50", "--report", report})
+                    .status,
+                0);
+      found.insert(nlohmann::json::parse(read_text(report))["verify"].dump());
+    }
+  }
+  EXPECT_EQ(found.size(), 1U);
+}
+
+TEST_F(VerifyOption, CountsSamplesOnTheSurface) {
+  const std::string report = dir_ / "report.json";
+  const CommandResult result =
+      run_raycone({"lattice", cube_, "-o", "-", "--resolution", "3", "--verify", "100", "--report", report});
+  EXPECT_EQ(result.status, 0);
+  const auto verify = nlohmann::json::parse(read_text(report))["verify"];
+  EXPECT_EQ(verify["samples"], 1) << "one of 27 samples is inside, the others on the cube";
+  EXPECT_EQ(verify["on_surface"], 26);
+  EXPECT_TRUE(result.err.ends_with(", skipped 26 at the surface\n")) << result.err;
+}
+
+TEST_F(VerifyOption, WorksOnStreams) {
+  const CommandResult result = run_raycone({"points", soup_, "-", "--verify", "3"}, {.input = read_text(points_)});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, run_raycone({"points", soup_, points_}).out);
+  EXPECT_NE(result.err.find(", verified 3 samples, "), std::string::npos) << result.err;
+}
+
+TEST_F(VerifyOption, TakesPositiveIntegers) {
+  for (const char* const number : {"0", "-1", "1.5", "many", "1e3", "99999999999"}) {
+    const CommandResult result = run_raycone({"points", soup_, points_, "--verify", number});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.err.rfind(std::string("raycone: --verify ") + number + ": expected an integer from 1 to ", 0), 0U)
+        << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -1,0 +1,192 @@
+// The grids of diagnostics beside that of the field.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/field_writer.h"
+#include "io/read_vdb.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone {
+namespace {
+
+using test::contents;
+using test::TemporaryDirectory;
+
+struct DiagnosedField {
+  Lattice lattice;
+  std::vector<double> values;
+  std::vector<std::int64_t> crossings, degenerate;
+  std::vector<std::uint8_t> on_surface;
+  std::vector<double> error_bound;
+};
+
+// Indices start and end inside leaf blocks, on either side of 0. The lower half is noise, the upper half constant, so
+// that there are leaves, tiles and nothing.
+DiagnosedField diagnosed_field() {
+  DiagnosedField field;
+  field.lattice = {{0.1, -20.7, 1e-3}, {0.1, 0.3, 1.0 / 3}, {-13, -3, -21}, {29, 18, 44}};
+  std::mt19937_64 random(1);
+  for (std::int64_t n = 0; n < 29 * 18 * 44; ++n) {
+    const bool constant = n >= 29 * 18 * 22;
+    field.values.push_back(constant ? 1.0 : static_cast<double>(random() % 1000) / 999);
+    field.crossings.push_back(constant ? -2 : static_cast<std::int64_t>(random() % 7) - 3);
+    field.degenerate.push_back(constant ? 0 : static_cast<std::int64_t>(random() % 3));
+    field.on_surface.push_back(constant || random() % 4 == 0 ? 1 : 0);
+    field.error_bound.push_back(constant ? 0.0 : static_cast<double>(random() % 1000) * 1.1e-17);
+  }
+  field.error_bound[5] = 5e-324;  // 0 in single precision, were it not rounded up
+  return field;
+}
+
+void write_vdb(const std::string& path, const DiagnosedField& field, std::int64_t thickness = 8) {
+  OutputFile output(path);
+  FieldDescription description;
+  description.mesh = "bunny.obj";
+  description.diagnostics = true;
+  const auto writer = make_lattice_writer(FieldFormat::kVdb, output, field.lattice, description);
+  for (std::int64_t done = 0; done < field.lattice.counts[2]; done += thickness) {
+    LatticeBlock slab = whole(field.lattice);
+    slab.first[2] += done;
+    slab.counts[2] = std::min(thickness, field.lattice.counts[2] - done);
+    const auto of_slab = [&](const auto& numbers) { return test::part(field.lattice, numbers, slab); };
+    auto crossings = of_slab(field.crossings), degenerate = of_slab(field.degenerate);
+    auto on_surface = of_slab(field.on_surface);
+    auto error_bound = of_slab(field.error_bound);
+    const Diagnostics diagnostics{crossings, degenerate, on_surface, error_bound};
+    writer->write(slab, of_slab(field.values), &diagnostics);
+  }
+  writer->finish({7, 9});
+}
+
+openvdb::GridPtrVecPtr read_grids(const std::string& path) {
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open(false);
+  return file.getGrids();
+}
+
+template <typename Grid>
+typename Grid::Ptr grid_named(const openvdb::GridPtrVec& grids, const std::string& name) {
+  return openvdb::gridPtrCast<Grid>(openvdb::findGridByName(grids, name));
+}
+
+// Every voxel of the lattice, and one layer around it, is check(number, value) and active where it is not 0.
+template <typename Grid, typename Number, typename Check>
+void expect_holds(const Grid& grid, const Lattice& lattice, const std::vector<Number>& numbers, const Check& check) {
+  auto accessor = grid.getConstAccessor();
+  std::size_t active = 0;
+  const auto inside = [&](std::int64_t n, std::size_t axis) { return 0 <= n && n < lattice.counts[axis]; };
+  for (std::int64_t z = -1; z <= lattice.counts[2]; ++z) {
+    for (std::int64_t y = -1; y <= lattice.counts[1]; ++y) {
+      for (std::int64_t x = -1; x <= lattice.counts[0]; ++x) {
+        const bool sample = inside(x, 0) && inside(y, 1) && inside(z, 2);
+        const auto n = static_cast<std::size_t>((z * lattice.counts[1] + y) * lattice.counts[0] + x);
+        const Number number = sample ? numbers[n] : Number{0};
+        const openvdb::Coord at(static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),
+                                static_cast<int>(lattice.index_min[2] + z));
+        ASSERT_TRUE(check(number, accessor.getValue(at))) << at << ": " << +number << ' ' << accessor.getValue(at);
+        ASSERT_EQ(accessor.isValueOn(at), number != 0) << at;
+        active += number != 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(grid.activeVoxelCount(), active);
+  EXPECT_GT(active, 0U);
+}
+
+TEST(WriteVdbDiagnostics, EveryVoxelOfEveryGridIsTheSamples) {
+  const TemporaryDirectory directory;
+  const DiagnosedField field = diagnosed_field();
+  write_vdb(directory / "out.vdb", field);
+  const auto grids = read_grids(directory / "out.vdb");
+  ASSERT_EQ(grids->size(), 5U);
+  const auto equal = [](auto number, auto value) { return static_cast<decltype(value)>(number) == value; };
+  using openvdb::BoolGrid, openvdb::FloatGrid;
+  expect_holds(*grid_named<FloatGrid>(*grids, "winding"), field.lattice, field.values, equal);
+  expect_holds(*grid_named<FloatGrid>(*grids, "crossings"), field.lattice, field.crossings, equal);
+  expect_holds(*grid_named<FloatGrid>(*grids, "degenerate"), field.lattice, field.degenerate, equal);
+  expect_holds(*grid_named<BoolGrid>(*grids, "on_surface"), field.lattice, field.on_surface, equal);
+  expect_holds(*grid_named<FloatGrid>(*grids, "error_bound"), field.lattice, field.error_bound,
+               [](double bound, float value) {
+                 const float below = std::nextafter(value, -1.0F);
+                 return static_cast<double>(value) >= bound && (bound == 0 ? value == 0 : double{below} < bound);
+               });
+}
+
+TEST(WriteVdbDiagnostics, GridsShareTransformAndDescription) {
+  const TemporaryDirectory directory;
+  const DiagnosedField field = diagnosed_field();
+  write_vdb(directory / "out.vdb", field);
+  const auto grids = read_grids(directory / "out.vdb");
+  for (const openvdb::GridBase::Ptr& grid : *grids) {
+    EXPECT_EQ(grid->transform(), grids->front()->transform());
+    EXPECT_EQ(grid->metaValue<std::string>("raycone_field"), grid->getName());
+    EXPECT_EQ(grid->metaValue<std::string>("raycone_mesh"), "bunny.obj");
+    EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_degenerate"), 7);
+    const Lattice lattice = read_vdb_lattice(directory / "out.vdb", grid->getName());
+    EXPECT_EQ(lattice.origin, field.lattice.origin);
+    EXPECT_EQ(lattice.spacing, field.lattice.spacing);
+    EXPECT_EQ(lattice.index_min, field.lattice.index_min);
+    EXPECT_EQ(lattice.counts, field.lattice.counts);
+  }
+}
+
+TEST(WriteVdbDiagnostics, ConstantBlocksAreTiles) {
+  const TemporaryDirectory directory;
+  DiagnosedField field = diagnosed_field();
+  field.lattice.index_min = {-16, 0, 8};
+  field.lattice.counts = {16, 16, 16};
+  field.values.assign(4096, 1.0);
+  field.crossings.assign(4096, 1);
+  field.degenerate.assign(4096, 0);
+  field.on_surface.assign(4096, 1);
+  field.error_bound.assign(4096, 0.0);
+  write_vdb(directory / "out.vdb", field);
+  const auto grids = read_grids(directory / "out.vdb");
+  const auto crossings = grid_named<openvdb::FloatGrid>(*grids, "crossings");
+  const auto on_surface = grid_named<openvdb::BoolGrid>(*grids, "on_surface");
+  EXPECT_EQ(crossings->tree().leafCount() + on_surface->tree().leafCount(), 0U);
+  EXPECT_EQ(crossings->tree().activeTileCount(), 8U);
+  EXPECT_EQ(on_surface->tree().activeTileCount(), 8U);
+  EXPECT_TRUE(grid_named<openvdb::FloatGrid>(*grids, "degenerate")->tree().empty());
+  EXPECT_TRUE(grid_named<openvdb::FloatGrid>(*grids, "error_bound")->tree().empty());
+}
+
+TEST(WriteVdbDiagnostics, DependNotOnTheSlabs) {
+  const TemporaryDirectory directory;
+  write_vdb(directory / "aligned", diagnosed_field(), 44);
+  for (const std::int64_t thickness : {1, 3, 8, 13}) {
+    write_vdb(directory / "other", diagnosed_field(), thickness);
+    EXPECT_EQ(contents(directory / "other"), contents(directory / "aligned")) << thickness;
+  }
+}
+
+TEST(WriteVdbDiagnostics, PyopenvdbReadsAllGrids) {
+  if (!test::python_has("pyopenvdb, numpy")) GTEST_SKIP() << "no pyopenvdb and numpy in /usr/bin/python3";
+  const TemporaryDirectory directory;
+  const DiagnosedField field = diagnosed_field();
+  write_vdb(directory / "out.vdb", field);
+  const auto on_surface = std::count(field.on_surface.begin(), field.on_surface.end(), 1);
+  EXPECT_EQ(test::run_python("import numpy, pyopenvdb, sys\n"
+                             "grids, _ = pyopenvdb.readAll(sys.argv[1])\n"
+                             "types = {grid.name: type(grid).__name__ for grid in grids}\n"
+                             "assert types == dict(winding='FloatGrid', crossings='FloatGrid', degenerate='FloatGrid',"
+                             " on_surface='BoolGrid', error_bound='FloatGrid'), types\n"
+                             "grid = pyopenvdb.read(sys.argv[1], 'on_surface')\n"
+                             "flags = numpy.empty((29, 18, 44), bool)\n"
+                             "grid.copyToArray(flags, ijk=grid.metadata['raycone_index_min'])\n"
+                             "assert flags.sum() == grid.activeVoxelCount() == int(sys.argv[2])\n",
+                             {directory / "out.vdb", std::to_string(on_surface)}),
+            "");
+}
+
+}  // namespace
+}  // namespace raycone

@@ -1,0 +1,131 @@
+"""The mutants: what to replace, and which rule of docs/method.md that breaks.
+
+Each old text must occur exactly once in its file. Change a mutant together with the code that it breaks; remove it only
+if the rule is gone. A mutant that changes no result that anybody can observe proves nothing and does not belong here.
+"""
+
+from typing import NamedTuple
+
+
+class Mutant(NamedTuple):
+    name: str
+    breaks: str
+    edits: list  # of (file, old text, new text)
+
+
+MUTANTS = [
+    # --- One perturbation ---
+    Mutant("tie_is_no_side", "edge side: ties are decided by the perturbation, not dropped", [
+        ("core/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
+         "  if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};\n", "")]),
+    Mutant("tie_is_positive", "edge side: a tie depends on the direction of the edge", [
+        ("core/predicates.h", "return sign != 0 ? EdgeSide{sign, false} : broken_tie(a, b);",
+         "return sign != 0 ? EdgeSide{sign, false} : EdgeSide{broken_tie(a, b).sign != 0, true};")]),
+    Mutant("tie_by_y_before_z", "edge side: e2 >> e3, so a_z - b_z decides before b_y - a_y", [
+        ("core/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
+         "  if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};",
+         "if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};\n"
+         "  if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};")]),
+    Mutant("plane_is_crossed", "crossing: orient3d = 0 is none", [
+        ("core/crossings.cpp", "if (side(middle) == -result.sigma) {", "if (side(middle) != result.sigma) {")]),
+    Mutant("on_surface_not_at_ties", "on the surface: also where the line meets an edge or vertex", [
+        ("core/crossings.cpp", "  } else {\n    find_samples_on(a, b, c, row, result);\n", "")]),
+    Mutant("on_surface_cancels", "on the surface: duplicated faces that cancel are surface, too", [
+        ("core/winding_number.cpp", "on_surface[i] = true;", "on_surface[i] = !on_surface[i];"),
+        ("core/winding_number.cpp", "diagnostics.on_surface[i] = 1;", "diagnostics.on_surface[i] ^= 1;")]),
+    Mutant("degenerate_without_box", "ties count for triangles whose closed box meets the closed ray", [
+        ("core/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return result;\n", "")]),
+
+    # --- Exact signs, shared ---
+    Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [
+        ("core/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
+         "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
+    Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
+        ("core/cone_kernel.cpp", "hn::And(side_is_sure, hn::And(not_near, in_range));", "hn::And(not_near, in_range);")]),
+    Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
+        ("core/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
+    Mutant("side_filter_without_underflow", "products that underflow vouch for nothing", [
+        ("core/predicates.h", "kSideUnderflow = 0x1p-1000", "kSideUnderflow = 0.0")]),
+    Mutant("float_crossings", "crossings are decided on double coordinates", [
+        ("core/crossings.cpp",
+         "triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,\n"
+         "                                   const TrianglePlane* plane) {\n",
+         "triangle_crossing(const Vec3& u, const Vec3& v, const Vec3& w, const Row& row,\n"
+         "                                   const TrianglePlane* plane) {\n"
+         "  const auto rounded = [](const Vec3& p) { return Vec3{float(p.x), float(p.y), float(p.z)}; };\n"
+         "  const Vec3 a = rounded(u), b = rounded(v), c = rounded(w);\n")]),
+    Mutant("plane_error_too_small", "the place of a crossing along a row is only trusted beyond its error", [
+        ("core/crossings.cpp", "error = 1.01 * u *", "error = 0.01 * u *")]),
+    Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
+        ("core/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
+    Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
+        ("core/threads.cpp", "    const DefaultFloatingPoint guard;\n", "")]),
+
+    # --- The cone's factors ---
+    Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
+        ("core/predicates.h", "<= std::abs(by) + std::abs(bz);", "> std::abs(by) + std::abs(bz);"),
+        ("core/cone_kernel.cpp", "a_is_nearer = hn::Le(", "a_is_nearer = hn::Gt(")]),
+    Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
+        ("core/cone_kernel.cpp", "length = hn::IfThenElse(hn::Gt(px, hn::Zero(d)), hn::Div(square, sum), sum);",
+         "length = hn::Sub(norm, px);")]),
+    Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
+        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, std::abs(bz))) : std::nullopt", "std::nullopt"),
+        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, std::abs(az))) : std::nullopt", "std::nullopt")]),
+    Mutant("vertex_behind_counts", "an end at or behind the query gives no argument", [
+        ("core/tied_factor.h", "return a.x > q.x ?", "return true ?"),
+        ("core/tied_factor.h", "return b.x > q.x ?", "return true ?")]),
+    Mutant("meeting_side_ignored", "half a turn only if the edge meets the line ahead of the query", [
+        ("core/tied_factor.h", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
+    Mutant("edge_at_query_counts", "no argument if the edge meets the line at the query", [
+        ("core/tied_factor.h", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
+    Mutant("no_near_edge_factor", "near an edge z cancels, in any precision", [
+        ("core/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
+    Mutant("near_edge_normal_in_double", "N must be known to full relative precision", [
+        ("core/near_edge.cpp", "  return sum.rounded();", "  const auto in_double = [](const Difference& x) { return x.plus + x.minus; };\n"
+         "  return in_double(a) * in_double(d) - in_double(b) * in_double(c);")]),
+    Mutant("near_edge_form_always_plain", "the better conditioned of z and z' is taken", [
+        ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "true ||")]),
+    Mutant("near_edge_form_always_normal", "the better conditioned of z and z' is taken", [
+        ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
+    Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
+        ("core/cone_kernel.cpp", "hn::IfThenElse(ordinary, length, hn::NaN(d))", "length"),
+        ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest;", "return true;")]),
+
+    # --- The product ---
+    Mutant("turns_by_comparison", "turns are told by sign bits: -0 is below the axis", [
+        ("core/cone_kernel.cpp",
+         "before = std::signbit(z.im[i]), factor = std::signbit(im), after = std::signbit(product_im);",
+         "before = z.im[i] < 0, factor = im < 0, after = product_im < 0;")]),
+    Mutant("no_turns", "the running product's turns are counted", [
+        ("core/cone_kernel.cpp", "hn::Store(hn::Add(hn::Load(d, &z.turns[i]), turn), d, &z.turns[i]);", "")]),
+    Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
+        ("core/cone_kernel.cpp", "z.turns[i] += before ? -1.0 : 1.0;", "{}")]),
+    Mutant("product_never_scaled", "the power of two is taken out of the product", [
+        ("core/cone_kernel.cpp", "scale(products, samples.count);", "{}")]),
+    Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
+        ("core/cone_kernel.cpp", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
+        ("core/cone_kernel.cpp", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
+    Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
+        ("core/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
+
+    # --- Magnitudes ---
+    Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [
+        ("core/scale.cpp", "const PowerOfTwo scale(-exponent);", "const PowerOfTwo scale(0);"),
+        ("core/scale.cpp", "const PowerOfTwo inverse(exponent);", "const PowerOfTwo inverse(0);")]),
+    Mutant("mesh_scaled_at_a_loss", "no scaling where it would cost a vertex bits", [
+        ("core/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
+    Mutant("query_scaled_at_a_loss", "no scaling where it would cost a query bits", [
+        ("core/winding_number.cpp", "return inverse_(y) == x || std::abs(y) > kFarthest;", "return y == y;")]),
+    Mutant("query_not_clamped", "queries beyond 2^1000 mesh sizes are taken to be there", [
+        ("core/winding_number.cpp", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
+
+    # --- Determinism, identity, error bound ---
+    Mutant("edges_by_index", "exterior edges are ordered by coordinates", [
+        ("core/exterior_edges.cpp", "return order != 0 ? order < 0 : i < j;", "return order == 0 ? false : i < j;")]),
+    Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
+        ("core/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
+    Mutant("error_bound_too_small", "the error bound is rigorous", [
+        ("core/winding_number.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
+    Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
+        ("core/winding_number.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
+]

@@ -19,15 +19,16 @@ constexpr Quad kRoundings = 2 * 10 * 12 * 0x1p-113;
 
 }  // namespace
 
-QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, const QuadVec3& q) {
+QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, const QuadVec3& q, int side) {
   const QuadVec3 a = minus(va, q), b = minus(vb, q), c = minus(vc, q);
   const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), lc = sqrtq(dot(c, c));
   const Quad re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   const Quad im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
   const Quad error = kRoundings * la * lb * lc / (fabsq(re) + fabsq(im));
+  const bool half_turn = re < 0 && fabsq(im) <= error * (fabsq(re) + fabsq(im));
   // No digit is left; or, next to the inside of the triangle, the sign of a half turn is not.
-  if (!(error < 0.001) || (re < 0 && fabsq(im) <= error * (fabsq(re) + fabsq(im)))) return {0, kPi};
-  return {atan2q(im, re), error};
+  if (!(error < 0.001) || (half_turn && side == 0)) return {0, kPi};
+  return {atan2q(half_turn ? copysignq(im, -side) : im, re), error};
 }
 
 QuadWithin direct_winding_number(const TriangleMesh& mesh, const QuadVec3& q) {

@@ -22,7 +22,8 @@ struct QuadWithin {
 // Half the solid angle of the triangle at q, in (-pi, pi]. The error grows with the triangle's size over the distance
 // of q from its edges, and is pi where no digit is left (closer than 1e-30), or not the sign of a half turn (q next to
 // the triangle's inside).
-[[nodiscard]] QuadWithin half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const QuadVec3& q);
+// `side`, where not 0, is the exact plane_side() of q and settles that sign.
+[[nodiscard]] QuadWithin half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const QuadVec3& q, int side = 0);
 
 // w at q in turns of the full solid angle. Not defined on the surface. Triangles of zero area count nothing.
 [[nodiscard]] QuadWithin direct_winding_number(const TriangleMesh& mesh, const QuadVec3& q);

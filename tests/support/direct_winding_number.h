@@ -8,7 +8,8 @@ namespace raycone::test {
 
 // w at q, in turns of the full solid angle (sum of solid angles / 4 pi). Each triangle's term is computed with 64 bits,
 // and again with 113 bits where cancellation would cost the former more than 12 of them (q close to the triangle). In
-// all good to 1e-14, for queries no closer to an edge than 1e-14 of its length; not defined on the surface.
+// all good to 1e-14 (the sign of a half turn is the exact predicate's), for queries no closer to an edge than 1e-14 of
+// its length; not defined on the surface.
 [[nodiscard]] double direct_winding_number(const TriangleMesh& mesh, const Vec3& q);
 
 // The same with 113 bits throughout, unrounded.

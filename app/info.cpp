@@ -10,10 +10,11 @@
 namespace raycone {
 namespace {
 
-// Cost model of a lattice on one thread, measured with raycone_bench (docs/benchmarks.md): a ray per row, and one
-// complex factor per exterior edge and sample.
-constexpr double kSecondsPerRay = 0.7e-6;
-constexpr double kSecondsPerEdgeAndSample = 6e-9;
+// Cost model of a lattice on one thread, measured (docs/benchmarks.md): each face is scanned once, each sample written
+// once, and takes one complex factor per exterior edge.
+constexpr double kSecondsPerFace = 25e-9;
+constexpr double kSecondsPerSample = 3e-9;
+constexpr double kSecondsPerEdgeAndSample = 2.1e-9;
 
 // 1234567 as "1 234 567".
 std::string readable(std::uint64_t number) {
@@ -52,10 +53,11 @@ std::string cost_of_lattice(const MeshInfo& info, std::int64_t resolution, int t
   std::vector<std::string> warnings;  // of flat sides: none with one count for all axes
   const Lattice lattice = choose_lattice(info.bounds, request, warnings);
   const auto [nx, ny, nz] = lattice.counts;
-  const double rows = static_cast<double>(ny) * static_cast<double>(nz);
-  const double samples = rows * static_cast<double>(nx);
+  const double samples = static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz);
   const double edges = static_cast<double>(info.statistics.exterior_edges);
-  const double seconds = (rows * kSecondsPerRay + samples * edges * kSecondsPerEdgeAndSample) / threads;
+  const double seconds = (static_cast<double>(info.faces) * kSecondsPerFace +
+                          samples * (kSecondsPerSample + edges * kSecondsPerEdgeAndSample)) /
+                         threads;
   return readable_seconds(seconds) + " for " + std::to_string(nx) + " x " + std::to_string(ny) + " x " +
          std::to_string(nz) + " samples";
 }

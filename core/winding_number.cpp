@@ -11,6 +11,7 @@
 
 #include "core/cone.h"
 #include "core/crossings.h"
+#include "core/floating_point.h"
 #include "core/lattice_scan.h"
 #include "core/projected_tree.h"
 #include "core/ray_caster.h"
@@ -372,6 +373,7 @@ struct WindingNumberEvaluator::Implementation {
 };
 
 WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine) {
+  const DefaultFloatingPoint guard;
   const PowerOfTwo scale = unit_scale(mesh);
   implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine);
 }
@@ -386,6 +388,7 @@ void WindingNumberEvaluator::prepare_points() const { (void)implementation_->sca
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == static_cast<std::size_t>(block.size()));
+  const DefaultFloatingPoint guard;  // scaling must not flush what is tiny
   std::array<std::vector<double>, 3> coordinates;
   bool exact = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -414,6 +417,7 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
+  const DefaultFloatingPoint guard;
   const std::vector<std::size_t> order = coherent_order(implementation_->scaled, points);
   TallySum total;
   parallel_for(points.size(), 4 * kTile, [&](std::size_t begin, std::size_t end) {

@@ -60,7 +60,10 @@ def evaluation(results, what, meshes, threads):
         raycone, _ = results[f"{what}/{mesh}/raycone/{threads}"]
         paper, check = results[f"{what}/{mesh}/paper/{threads}"]
         edges, samples = check["exterior_edges"], check["samples"]
-        prepare, paper_prepare = (results[f"prepare/{mesh}/{method}/{threads}"][0] for method in ("raycone", "paper"))
+        preparation_for = "prepare_points" if what == "points" else "prepare"
+        prepare, paper_prepare = (
+            results[f"{preparation_for}/{mesh}/{method}/{threads}"][0] for method in ("raycone", "paper")
+        )
         total = (paper_prepare + paper) / (prepare + raycone)
         per_edge = [f"{1e6 * time / (edges * samples):.2f}" if edges else "-" for time in (raycone, paper)]
         rows.append(

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Every shared mesh through the executable: python3 tests/shared_meshes_test.py RAYCONE MESHES
+
+Meshes that should load become a VDB whose transform and values, read by pyopenvdb, are those of the CSV. The others get
+one line on standard error and exit status 2, and leave no output. Exit status 77 where meshes or pyopenvdb are absent.
+"""
+
+import csv
+import math
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+
+try:
+    import pyopenvdb
+except ImportError:
+    print("no pyopenvdb: skipped")
+    sys.exit(77)
+
+raycone, meshes = sys.argv[1:]
+manifest = os.path.join(meshes, "MANIFEST.csv")
+if not os.path.exists(manifest):
+    print(f"no {manifest}: skipped")
+    sys.exit(77)
+
+RESOLUTION = "12"
+LOADS_ALL_THE_SAME = {"trimesh__notenoughindices.obj"}  # one good triangle, and a face of two corners
+MAY_BE_EITHER = {"meshoptimizer__pirate.glb", "pmp-library__beetle.off"}
+TOO_SMALL_FOR_VDB = {"derived/spot_tiny_1e-9.obj"}
+failures = []
+
+
+def run(*arguments):
+    return subprocess.run([raycone, *arguments], capture_output=True, text=True, check=False)
+
+
+def expect(condition, mesh, what):
+    if not condition:
+        failures.append(f"{mesh}: {what}")
+
+
+def as_float(value):
+    return struct.unpack("f", struct.pack("f", value))[0]
+
+
+def compare(mesh, vdb, text, tolerance):
+    grid = pyopenvdb.read(vdb, "winding")
+    values = grid.getConstAccessor()
+    rows = csv.DictReader(text.splitlines())
+    for row in rows:
+        index = (int(row["i"]), int(row["j"]), int(row["k"]))
+        if values.getValue(index) != as_float(float(row["w"])):
+            return expect(False, mesh, f"value at {index} is {values.getValue(index)}, in the CSV {row['w']}")
+        world = grid.transform.indexToWorld(index)
+        for axis, name in enumerate("xyz"):
+            if abs(world[axis] - float(row[name])) > tolerance:
+                return expect(False, mesh, f"position of {index} is {world}, in the CSV {row}")
+    return expect(rows.line_num > 1, mesh, "empty CSV")
+
+
+def check_good(mesh, path, folder):
+    vdb = os.path.join(folder, "out.vdb")
+    options = ["--resolution", RESOLUTION, "--quiet"]
+    if mesh in TOO_SMALL_FOR_VDB:
+        refused = run("lattice", path, "-o", vdb, *options)
+        expect(refused.returncode == 3 and "--scale" in refused.stderr, mesh, f"expected a hint at --scale: {refused}")
+        expect(not os.path.exists(vdb), mesh, "refused, but there is output")
+        options += ["--scale", "1e9"]
+    made = run("lattice", path, "-o", vdb, *options)
+    text = run("lattice", path, "-o", "-", *options)
+    expect(made.returncode == 0 and text.returncode == 0, mesh, f"{made.returncode} {made.stderr}{text.stderr}")
+    if made.returncode == 0 and text.returncode == 0:
+        numbers = [abs(float(row[name])) for row in csv.DictReader(text.stdout.splitlines()) for name in "xyz"]
+        # Position = origin + index * spacing, rounded in another order by OpenVDB: some units in the last place.
+        compare(mesh, vdb, text.stdout, 8 * math.ulp(max(numbers)))
+        os.remove(vdb)
+
+
+def check_bad(mesh, path, folder):
+    vdb = os.path.join(folder, "bad.vdb")
+    result = run("lattice", path, "-o", vdb)
+    expect(result.returncode == 2, mesh, f"exit status {result.returncode}, expected 2")
+    expect(result.stderr.startswith(f"raycone: {path}"), mesh, f"message {result.stderr!r}")
+    expect(result.stderr.count("\n") == 1, mesh, f"expected one line: {result.stderr!r}")
+    expect(not os.listdir(folder), mesh, f"left behind: {os.listdir(folder)}")
+
+
+count = 0
+with tempfile.TemporaryDirectory() as scratch, open(manifest, encoding="utf-8") as lines:
+    for row in csv.DictReader(lines):
+        name = row["file"]
+        if name in MAY_BE_EITHER:
+            continue
+        good = row["expect"].startswith("load") or name in LOADS_ALL_THE_SAME
+        (check_good if good else check_bad)(name, os.path.join(meshes, name), scratch)
+        count += 1
+print("\n".join(failures))
+print(f"{count} meshes, {len(failures)} failures")
+sys.exit(1 if failures else 0)

@@ -17,7 +17,8 @@ if [ ! -f "$meshes/MANIFEST.csv" ]; then
 fi
 
 list=$(mktemp)
-trap 'rm -f "$list"' EXIT
+table=$(mktemp)
+trap 'rm -f "$list" "$table"' EXIT
 python3 - "$meshes" "$quick" >"$list" <<'END'
 import csv, sys
 folder, quick = sys.argv[1:]
@@ -51,7 +52,7 @@ the rounding of the oracle.
 END
   status=0
   xargs -d '\n' "$tool" <"$list" || status=$?
-} >docs/accuracy.md.new
-mv docs/accuracy.md.new docs/accuracy.md
+} >"$table"
+cat "$table" >docs/accuracy.md
 tail -n 1 docs/accuracy.md
 exit "$status"

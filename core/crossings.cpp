@@ -100,12 +100,12 @@ TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
 TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,
                                    const TrianglePlane* plane) {
   TriangleCrossing result;
-  if (!box_meets_line(a, b, c, row)) return result;
   const Vec3 line = row.query(0);  // sides depend on y and z alone
   const EdgeSide ab = edge_side(a, b, line), bc = edge_side(b, c, line), ca = edge_side(c, a, line);
   const bool crossed = ab.sign != 0 && bc.sign == ab.sign && ca.sign == ab.sign;
   result.ties = ab.tie + bc.tie + ca.tie;
   if (!crossed && result.ties == 0) return result;
+  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle
   if (result.ties > 0) result.met = count_up_to(row.xs, row.samples_per_unit, SpanX(a, b, c).upper);
   if (crossed) {
     result.sigma = ab.sign;

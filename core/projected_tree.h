@@ -1,6 +1,8 @@
 // Candidate triangles of rays along +x, by a packed tree over the triangles' projections along the ray.
 #pragma once
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -63,6 +65,22 @@ class ProjectedTree {
   std::vector<std::uint32_t> triangles_;
   std::vector<Level> levels_;
 };
+
+inline unsigned ProjectedTree::Node::met_by(const Rays& rays) const {
+  const __m128 x = _mm_set1_ps(rays.lower_x);
+  const __m128 first_y = _mm_set1_ps(rays.lower_y), last_y = _mm_set1_ps(rays.upper_y);
+  const __m128 first_z = _mm_set1_ps(rays.lower_z), last_z = _mm_set1_ps(rays.upper_z);
+  unsigned met = 0;
+  for (std::size_t i = 0; i < kWidth; i += 4) {  // SSE2, which every x86-64 has
+    const __m128 in_y =
+        _mm_and_ps(_mm_cmpge_ps(last_y, _mm_load_ps(&lower_y[i])), _mm_cmple_ps(first_y, _mm_load_ps(&upper_y[i])));
+    const __m128 in_z =
+        _mm_and_ps(_mm_cmpge_ps(last_z, _mm_load_ps(&lower_z[i])), _mm_cmple_ps(first_z, _mm_load_ps(&upper_z[i])));
+    const __m128 ahead = _mm_cmple_ps(x, _mm_load_ps(&upper_x[i]));
+    met |= static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(_mm_and_ps(in_y, in_z), ahead))) << i;
+  }
+  return met;
+}
 
 template <class Visit>
 void ProjectedTree::descend(const Rays& rays, const Visit& visit) const {

@@ -34,7 +34,7 @@ MUTANTS = [
         ("core/winding_number.cpp", "on_surface[i] = true;", "on_surface[i] = !on_surface[i];"),
         ("core/winding_number.cpp", "diagnostics.on_surface[i] = 1;", "diagnostics.on_surface[i] ^= 1;")]),
     Mutant("degenerate_without_box", "ties count for triangles whose closed box meets the closed ray", [
-        ("core/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return result;\n", "")]),
+        ("core/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle\n", "")]),
 
     # --- Exact signs, shared ---
     Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [

@@ -1,0 +1,28 @@
+// All commands: what each accepts and how its values become a Command.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/command_spec.h"
+#include "app/options.h"
+#include "app/values.h"
+
+namespace raycone {
+
+struct CommandEntry {
+  CommandSpec spec;
+  Command (*parse)(const Values&);  // throws UsageError
+};
+
+// In the order of the help.
+[[nodiscard]] const std::vector<CommandEntry>& commands();
+
+// raycone itself: the options that need no command.
+[[nodiscard]] const CommandSpec& program_spec();
+
+// Commands that are promised but do not exist yet: recognised, listed nowhere.
+[[nodiscard]] const std::set<std::string>& later_commands();
+
+}  // namespace raycone

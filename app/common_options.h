@@ -1,0 +1,31 @@
+// The options that commands share, with their conversion.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/command_spec.h"
+#include "app/options.h"
+#include "app/values.h"
+
+namespace raycone {
+
+[[nodiscard]] OperandSpec mesh_operand();
+[[nodiscard]] OptionGroup mesh_group();
+[[nodiscard]] MeshOptions parse_mesh(const Values& values);
+
+// `formats` stands for the value of --format in the help.
+[[nodiscard]] OptionGroup output_group(const std::string& formats);
+
+// The formats that a command writes, and the one that it will.
+struct OutputFormats {
+  std::vector<FieldFormat> written;
+  std::string listed;  // for messages
+  std::string later;
+};
+[[nodiscard]] OutputOptions parse_output(const Values& values, const OutputFormats& formats);
+
+[[nodiscard]] OptionGroup run_group();
+[[nodiscard]] RunOptions parse_run(const Values& values);
+
+}  // namespace raycone

@@ -1,0 +1,19 @@
+// raycone lattice: its options, and those of its box, which others share.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "app/command_spec.h"
+#include "app/options.h"
+#include "app/values.h"
+
+namespace raycone {
+
+[[nodiscard]] CommandSpec lattice_spec();
+[[nodiscard]] Command parse_lattice(const Values& values);
+
+[[nodiscard]] OptionGroup lattice_group();
+[[nodiscard]] std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values);
+
+}  // namespace raycone

@@ -1,0 +1,40 @@
+// The values of one command's options and operands, and their conversion. They stay strings until here, so that the
+// rules of parse_value.h hold for all of them.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace raycone {
+
+class Values {
+ public:
+  // What was given by the long name of the option, or the operand's name: of an option, the last value counts.
+  explicit Values(std::map<std::string, std::vector<std::string>> given) : given_(std::move(given)) {}
+
+  [[nodiscard]] bool given(const std::string& name) const { return given_.contains(name); }
+  [[nodiscard]] std::string text(const std::string& name) const;                // empty if not given
+  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;  // of operands that may be many
+
+  // Throw UsageError for any other value.
+  [[nodiscard]] double positive(const std::string& name) const;
+  [[nodiscard]] std::int64_t integer(const std::string& name, std::int64_t least, std::int64_t most) const;
+
+  // Throws UsageError if `name` is given together with one of `others`.
+  void exclude(const std::string& name, std::initializer_list<const char*> others) const;
+
+ private:
+  std::map<std::string, std::vector<std::string>> given_;
+};
+
+[[noreturn]] void invalid(const std::string& name, const std::string& text, const std::string& expected);
+[[noreturn]] void not_available(const std::string& what);
+
+// Where to read on, to be put behind a message; an empty `command` is raycone itself.
+[[nodiscard]] std::string help_hint(const std::string& command);
+
+}  // namespace raycone

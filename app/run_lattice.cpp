@@ -1,0 +1,112 @@
+// Straight lines: output opened, mesh read, welded, evaluator built, samples evaluated and written.
+#include "app/run_lattice.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "app/lattice_choice.h"
+#include "app/limits.h"
+#include "app/progress.h"
+#include "app/sample_values.h"
+#include "app/slabs.h"
+#include "app/stopwatch.h"
+#include "app/verify.h"
+#include "core/weld.h"
+#include "core/winding_number.h"
+#include "io/field_writer.h"
+#include "io/output_file.h"
+#include "io/read_vdb.h"
+
+namespace raycone {
+namespace {
+
+Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  if (const auto* grid = std::get_if<GridReference>(&command.lattice)) return read_vdb_lattice(grid->path, grid->name);
+  return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
+}
+
+FieldDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
+  FieldDescription description;
+  description.mesh = std::filesystem::path(report.mesh).filename().string();
+  description.mesh_sha256 = report.sha256;
+  description.faces = report.faces;
+  description.exterior_edges = report.exterior_edges;
+  description.double_precision = output.double_precision;
+  description.diagnostics = field.diagnostics;
+  return description;
+}
+
+LatticeBlock first_slab(const Lattice& lattice, const LatticeWriter& writer) {
+  const int axis = writer.slab_axis();
+  return slab_from(lattice, axis, writer.slab_alignment(), lattice.index_min[static_cast<std::size_t>(axis)]);
+}
+
+// Refuses lattices that cannot fit, before any work on them.
+std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, OutputFile& output, const RunReport& report,
+                                           const RunLimits& limits) {
+  const Lattice& lattice = *report.lattice;
+  const FieldFormat format = command.output.format;
+  const FieldDescription description = description_of(report, command.field, command.output);
+  check_memory(report.mesh, writer_memory(lattice, format, description), limits.memory());
+  std::unique_ptr<LatticeWriter> writer = make_lattice_writer(format, output, lattice, description);
+  check_memory(report.mesh, slab_memory(first_slab(lattice, *writer), description.diagnostics), limits.memory());
+  return writer;
+}
+
+LatticeBlock slab_behind(const LatticeBlock& slab, const Lattice& lattice, const LatticeWriter& writer) {
+  const auto axis = static_cast<std::size_t>(writer.slab_axis());
+  return slab_from(lattice, writer.slab_axis(), writer.slab_alignment(), slab.first[axis] + slab.counts[axis]);
+}
+
+void evaluate_lattice(const WindingNumberEvaluator& evaluator, LatticeWriter& writer, SampleValues& samples,
+                      SampleDraw& draw, Progress& progress, RunReport& report) {
+  const Lattice& lattice = *report.lattice;
+  for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
+    samples.resize(static_cast<std::size_t>(slab.size()));
+    report.tally += timed(report.seconds.evaluate, [&] {
+      return evaluator.evaluate(lattice, slab, samples.values(), progress.done(), samples.diagnostics());
+    });
+    draw.offer(lattice, slab, samples.values());
+    timed(report.seconds.write, [&] { writer.write(slab, samples.values(), samples.diagnostics()); });
+  }
+}
+
+}  // namespace
+
+RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
+  RunReport report = report_on(command.mesh, command.output, limits);
+  auto total = std::make_optional<Stopwatch>(report.seconds.total);
+  OutputFile output(command.output.path, command.output.no_clobber);
+
+  MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
+  describe(file, report);
+  TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
+  report.warnings = std::move(file.parsed.warnings);
+  file.parsed.mesh = {};
+  report.lattice = lattice_for(command, mesh, report.warnings);
+  report.samples = sample_count(*report.lattice);
+  warn(report.warnings, command.run, command.mesh.path);
+
+  const TriangleMesh original = mesh_to_verify(mesh, command.field);
+  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
+  report.exterior_edges = evaluator.exterior_edges();
+  const std::unique_ptr<LatticeWriter> writer = open_writer(command, output, report, limits);
+
+  Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
+  SampleValues samples(command.field.diagnostics);
+  SampleDraw draw(command.field.verify);
+  evaluate_lattice(evaluator, *writer, samples, draw, progress, report);
+  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
+  timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
+  progress.stop();
+  total.reset();
+  report.peak_memory_bytes = peak_memory();
+  return report;
+}
+
+}  // namespace raycone

@@ -1,0 +1,79 @@
+// Straight lines: output and points opened, mesh read, welded, evaluator built, batches evaluated and written.
+#include "app/run_points.h"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/limits.h"
+#include "app/progress.h"
+#include "app/sample_values.h"
+#include "app/stopwatch.h"
+#include "app/verify.h"
+#include "core/weld.h"
+#include "core/winding_number.h"
+#include "io/field_writer.h"
+#include "io/output_file.h"
+#include "io/read_points.h"
+
+namespace raycone {
+namespace {
+
+// Points evaluated at a time.
+constexpr std::size_t kPointBatch = std::size_t{1} << 18;
+
+// Answers are handed on whenever the next question would have to be waited for.
+void evaluate_points(const WindingNumberEvaluator& evaluator, PointReader& reader, PointWriter& writer,
+                     SampleValues& samples, SampleDraw& draw, Progress& progress, RunReport& report) {
+  std::vector<Vec3> points;
+  for (;;) {
+    if (reader.would_block()) writer.flush();
+    if (!timed(report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
+    samples.resize(points.size());
+    report.tally += timed(report.seconds.evaluate, [&] {
+      return evaluator.evaluate(points, samples.values(), progress.done(), samples.diagnostics());
+    });
+    draw.offer(points, samples.values());
+    timed(report.seconds.write, [&] { writer.write(points, samples.values(), samples.diagnostics()); });
+    report.samples += points.size();
+  }
+}
+
+}  // namespace
+
+RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
+  RunReport report = report_on(command.mesh, command.output, limits);
+  auto total = std::make_optional<Stopwatch>(report.seconds.total);
+  OutputFile output(command.output.path, command.output.no_clobber);
+  const std::unique_ptr<PointReader> reader =
+      timed(report.seconds.read, [&] { return open_points(command.points, command.reading); });
+
+  MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
+  describe(file, report);
+  report.warnings = std::move(file.parsed.warnings);
+  warn(report.warnings, command.run, command.mesh.path);
+  TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
+  file.parsed.mesh = {};
+
+  const TriangleMesh original = mesh_to_verify(mesh, command.field);
+  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
+  timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
+  report.exterior_edges = evaluator.exterior_edges();
+  const std::unique_ptr<PointWriter> writer =
+      make_point_writer(command.output.format, output, reader->size(), command.field.diagnostics);
+
+  Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), reader->size());
+  SampleValues samples(command.field.diagnostics);
+  SampleDraw draw(command.field.verify);
+  evaluate_points(evaluator, *reader, *writer, samples, draw, progress, report);
+  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
+  timed(report.seconds.write, [&] { writer->finish(); });
+  progress.stop();
+  total.reset();
+  report.peak_memory_bytes = peak_memory();
+  return report;
+}
+
+}  // namespace raycone

@@ -1,0 +1,55 @@
+// Steps that several commands take.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/options.h"
+#include "app/report.h"
+#include "core/threads.h"
+#include "core/triangle_mesh.h"
+#include "io/output_file.h"
+#include "io/read_mesh.h"
+
+namespace raycone {
+
+// The limits of a run on `mesh`, in force while this lives. One at a time.
+class RunLimits {
+ public:
+  RunLimits(const RunOptions& options, const std::string& mesh);
+
+  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] std::uint64_t memory() const { return memory_; }  // bytes
+
+ private:
+  int threads_;
+  std::uint64_t memory_;
+  ThreadLimit thread_limit_;
+};
+
+// Throws UsageError where output or report would replace one of `inputs` or each other: a slip of the keyboard must not
+// cost the user an input.
+void refuse_to_replace_input(const OutputOptions& output, const std::vector<std::string>& inputs);
+
+// Null where no report is asked for. Throws OutputError.
+[[nodiscard]] std::unique_ptr<OutputFile> open_report(const OutputOptions& output);
+
+// Throws InputError, LimitError where the file alone is too large for the memory.
+[[nodiscard]] MeshFile read(const MeshOptions& mesh, const RunLimits& limits);
+
+// A report that says what was asked for; what comes out of it is yet to be filled in.
+[[nodiscard]] RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const RunLimits& limits);
+void describe(const MeshFile& file, RunReport& report);
+
+// Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
+void warn(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh);
+
+// The mesh that verification will need beside the evaluator's own; empty where none is asked for.
+[[nodiscard]] TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field);
+
+// Writes `report` to `report_file`, if there is one, and prints its summary. Throws OutputError.
+void publish(const RunReport& report, const RunOptions& options, OutputFile* report_file);
+
+}  // namespace raycone

@@ -1,6 +1,4 @@
 // The lattice of an OpenVDB grid: its transform, and the extent that raycone recorded or that its active voxels have.
-#include "io/read_vdb.h"
-
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "io/file_error.h"
+#include "io/vdb_module.h"
 
 namespace raycone {
 namespace {
@@ -118,7 +117,7 @@ openvdb::CoordBBox read_extent(const std::string& path, const openvdb::GridBase&
   return active ? *active : read_whole(path, wanted)->evalActiveVoxelBoundingBox();
 }
 
-Lattice read_lattice(const std::string& path, const std::string& wanted) {
+Lattice read(const std::string& path, const std::string& wanted) {
   HeadReader reader(path);
   const openvdb::GridBase::ConstPtr head = reader.has_offsets() ? reader.read(wanted) : read_whole(path, wanted);
   Lattice lattice;
@@ -135,14 +134,14 @@ Lattice read_lattice(const std::string& path, const std::string& wanted) {
 
 }  // namespace
 
-Lattice read_vdb_lattice(const std::string& path, const std::string& name) {
+Lattice vdb::read_lattice(const std::string& path, const std::string& name) {
   std::error_code status;
   if (!std::filesystem::is_regular_file(path, status)) {
     throw InputError(path + ": cannot read: " + (status ? status.message() : "not a regular file"));
   }
   openvdb::initialize();
   try {
-    return read_lattice(path, name);
+    return read(path, name);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {  // OpenVDB's own and the standard library's

@@ -20,9 +20,9 @@
 
 #include "core/threads.h"
 #include "io/file_error.h"
-#include "io/format_writers.h"
 #include "io/read_file.h"
 #include "io/spool_file.h"
+#include "io/vdb_module.h"
 
 namespace raycone {
 namespace {
@@ -398,8 +398,8 @@ class VdbWriter final : public LatticeWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                       const FieldDescription& description) {
+std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                        const FieldDescription& description) {
   check_indices(lattice, output.name());
   check_voxel_volume(lattice.spacing, output.name());
   openvdb::initialize();

@@ -1,0 +1,40 @@
+// Reading and writing of OpenVDB files, by the module that is loaded when the first one is asked for.
+#include <dlfcn.h>
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+#include "io/file_error.h"
+#include "io/format_writers.h"
+#include "io/read_vdb.h"
+#include "io/vdb_module.h"
+
+namespace raycone {
+namespace {
+
+// `name`: the file that asks for it. Throws Error where the module cannot be loaded.
+template <class Error>
+const vdb::Module& vdb_module(const std::string& name) {
+  // Sought where the executable's RPATH points (CMakeLists.txt). Bound lazily: OpenVDB has tens of thousands of
+  // functions. Stays loaded to the end.
+  void* const library = dlopen(vdb::kModuleFile, RTLD_LAZY | RTLD_LOCAL);
+  const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
+  if (symbol) return *static_cast<const vdb::Module*>(symbol);
+  const std::string reason = dlerror();
+  if (reason.ends_with(std::strerror(ENOMEM))) throw std::bad_alloc();
+  throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + reason);
+}
+
+}  // namespace
+
+std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                       const FieldDescription& description) {
+  return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
+}
+
+Lattice read_vdb_lattice(const std::string& path, const std::string& name) {
+  return vdb_module<InputError>(path).read(path, name);
+}
+
+}  // namespace raycone

@@ -1,5 +1,6 @@
 #include "app/field_options.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,13 +12,29 @@
 namespace raycone {
 namespace {
 
-const std::set<std::string_view> kLaterFields{"inside", "density", "sdf"};
+constexpr const char* kRules = "threshold=T, abs=T, nonzero, positive or odd";
+
+const std::set<std::string_view> kLaterFields{"sdf"};
+
+std::vector<Field> parse_fields(const Values& values) {
+  std::vector<Field> fields;
+  const std::string text = values.text("--field");
+  for (const std::string_view name : items_of(text)) {
+    if (kLaterFields.contains(name)) not_available("--field " + std::string(name));
+    const std::optional<Field> field = field_from_name(name);
+    if (!field) invalid("--field", text, "one or more of winding, inside, density");
+    if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
+    fields.push_back(*field);
+  }
+  return fields;
+}
 
 }  // namespace
 
 OptionGroup field_group() {
   return {"Field",
-          {{"--field", "winding", "The winding number w (default)"},
+          {{"--field", "F[,F...]", "winding (default), inside (whether the rule holds), density (w clamped to 0..1)"},
+           {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value"},
            {"--verify", "N", "Check N samples against direct sums in 113 bits: 2.7 us per triangle and sample"}}};
 }
@@ -25,23 +42,21 @@ OptionGroup field_group() {
 // Exact is all there is: 0, the default, is accepted for scripts that state it.
 OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
 
-OptionNames later_field_options() { return {{"--rule", "--band", "--engine", "--simd", "--depfile"}, {}}; }
+OptionNames later_field_options() { return {{"--band", "--engine", "--simd", "--depfile"}, {}}; }
 
 FieldOptions parse_field(const Values& values) {
-  if (values.given("--field")) {
-    const std::string text = values.text("--field");
-    const std::vector<std::string_view> fields = items_of(text);
-    for (const std::string_view field : fields) {
-      if (field != "winding" && !kLaterFields.contains(field)) invalid("--field", text, "winding");
-    }
-    if (text != "winding") not_available("--field " + text);
-  }
   if (values.given("--tolerance")) {
     const std::optional<double> tolerance = number_from(values.text("--tolerance"));
     if (!tolerance || *tolerance < 0.0) invalid("--tolerance", values.text("--tolerance"), "0");
     if (*tolerance > 0.0) not_available("--tolerance " + values.text("--tolerance"));
   }
   FieldOptions options;
+  if (values.given("--field")) options.fields = parse_fields(values);
+  if (values.given("--rule")) {
+    const std::optional<Rule> rule = rule_from_name(values.text("--rule"));
+    if (!rule) invalid("--rule", values.text("--rule"), kRules);
+    options.rule = *rule;
+  }
   options.diagnostics = values.given("--diagnostics");
   constexpr std::int64_t kMaxVerified = 1'000'000'000;
   if (values.given("--verify")) {

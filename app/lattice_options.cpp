@@ -58,6 +58,14 @@ GridReference parse_like(const std::string& text) {
   return {text.substr(0, end + 4), text.substr(end + 5)};
 }
 
+// An array of a lattice has one axis per axis of the lattice.
+void check_npy(const LatticeCommand& command) {
+  if (command.output.format != FieldFormat::kNpy) return;
+  constexpr const char* kReason = "npy holds one number per sample, expected vdb or csv";
+  if (command.field.diagnostics) throw UsageError(std::string("--diagnostics: ") + kReason);
+  if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
+}
+
 OptionNames later_options() {
   OptionNames names = later_field_options();
   names.with_value.insert("--grid-name");
@@ -118,9 +126,7 @@ Command parse_lattice(const Values& values) {
   command.output =
       parse_output(values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy}, "vdb, csv or npy", "vti"});
   command.output.double_precision = values.given("--double");
-  if (command.field.diagnostics && command.output.format == FieldFormat::kNpy) {
-    throw UsageError("--diagnostics: npy holds one number per sample, expected vdb or csv");
-  }
+  check_npy(command);
   return command;
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/fields.h"
 #include "app/lattice_choice.h"
 #include "app/progress.h"
 #include "core/weld.h"
@@ -37,11 +38,6 @@ struct OutputOptions {
   bool double_precision = false;
   bool no_clobber = false;
   std::optional<std::string> report;
-};
-
-struct FieldOptions {
-  bool diagnostics = false;
-  std::uint64_t verify = 0;  // samples to be computed again as direct sums
 };
 
 // A grid of an OpenVDB file; an empty name is its only or first one.

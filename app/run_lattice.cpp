@@ -1,7 +1,6 @@
 // Straight lines: output opened, mesh read, welded, evaluator built, samples evaluated and written.
 #include "app/run_lattice.h"
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "app/fields.h"
 #include "app/lattice_choice.h"
 #include "app/limits.h"
 #include "app/progress.h"
-#include "app/sample_values.h"
 #include "app/slabs.h"
 #include "app/stopwatch.h"
 #include "app/verify.h"
@@ -30,17 +29,6 @@ Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std
   return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
 }
 
-FieldDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
-  FieldDescription description;
-  description.mesh = std::filesystem::path(report.mesh).filename().string();
-  description.mesh_sha256 = report.sha256;
-  description.faces = report.faces;
-  description.exterior_edges = report.exterior_edges;
-  description.double_precision = output.double_precision;
-  description.diagnostics = field.diagnostics;
-  return description;
-}
-
 LatticeBlock first_slab(const Lattice& lattice, const LatticeWriter& writer) {
   const int axis = writer.slab_axis();
   return slab_from(lattice, axis, writer.slab_alignment(), lattice.index_min[static_cast<std::size_t>(axis)]);
@@ -51,10 +39,10 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, Output
                                            const RunLimits& limits) {
   const Lattice& lattice = *report.lattice;
   const FieldFormat format = command.output.format;
-  const FieldDescription description = description_of(report, command.field, command.output);
+  const OutputDescription description = description_of(report, command.field, command.output);
   check_memory(report.mesh, writer_memory(lattice, format, description), limits.memory());
   std::unique_ptr<LatticeWriter> writer = make_lattice_writer(format, output, lattice, description);
-  check_memory(report.mesh, slab_memory(first_slab(lattice, *writer), description.diagnostics), limits.memory());
+  check_memory(report.mesh, slab_memory(first_slab(lattice, *writer), command.field), limits.memory());
   return writer;
 }
 
@@ -63,16 +51,17 @@ LatticeBlock slab_behind(const LatticeBlock& slab, const Lattice& lattice, const
   return slab_from(lattice, writer.slab_axis(), writer.slab_alignment(), slab.first[axis] + slab.counts[axis]);
 }
 
-void evaluate_lattice(const WindingNumberEvaluator& evaluator, LatticeWriter& writer, SampleValues& samples,
+void evaluate_lattice(const WindingNumberEvaluator& evaluator, LatticeWriter& writer, FieldSamples& samples,
                       SampleDraw& draw, Progress& progress, RunReport& report) {
   const Lattice& lattice = *report.lattice;
   for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
     samples.resize(static_cast<std::size_t>(slab.size()));
     report.tally += timed(report.seconds.evaluate, [&] {
-      return evaluator.evaluate(lattice, slab, samples.values(), progress.done(), samples.diagnostics());
+      return evaluator.evaluate(lattice, slab, samples.winding_numbers(), progress.done(), samples.diagnostics());
     });
-    draw.offer(lattice, slab, samples.values());
-    timed(report.seconds.write, [&] { writer.write(slab, samples.values(), samples.diagnostics()); });
+    timed(report.seconds.evaluate, [&] { samples.derive(); });
+    draw.offer(lattice, slab, samples.winding_numbers());
+    timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
   }
 }
 
@@ -98,7 +87,7 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, output, report, limits);
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
-  SampleValues samples(command.field.diagnostics);
+  FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_lattice(evaluator, *writer, samples, draw, progress, report);
   if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());

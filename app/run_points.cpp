@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/fields.h"
 #include "app/limits.h"
 #include "app/progress.h"
-#include "app/sample_values.h"
 #include "app/stopwatch.h"
 #include "app/verify.h"
 #include "core/weld.h"
@@ -26,17 +26,18 @@ constexpr std::size_t kPointBatch = std::size_t{1} << 18;
 
 // Answers are handed on whenever the next question would have to be waited for.
 void evaluate_points(const WindingNumberEvaluator& evaluator, PointReader& reader, PointWriter& writer,
-                     SampleValues& samples, SampleDraw& draw, Progress& progress, RunReport& report) {
+                     FieldSamples& samples, SampleDraw& draw, Progress& progress, RunReport& report) {
   std::vector<Vec3> points;
   for (;;) {
     if (reader.would_block()) writer.flush();
     if (!timed(report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
     samples.resize(points.size());
     report.tally += timed(report.seconds.evaluate, [&] {
-      return evaluator.evaluate(points, samples.values(), progress.done(), samples.diagnostics());
+      return evaluator.evaluate(points, samples.winding_numbers(), progress.done(), samples.diagnostics());
     });
-    draw.offer(points, samples.values());
-    timed(report.seconds.write, [&] { writer.write(points, samples.values(), samples.diagnostics()); });
+    timed(report.seconds.evaluate, [&] { samples.derive(); });
+    draw.offer(points, samples.winding_numbers());
+    timed(report.seconds.write, [&] { writer.write(points, samples.fields()); });
     report.samples += points.size();
   }
 }
@@ -61,11 +62,11 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
   timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
   report.exterior_edges = evaluator.exterior_edges();
-  const std::unique_ptr<PointWriter> writer =
-      make_point_writer(command.output.format, output, reader->size(), command.field.diagnostics);
+  const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size(),
+                                                                description_of(report, command.field, command.output));
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), reader->size());
-  SampleValues samples(command.field.diagnostics);
+  FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_points(evaluator, *reader, *writer, samples, draw, progress, report);
   if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());

@@ -63,6 +63,17 @@ void describe(const MeshFile& file, RunReport& report) {
   report.faces = file.parsed.mesh.triangles.size();
 }
 
+OutputDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
+  OutputDescription description;
+  description.fields = describe_fields(field);
+  description.mesh = std::filesystem::path(report.mesh).filename().string();
+  description.mesh_sha256 = report.sha256;
+  description.faces = report.faces;
+  description.exterior_edges = report.exterior_edges;
+  description.double_precision = output.double_precision;
+  return description;
+}
+
 void warn(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh) {
   for (const std::string& warning : warnings) {
     if (options.strict) throw InputError(mesh + ": " + warning + " (an error because of --strict)");

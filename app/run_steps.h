@@ -10,6 +10,7 @@
 #include "app/report.h"
 #include "core/threads.h"
 #include "core/triangle_mesh.h"
+#include "io/field_writer.h"
 #include "io/output_file.h"
 #include "io/read_mesh.h"
 
@@ -42,6 +43,10 @@ void refuse_to_replace_input(const OutputOptions& output, const std::vector<std:
 // A report that says what was asked for; what comes out of it is yet to be filled in.
 [[nodiscard]] RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const RunLimits& limits);
 void describe(const MeshFile& file, RunReport& report);
+
+// What the output will hold and say about itself; `report` is complete as far as the mesh and its edges go.
+[[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,
+                                               const OutputOptions& output);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void warn(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh);

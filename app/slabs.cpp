@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/sample_values.h"
-
 namespace raycone {
 namespace {
 
@@ -18,6 +16,30 @@ constexpr double kLeafVoxels = kLeafSide * kLeafSide * kLeafSide;
 std::int64_t floor_to_multiple(std::int64_t value, std::int64_t of) {
   const std::int64_t remainder = value % of;
   return value - (remainder < 0 ? remainder + of : remainder);
+}
+
+double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description) {
+  const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
+  const double samples = layer * static_cast<double>(lattice.counts[2]);
+  // Those of leaves that a surface through the whole lattice meets at least.
+  const double at_surface = kLeafVoxels * std::pow(samples / kLeafVoxels, 2.0 / 3.0);
+  const double blocks_in_the_making = kLeafSide * layer;
+  const bool open = description.exterior_edges > 0;
+  const double real_bytes = description.double_precision ? sizeof(double) : sizeof(float);
+  switch (field.kind) {
+    case FieldKind::kReal:
+    case FieldKind::kDensity:
+      return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
+    case FieldKind::kDistance:
+      return real_bytes * (at_surface + blocks_in_the_making);
+    case FieldKind::kBound:
+      return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
+    case FieldKind::kCount:
+      return sizeof(float) * blocks_in_the_making;
+    case FieldKind::kFlag:
+      return sizeof(std::uint8_t) * blocks_in_the_making;
+  }
+  return 0.0;
 }
 
 }  // namespace
@@ -34,23 +56,15 @@ LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment,
   return slab;
 }
 
-double slab_memory(const LatticeBlock& slab, bool diagnostics) {
-  return static_cast<double>(bytes_per_sample(diagnostics)) * static_cast<double>(slab.size());
+double slab_memory(const LatticeBlock& slab, const FieldOptions& options) {
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) * static_cast<double>(slab.size());
 }
 
-double writer_memory(const Lattice& lattice, FieldFormat format, const FieldDescription& description) {
+double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {
   if (format != FieldFormat::kVdb) return 0.0;
-  const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
-  const double samples = layer * static_cast<double>(lattice.counts[2]);
-  // Leaves that a surface through the whole lattice meets at least.
-  const double surface_leaves = std::pow(samples / kLeafVoxels, 2.0 / 3.0);
-  const bool closed = description.exterior_edges == 0;
-  const double value_bytes = description.double_precision ? sizeof(double) : sizeof(float);
-  const double values = value_bytes * ((closed ? surface_leaves * kLeafVoxels : samples) + kLeafSide * layer);
-  if (!description.diagnostics) return values;
-  constexpr double kBlocksInTheMaking = 3 * sizeof(float) + sizeof(std::uint8_t);
-  const double bounds = closed ? 0.0 : sizeof(float) * samples;
-  return values + bounds + kBlocksInTheMaking * kLeafSide * layer;
+  double bytes = 0.0;
+  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description);
+  return bytes;
 }
 
 }  // namespace raycone

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstddef>
 
-#include "app/sample_values.h"
+#include "app/fields.h"
 #include "core/direct_sum.h"
 #include "core/threads.h"
 
@@ -117,11 +117,13 @@ Verification verify(const std::string& name, const TriangleMesh& mesh, const Win
                     std::span<const DrawnSample> samples) {
   std::vector<Vec3> points;
   for (const DrawnSample& sample : samples) points.push_back(sample.point);
-  SampleValues repeated(/*with_diagnostics=*/true);
+  FieldOptions with_diagnostics;
+  with_diagnostics.diagnostics = true;
+  FieldSamples repeated(with_diagnostics);
   repeated.resize(points.size());
   const Diagnostics& diagnostics = *repeated.diagnostics();
-  evaluator.evaluate(points, repeated.values(), nullptr, &diagnostics);
-  check_repeated(name, samples, repeated.values());
+  evaluator.evaluate(points, repeated.winding_numbers(), nullptr, &diagnostics);
+  check_repeated(name, samples, repeated.winding_numbers());
 
   std::vector<Comparison> comparisons(samples.size());
   parallel_for(samples.size(), 1, [&](std::size_t begin, std::size_t end) {

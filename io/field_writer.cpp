@@ -18,7 +18,7 @@ std::optional<FieldFormat> field_format_from_name(std::string_view name) {
 }
 
 std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const Lattice& lattice,
-                                                   const FieldDescription& description) {
+                                                   const OutputDescription& description) {
   switch (format) {
     case FieldFormat::kVdb:
       return make_vdb_lattice_writer(output, lattice, description);
@@ -31,12 +31,13 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
 }
 
 std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
-                                               std::optional<std::uint64_t> size, bool diagnostics) {
+                                               std::optional<std::uint64_t> size,
+                                               const OutputDescription& description) {
   switch (format) {
     case FieldFormat::kCsv:
-      return make_csv_point_writer(output, diagnostics);
+      return make_csv_point_writer(output, description);
     case FieldFormat::kNpy:
-      return make_npy_point_writer(output, size, diagnostics);
+      return make_npy_point_writer(output, size, description);
     case FieldFormat::kVdb:
       break;  // holds lattices only; options are checked before anything is opened
   }

@@ -7,8 +7,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
-#include "core/diagnostics.h"
 #include "core/lattice.h"
 #include "core/vec3.h"
 #include "io/output_file.h"
@@ -20,17 +21,38 @@ enum class FieldFormat { kVdb, kCsv, kNpy };
 // "vdb", "csv" or "npy", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
 
-// What a file says about itself (VDB metadata).
+// What the numbers of a field are; formats choose how they store them.
+enum class FieldKind {
+  kReal,      // doubles; where 32 bits are the default, 64 on request
+  kDensity,   // likewise: a fog volume
+  kDistance,  // likewise: a level set, of magnitude `background` where it is not active
+  kBound,     // doubles, rounded up where 32 bits are stored
+  kCount,     // 64-bit integers
+  kFlag,      // 0 or 1
+};
+
+// One number per sample, and its names.
 struct FieldDescription {
-  std::string field = "winding";  // also the grid's name
-  std::string mesh;               // file name without directory
+  std::string name = "winding";  // in metadata
+  std::string column = "w";      // of a table
+  std::string grid = "winding";  // in VDB
+  FieldKind kind = FieldKind::kReal;
+  double background = 0.0;  // the value far away, where grids hold nothing
+  std::string rule;         // empty where the field has none: not written then
+};
+
+// What a file holds and says about itself.
+struct OutputDescription {
+  std::vector<FieldDescription> fields{{}};  // at least one
+  std::string mesh;                          // file name without directory
   std::string mesh_sha256;
-  std::string rule;  // empty where the field has none: not written then
   std::uint64_t faces = 0;
   std::uint64_t exterior_edges = 0;
   bool double_precision = false;  // DoubleGrid / float64 instead of float32
-  bool diagnostics = false;       // written too: further columns of CSV, further grids of VDB
 };
+
+// Numbers of one field: integers for kCount, bytes for kFlag, else doubles.
+using FieldValues = std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>>;
 
 // Known only when all values are.
 struct FieldTotals {
@@ -47,27 +69,25 @@ class LatticeWriter {
   [[nodiscard]] virtual int slab_axis() const = 0;
   // A slab that ends at multiples of this index (but for the last) is written best: 8 for VDB's leaves, else 1.
   [[nodiscard]] virtual std::int64_t slab_alignment() const = 0;
-  // values.size() == block.size(), x fastest, then y, then z. `diagnostics` are null unless the writer was made for
-  // them.
-  virtual void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics* diagnostics) = 0;
+  // Of each field of the description, in its order, block.size() numbers: x fastest, then y, then z.
+  virtual void write(const LatticeBlock& block, std::span<const FieldValues> fields) = 0;
   // Completes and commits the file. Throws OutputError.
   virtual void finish(const FieldTotals& totals) = 0;
 };
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
-// below 3e-15, indices beyond 32 bits). NPY holds one number per sample, hence no diagnostics.
+// below 3e-15, indices beyond 32 bits). NPY holds one field.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const Lattice& lattice,
-                                                                 const FieldDescription& description);
+                                                                 const OutputDescription& description);
 
-// Takes values at points, in their order. CSV: header "x,y,z,w", then a row per point; NPY: float64, shape (n,). With
-// diagnostics, CSV has columns for them and NPY the shape (n, 5): the value, crossings, degenerate, on_surface,
-// error_bound.
+// Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
+// float64, shape (n,), with several fields (n, fields).
 class PointWriter {
  public:
   virtual ~PointWriter() = default;
-  // `diagnostics` are null unless the writer was made for them.
-  virtual void write(std::span<const Vec3> points, std::span<const double> values, const Diagnostics* diagnostics) = 0;
+  // Of each field of the description, in its order, points.size() numbers.
+  virtual void write(std::span<const Vec3> points, std::span<const FieldValues> fields) = 0;
   // Hands what has been written to the system, for readers that wait for it.
   virtual void flush() = 0;
   virtual void finish() = 0;
@@ -75,6 +95,7 @@ class PointWriter {
 
 // format: kCsv or kNpy. `size`, where known, lets NPY be streamed to a pipe.
 [[nodiscard]] std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
-                                                             std::optional<std::uint64_t> size, bool diagnostics);
+                                                             std::optional<std::uint64_t> size,
+                                                             const OutputDescription& description);
 
 }  // namespace raycone

@@ -12,14 +12,15 @@
 namespace raycone {
 
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                                     const FieldDescription& description);
+                                                                     const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_csv_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                                     const FieldDescription& description);
+                                                                     const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                                     const FieldDescription& description);
+                                                                     const OutputDescription& description);
 
-[[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output, bool diagnostics);
+[[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output,
+                                                                 const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
-                                                                 bool diagnostics);
+                                                                 const OutputDescription& description);
 
 }  // namespace raycone

@@ -29,7 +29,7 @@ const vdb::Module& vdb_module(const std::string& name) {
 }  // namespace
 
 std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                       const FieldDescription& description) {
+                                                       const OutputDescription& description) {
   return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
 }
 

@@ -15,7 +15,7 @@ namespace raycone::vdb {
 
 // As make_vdb_lattice_writer() of io/format_writers.h.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                                 const FieldDescription& description);
+                                                                 const OutputDescription& description);
 // As read_vdb_lattice() of io/read_vdb.h.
 [[nodiscard]] Lattice read_lattice(const std::string& path, const std::string& name);
 

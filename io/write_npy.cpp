@@ -21,6 +21,8 @@ template <>
 constexpr const char* kDescriptor<float> = "<f4";
 template <>
 constexpr const char* kDescriptor<double> = "<f8";
+template <>
+constexpr const char* kDescriptor<std::uint8_t> = "|b1";  // flags: NumPy's bool is a byte
 
 // `shape` as Python writes a tuple. For one axis the header has the same length whatever the count.
 std::string npy_header(const std::string& descriptor, const std::string& shape) {
@@ -36,8 +38,8 @@ std::string npy_header(const std::string& descriptor, const std::string& shape) 
 }
 
 // The elements of an x-fastest block with z fastest instead, -0 as 0.
-template <typename Element>
-std::vector<Element> transposed(const LatticeBlock& block, std::span<const double> values) {
+template <typename Element, typename Number>
+std::vector<Element> transposed(const LatticeBlock& block, std::span<const Number> values) {
   constexpr std::size_t kTile = 16;  // a tile's cache lines on both sides fit in the first-level cache
   const auto nx = static_cast<std::size_t>(block.counts[0]);
   const auto ny = static_cast<std::size_t>(block.counts[1]);
@@ -51,7 +53,8 @@ std::vector<Element> transposed(const LatticeBlock& block, std::span<const doubl
           const std::size_t x_end = std::min(x_tile + kTile, nx);
           for (std::size_t x = x_tile; x < x_end; ++x) {
             for (std::size_t z = z_tile; z < z_end; ++z) {
-              elements[(x * ny + y) * nz + z] = static_cast<Element>(values[(z * ny + y) * nx + x]) + Element{0};
+              const auto element = static_cast<Element>(values[(z * ny + y) * nx + x]);
+              elements[(x * ny + y) * nz + z] = static_cast<Element>(element + Element{0});
             }
           }
         }
@@ -74,8 +77,9 @@ class NpyLatticeWriter final : public LatticeWriter {
   int slab_axis() const override { return 0; }
   std::int64_t slab_alignment() const override { return 1; }
 
-  void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics*) override {
-    const std::vector<Element> elements = transposed<Element>(block, values);
+  void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
+    const std::vector<Element> elements =
+        std::visit([&](const auto& values) { return transposed<Element>(block, values); }, fields.front());
     output_.write(elements.data(), elements.size() * sizeof(Element));
   }
 
@@ -85,14 +89,14 @@ class NpyLatticeWriter final : public LatticeWriter {
   OutputFile& output_;
 };
 
-// Rows of five: the value and its diagnostics.
-std::vector<double> interleaved(std::span<const double> values, const Diagnostics& diagnostics) {
-  std::vector<double> elements;
-  elements.reserve(5 * values.size());
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    elements.insert(elements.end(), {values[n], static_cast<double>(diagnostics.crossings[n]),
-                                     static_cast<double>(diagnostics.degenerate[n]),
-                                     static_cast<double>(diagnostics.on_surface[n]), diagnostics.error_bound[n]});
+// A row per sample: the number of each field.
+std::vector<double> interleaved(std::span<const FieldValues> fields, std::size_t samples) {
+  std::vector<double> elements(fields.size() * samples);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const auto store = [&](const auto& numbers) {
+      for (std::size_t n = 0; n < samples; ++n) elements[n * fields.size() + f] = static_cast<double>(numbers[n]);
+    };
+    std::visit(store, fields[f]);
   }
   return elements;
 }
@@ -100,8 +104,8 @@ std::vector<double> interleaved(std::span<const double> values, const Diagnostic
 // Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.
 class NpyPointWriter final : public PointWriter {
  public:
-  NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, bool diagnostics)
-      : output_(output), announced_(size), shape_end_(diagnostics ? ", 5)" : ",)") {
+  NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, std::size_t fields)
+      : output_(output), announced_(size), shape_end_(fields > 1 ? ", " + std::to_string(fields) + ")" : ",)") {
     if (announced_ || output_.seekable()) {
       write_header(announced_.value_or(0));
     } else {
@@ -109,13 +113,11 @@ class NpyPointWriter final : public PointWriter {
     }
   }
 
-  void write(std::span<const Vec3>, std::span<const double> values, const Diagnostics* diagnostics) override {
-    count_ += values.size();
-    if (diagnostics) {
-      append(interleaved(values, *diagnostics));
-    } else {
-      append(values);
-    }
+  void write(std::span<const Vec3> points, std::span<const FieldValues> fields) override {
+    count_ += points.size();
+    const auto* const reals = std::get_if<std::span<const double>>(&fields.front());
+    if (fields.size() == 1 && reals) return append(*reals);
+    append(interleaved(fields, points.size()));
   }
 
   void flush() override { output_.flush(); }
@@ -159,14 +161,18 @@ class NpyPointWriter final : public PointWriter {
 }  // namespace
 
 std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                       const FieldDescription& description) {
+                                                       const OutputDescription& description) {
+  if (description.fields.size() != 1) throw std::logic_error("NPY holds one field of a lattice");
+  if (description.fields.front().kind == FieldKind::kFlag) {
+    return std::make_unique<NpyLatticeWriter<std::uint8_t>>(output, lattice);
+  }
   if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice);
   return std::make_unique<NpyLatticeWriter<float>>(output, lattice);
 }
 
 std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
-                                                   bool diagnostics) {
-  return std::make_unique<NpyPointWriter>(output, size, diagnostics);
+                                                   const OutputDescription& description) {
+  return std::make_unique<NpyPointWriter>(output, size, description.fields.size());
 }
 
 }  // namespace raycone

@@ -1,6 +1,6 @@
-// OpenVDB grids of a field and its diagnostics on a lattice: index (i, j, k) is the sample's, background 0, active
-// where the stored value differs from 0. Blocks of 8^3 samples become leaves, or tiles where all samples are stored
-// alike.
+// OpenVDB grids of fields on a lattice: index (i, j, k) is the sample's, active where the stored value differs from the
+// background, in level sets from -background too. Blocks of 8^3 samples become leaves, or tiles where all samples are
+// stored alike.
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <streambuf>
 #include <string>
@@ -94,18 +93,19 @@ class LeafLayer {
   // How a value waits for its leaf: a vector of bool could not be written to by several threads.
   using Stored = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>;
 
-  explicit LeafLayer(const Lattice& lattice) : lattice_(lattice) {
+  LeafLayer(const Lattice& lattice, Value background, bool level_set)
+      : lattice_(lattice), background_(background), level_set_(level_set) {
     for (std::size_t a = 0; a < 2; ++a) {
       first_[a] = lattice.index_min[a] >> kLeafLog2;
       counts_[a] = (lattice.index_max(static_cast<int>(a)) >> kLeafLog2) - first_[a] + 1;
     }
-    values_.resize(leaf_count() * kLeafVoxels);
+    values_.assign(leaf_count() * kLeafVoxels, background_);
   }
 
   // Takes the planes z_begin <= z < z_end, all in this layer, from a slab of the lattice; store(number) is what is kept
   // of each sample's number.
   template <typename Number, typename Store>
-  void gather(const LatticeBlock& slab, std::span<Number> numbers, std::int64_t z_begin, std::int64_t z_end,
+  void gather(const LatticeBlock& slab, std::span<const Number> numbers, std::int64_t z_begin, std::int64_t z_end,
               const Store& store) {
     parallel_for(static_cast<std::size_t>(counts_[1]), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
@@ -125,14 +125,18 @@ class LeafLayer {
       const Stored value = values_[n * kLeafVoxels];
       if (leaves[n]) {
         accessor.addLeaf(leaves[n].release());
-      } else if (value != Stored{0}) {
-        accessor.addTile(1, origin(n, leaf_z), static_cast<Value>(value), true);
+      } else if (value != background_) {
+        accessor.addTile(1, origin(n, leaf_z), static_cast<Value>(value), is_active(value));
       }
     }
-    std::fill(values_.begin(), values_.end(), Stored{0});
+    std::fill(values_.begin(), values_.end(), background_);
   }
 
  private:
+  [[nodiscard]] bool is_active(Stored value) const {
+    return value != background_ && !(level_set_ && value == -background_);
+  }
+
   [[nodiscard]] std::size_t leaf_count() const { return static_cast<std::size_t>(counts_[0] * counts_[1]); }
 
   [[nodiscard]] openvdb::Coord origin(std::size_t n, std::int64_t leaf_z) const {
@@ -143,7 +147,7 @@ class LeafLayer {
 
   // The samples at height z of one row of leaf blocks along x.
   template <typename Number, typename Store>
-  void gather_row(const LatticeBlock& slab, std::span<Number> numbers, std::size_t row, std::int64_t z,
+  void gather_row(const LatticeBlock& slab, std::span<const Number> numbers, std::size_t row, std::int64_t z,
                   const Store& store) {
     const std::int64_t leaf_y = first_[1] + static_cast<std::int64_t>(row);
     const std::int64_t y_begin = std::max(leaf_y * kLeafSize, slab.first[1]);
@@ -169,10 +173,12 @@ class LeafLayer {
     if (std::all_of(begin + 1, end, [&](Stored value) { return value == *begin; })) return nullptr;
     auto leaf = std::make_unique<Leaf>(leaf_origin, Value{0}, false);
     typename Leaf::NodeMaskType active;
-    for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) active.set(i, begin[i] != Stored{0});
+    for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) active.set(i, is_active(begin[i]));
     leaf->setValueMask(active);
-    if constexpr (std::is_same_v<Value, bool>) {  // one bit a voxel, here that of its activity
-      leaf->buffer() = typename Leaf::Buffer(active);
+    if constexpr (std::is_same_v<Value, bool>) {  // one bit a voxel
+      typename Leaf::NodeMaskType on;
+      for (openvdb::Index32 i = 0; i < kLeafVoxels; ++i) on.set(i, begin[i] != 0);
+      leaf->buffer() = typename Leaf::Buffer(on);
     } else {
       std::copy(begin, end, leaf->buffer().data());
     }
@@ -180,6 +186,8 @@ class LeafLayer {
   }
 
   Lattice lattice_;
+  Stored background_;
+  bool level_set_;
   std::array<std::int64_t, 2> first_{};   // leaf coordinates along x and y
   std::array<std::int64_t, 2> counts_{};  // leaf blocks along x and y
   std::vector<Stored> values_;            // leaf by leaf, x fastest; in each leaf OpenVDB's order: z fastest
@@ -197,10 +205,22 @@ void insert(openvdb::GridBase& grid, const char* key, const openvdb::Coord& valu
   grid.insertMeta(key, openvdb::Vec3IMetadata(value.asVec3i()));
 }
 
-void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescription& description) {
+openvdb::GridClass class_of(FieldKind kind) {
+  if (kind == FieldKind::kDensity) return openvdb::GRID_FOG_VOLUME;
+  if (kind == FieldKind::kDistance) return openvdb::GRID_LEVEL_SET;
+  return openvdb::GRID_UNKNOWN;
+}
+
+void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescription& field,
+              const OutputDescription& description) {
+  grid.setName(field.grid);
+  grid.setTransform(transform_of(lattice));
+  if (const openvdb::GridClass grid_class = class_of(field.kind); grid_class != openvdb::GRID_UNKNOWN) {
+    grid.setGridClass(grid_class);
+  }
   insert(grid, "raycone_version", RAYCONE_VERSION);
-  insert(grid, "raycone_field", grid.getName());
-  if (!description.rule.empty()) insert(grid, "raycone_rule", description.rule);
+  insert(grid, "raycone_field", field.name);
+  if (!field.rule.empty()) insert(grid, "raycone_rule", field.rule);
   insert(grid, "raycone_mesh", description.mesh);
   insert(grid, "raycone_sha256", description.mesh_sha256);
   insert(grid, "raycone_index_min", to_coord(lattice.index_min[0], lattice.index_min[1], lattice.index_min[2]));
@@ -209,20 +229,95 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   insert(grid, "raycone_exterior_edges", description.exterior_edges);
 }
 
+// A bound as a float that still is one.
+float rounded_up(double bound) {
+  const float nearest = static_cast<float>(bound);
+  return static_cast<double>(nearest) < bound ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+                                              : nearest;
+}
+
+// The least value that is no narrower than the band, also as checkLevelSet measures it: in voxels.
+template <typename Value>
+Value level_set_background(double band_width, double voxel) {
+  auto background = static_cast<Value>(band_width);
+  while (static_cast<double>(background) / voxel < band_width / voxel) {
+    background = std::nextafter(background, std::numeric_limits<Value>::infinity());
+  }
+  return background;
+}
+
+template <typename Value>
+Value background_of(const FieldDescription& field, const Lattice& lattice) {
+  if constexpr (!std::is_same_v<Value, bool>) {
+    if (field.kind == FieldKind::kDistance) return level_set_background<Value>(field.background, lattice.spacing.x);
+    return static_cast<Value>(field.background);
+  } else {
+    return field.background != 0.0;
+  }
+}
+
+// A distance of `band_width` or more is stored as the background, a lesser one as a value of lesser magnitude.
+template <typename Value>
+Value stored_distance(double distance, double band_width, Value background) {
+  if (std::abs(distance) >= band_width) return distance < 0 ? -background : background;
+  const Value most = std::nextafter(background, Value{0});
+  return std::clamp(static_cast<Value>(distance), -most, most) + Value{0};
+}
+
 // One grid in the making.
-template <typename Grid>
 class GridBuilder {
  public:
-  GridBuilder(const std::string& name, const Lattice& lattice, const FieldDescription& description)
-      : lattice_(lattice), layer_(lattice), grid_(Grid::create()) {
-    grid_->setName(name);
-    grid_->setTransform(transform_of(lattice));
-    describe(*grid_, lattice, description);
+  virtual ~GridBuilder() = default;
+  // Takes the next slab of the lattice.
+  virtual void add(const LatticeBlock& slab, const FieldValues& values) = 0;
+  // The complete grid.
+  [[nodiscard]] virtual openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) = 0;
+};
+
+template <typename Grid>
+class TypedGridBuilder final : public GridBuilder {
+ public:
+  using Value = typename Grid::ValueType;
+
+  TypedGridBuilder(const FieldDescription& field, const Lattice& lattice, const OutputDescription& description)
+      : field_(field),
+        lattice_(lattice),
+        background_(background_of<Value>(field, lattice)),
+        layer_(lattice, background_, field.kind == FieldKind::kDistance),
+        grid_(Grid::create(background_)) {
+    describe(*grid_, lattice, field, description);
   }
 
-  // Takes the next slab of the lattice; store(number) is the voxel's value.
+  void add(const LatticeBlock& slab, const FieldValues& values) override {
+    std::visit([&](const auto& numbers) { add_numbers(slab, numbers); }, values);
+  }
+
+  openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) override {
+    insert(*grid_, "raycone_degenerate", totals.degenerate);
+    insert(*grid_, "raycone_on_surface", totals.on_surface);
+    openvdb::tools::pruneTiles(grid_->tree());
+    return grid_;
+  }
+
+ private:
+  template <typename Number>
+  void add_numbers(const LatticeBlock& slab, std::span<const Number> numbers) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      gather(slab, numbers, [](Number flag) { return static_cast<std::uint8_t>(flag); });
+    } else if (field_.kind == FieldKind::kBound) {
+      gather(slab, numbers, [](Number bound) { return static_cast<Value>(rounded_up(static_cast<double>(bound))); });
+    } else if (field_.kind == FieldKind::kDistance) {
+      gather(slab, numbers, [this](Number distance) {
+        return stored_distance(static_cast<double>(distance), field_.background, background_);
+      });
+    } else {
+      // Adding 0 turns -0 into 0.
+      gather(slab, numbers, [](Number number) { return static_cast<Value>(number) + Value{0}; });
+    }
+  }
+
   template <typename Number, typename Store>
-  void add(const LatticeBlock& slab, std::span<Number> numbers, const Store& store) {
+  void gather(const LatticeBlock& slab, std::span<const Number> numbers, const Store& store) {
     const std::int64_t end = slab.first[2] + slab.counts[2];
     for (std::int64_t z = slab.first[2]; z < end;) {
       const std::int64_t leaf_z = z >> kLeafLog2;
@@ -234,57 +329,22 @@ class GridBuilder {
     }
   }
 
-  // The complete grid.
-  [[nodiscard]] openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) {
-    insert(*grid_, "raycone_degenerate", totals.degenerate);
-    insert(*grid_, "raycone_on_surface", totals.on_surface);
-    openvdb::tools::pruneTiles(grid_->tree());
-    return grid_;
-  }
-
- private:
+  FieldDescription field_;
   Lattice lattice_;
+  Value background_;
   LeafLayer<typename Grid::TreeType> layer_;
   typename Grid::Ptr grid_;
 };
 
-// A bound in single precision that still is one.
-float rounded_up(double bound) {
-  const float nearest = static_cast<float>(bound);
-  return static_cast<double>(nearest) < bound ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-                                              : nearest;
+// Integers become floats: pyopenvdb reads no file that holds a grid of integers.
+std::unique_ptr<GridBuilder> make_builder(const FieldDescription& field, const Lattice& lattice,
+                                          const OutputDescription& description) {
+  using openvdb::BoolGrid, openvdb::DoubleGrid, openvdb::FloatGrid;
+  if (field.kind == FieldKind::kFlag) return std::make_unique<TypedGridBuilder<BoolGrid>>(field, lattice, description);
+  const bool wide = description.double_precision && field.kind != FieldKind::kBound && field.kind != FieldKind::kCount;
+  if (wide) return std::make_unique<TypedGridBuilder<DoubleGrid>>(field, lattice, description);
+  return std::make_unique<TypedGridBuilder<FloatGrid>>(field, lattice, description);
 }
-
-class DiagnosticsGrids {
- public:
-  DiagnosticsGrids(const Lattice& lattice, const FieldDescription& description)
-      : crossings_("crossings", lattice, description),
-        degenerate_("degenerate", lattice, description),
-        on_surface_("on_surface", lattice, description),
-        error_bound_("error_bound", lattice, description) {}
-
-  void add(const LatticeBlock& slab, const Diagnostics& diagnostics) {
-    const auto to_float = [](std::int64_t count) { return static_cast<float>(count); };
-    crossings_.add(slab, diagnostics.crossings, to_float);
-    degenerate_.add(slab, diagnostics.degenerate, to_float);
-    on_surface_.add(slab, diagnostics.on_surface, [](std::uint8_t flag) { return flag; });
-    error_bound_.add(slab, diagnostics.error_bound, rounded_up);
-  }
-
-  void finish(const FieldTotals& totals, openvdb::GridCPtrVec& grids) {
-    grids.push_back(crossings_.finish(totals));
-    grids.push_back(degenerate_.finish(totals));
-    grids.push_back(on_surface_.finish(totals));
-    grids.push_back(error_bound_.finish(totals));
-  }
-
- private:
-  // pyopenvdb reads no file that holds a grid of integers.
-  GridBuilder<openvdb::FloatGrid> crossings_;
-  GridBuilder<openvdb::FloatGrid> degenerate_;
-  GridBuilder<openvdb::BoolGrid> on_surface_;
-  GridBuilder<openvdb::FloatGrid> error_bound_;
-};
 
 // --- The file
 
@@ -359,27 +419,24 @@ void write_archive(std::ostream& stream, const openvdb::GridCPtrVec& grids) {
   stream.seekp(end);
 }
 
-template <typename Grid>
 class VdbWriter final : public LatticeWriter {
  public:
-  VdbWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& description)
-      : output_(output), values_(description.field, lattice, description) {
-    if (description.diagnostics) diagnostics_.emplace(lattice, description);
+  VdbWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description) : output_(output) {
+    for (const FieldDescription& field : description.fields) {
+      builders_.push_back(make_builder(field, lattice, description));
+    }
   }
 
   int slab_axis() const override { return 2; }
   std::int64_t slab_alignment() const override { return kLeafSize; }
 
-  void write(const LatticeBlock& block, std::span<const double> values, const Diagnostics* diagnostics) override {
-    using Value = typename Grid::ValueType;
-    // Adding 0 turns -0 into 0.
-    values_.add(block, values, [](double value) { return static_cast<Value>(value) + Value{0}; });
-    if (diagnostics) diagnostics_->add(block, *diagnostics);
+  void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
+    for (std::size_t f = 0; f < fields.size(); ++f) builders_[f]->add(block, fields[f]);
   }
 
   void finish(const FieldTotals& totals) override {
-    openvdb::GridCPtrVec grids{values_.finish(totals)};
-    if (diagnostics_) diagnostics_->finish(totals, grids);
+    openvdb::GridCPtrVec grids;
+    for (const std::unique_ptr<GridBuilder>& builder : builders_) grids.push_back(builder->finish(totals));
     if (output_.seekable()) {
       write_archive(output_.stream(), grids);
     } else {
@@ -392,21 +449,17 @@ class VdbWriter final : public LatticeWriter {
 
  private:
   OutputFile& output_;
-  GridBuilder<Grid> values_;
-  std::optional<DiagnosticsGrids> diagnostics_;
+  std::vector<std::unique_ptr<GridBuilder>> builders_;  // of each field
 };
 
 }  // namespace
 
 std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, const Lattice& lattice,
-                                                        const FieldDescription& description) {
+                                                        const OutputDescription& description) {
   check_indices(lattice, output.name());
   check_voxel_volume(lattice.spacing, output.name());
   openvdb::initialize();
-  if (description.double_precision) {
-    return std::make_unique<VdbWriter<openvdb::DoubleGrid>>(output, lattice, description);
-  }
-  return std::make_unique<VdbWriter<openvdb::FloatGrid>>(output, lattice, description);
+  return std::make_unique<VdbWriter>(output, lattice, description);
 }
 
 }  // namespace raycone

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/output_checks.h"
+
 namespace raycone::test {
 namespace {
 
@@ -50,16 +52,20 @@ TEST(SlabFrom, HoldsSmallLatticesWhole) {
   EXPECT_EQ(slab_from(lattice, 2, 8, -5).size(), 125'000);
 }
 
-TEST(SlabMemory, IsThatOfItsDoubles) { EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}, false), 64e6); }
-
-TEST(SlabMemory, IncludesDiagnostics) {  // two 64-bit counts, a flag, a double
-  EXPECT_EQ(slab_memory({{0, 0, 0}, {1000, 1000, 8}}, true), 64e6 + 8e6 * (8 + 8 + 1 + 8));
+TEST(SlabMemory, IsThatOfItsNumbers) {
+  const LatticeBlock slab{{0, 0, 0}, {1000, 1000, 8}};
+  FieldOptions options;
+  EXPECT_EQ(slab_memory(slab, options), 64e6);
+  options.fields = {Field::kInside};  // comes from the winding number
+  EXPECT_EQ(slab_memory(slab, options), 64e6 + 8e6);
+  options.diagnostics = true;  // two 64-bit counts, a flag, a double
+  EXPECT_EQ(slab_memory(slab, options), 64e6 + 8e6 + 8e6 * (8 + 8 + 1 + 8));
 }
 
 TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};
-  FieldDescription description;
+  OutputDescription description;
   description.exterior_edges = 1;
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, description), 0.0);
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 4e9 + 4 * 8e6);
@@ -68,11 +74,19 @@ TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}), 1e8);
 }
 
+TEST(WriterMemory, CountsFlagsAtTheSurfaceOnly) {
+  Lattice lattice;
+  lattice.counts = {2048, 2048, 2048};
+  OutputDescription description;
+  description.exterior_edges = 1;
+  description.fields = {{"inside", "inside", "inside", FieldKind::kFlag, 0.0, ""}};
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description), 1e8);
+}
+
 TEST(WriterMemory, CountsTheErrorBoundsOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};
-  FieldDescription description;
-  description.diagnostics = true;
+  OutputDescription description = described_with_diagnostics();
   EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description), 3e8) << "closed: no bound differs from 0";
   description.exterior_edges = 1;
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 2 * 4e9 + (4 + 3 * 4 + 1) * 8e6);

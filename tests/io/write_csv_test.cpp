@@ -23,17 +23,18 @@ using test::TemporaryDirectory;
 std::string points_csv(const std::vector<Vec3>& points, const std::vector<double>& values) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, false);
-  writer->write(points, values, nullptr);
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, {});
+  const FieldValues field = std::span(values);
+  writer->write(points, {&field, 1});
   writer->finish();
   return contents(directory / "out.csv");
 }
 
-std::string lattice_csv(const Lattice& lattice, const std::vector<double>& values, const std::string& field) {
+std::string lattice_csv(const Lattice& lattice, const std::vector<double>& values, const std::string& column) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  FieldDescription description;
-  description.field = field;
+  OutputDescription description;
+  description.fields.front().column = column;
   test::write_in_slabs(FieldFormat::kCsv, output, lattice, description, values, 1);
   return contents(directory / "out.csv");
 }
@@ -88,7 +89,7 @@ TEST(WriteCsv, PrintsLatticesWithIFastest) {
   lattice.spacing = {0.1, 1, 2};
   lattice.index_min = {-1, 3, 7};
   lattice.counts = {2, 2, 2};
-  EXPECT_EQ(lattice_csv(lattice, {0, 1, 2, 3, 4, 5, 6, 0.25}, "winding"),
+  EXPECT_EQ(lattice_csv(lattice, {0, 1, 2, 3, 4, 5, 6, 0.25}, "w"),
             "i,j,k,x,y,z,w\n"
             "-1,3,7,0.4,3,13,0\n"
             "0,3,7,0.5,3,13,1\n"
@@ -104,6 +105,19 @@ TEST(WriteCsv, NamesTheColumnAfterTheField) {
   EXPECT_EQ(lattice_csv({{}, {1, 1, 1}, {}, {1, 1, 1}}, {1}, "inside"), "i,j,k,x,y,z,inside\n0,0,0,0,0,0,1\n");
 }
 
+TEST(WriteCsv, HasAColumnPerFieldInTheirOrder) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.csv");
+  OutputDescription description;
+  description.fields = {{"inside", "inside", "inside", FieldKind::kFlag, 0.0, "odd"}, {}};
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, description);
+  const std::vector<std::uint8_t> inside{1, 0};
+  const std::vector<double> w{1, 0.25};
+  writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, std::vector<FieldValues>{std::span(inside), std::span(w)});
+  writer->finish();
+  EXPECT_EQ(contents(directory / "out.csv"), "x,y,z,inside,w\n1,2,3,1,1\n4,5,6,0,0.25\n");
+}
+
 TEST(WriteCsv, HasRoomForTheLongestRows) {
   Lattice lattice;
   const double longest = -2.2250738585072014e-308;
@@ -111,7 +125,7 @@ TEST(WriteCsv, HasRoomForTheLongestRows) {
   lattice.spacing = {5e-324, 5e-324, 5e-324};
   lattice.index_min = {-1000000, -1000000, -1000000};
   lattice.counts = {3000, 1, 1};
-  const std::string text = lattice_csv(lattice, std::vector<double>(3000, longest), "winding");
+  const std::string text = lattice_csv(lattice, std::vector<double>(3000, longest), "w");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3001);
   EXPECT_TRUE(text.ends_with(",-2.2250738585072014e-308\n"));
 }
@@ -119,10 +133,9 @@ TEST(WriteCsv, HasRoomForTheLongestRows) {
 TEST(WriteCsv, PrintsDiagnosticsBehindTheValuesOfPoints) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, true);
-  test::FourDiagnostics of;
-  const Diagnostics diagnostics = of.from(0, 2);
-  writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, std::vector<double>{0.5, -1}, &diagnostics);
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, test::described_with_diagnostics());
+  const std::vector<double> values{0.5, -1};
+  writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, test::FourDiagnostics().from(0, values));
   writer->finish();
   EXPECT_EQ(contents(directory / "out.csv"),
             "x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
@@ -133,14 +146,12 @@ TEST(WriteCsv, PrintsDiagnosticsBehindTheValuesOfPoints) {
 TEST(WriteCsv, PrintsDiagnosticsOfLatticesSampleBySample) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  FieldDescription description;
-  description.diagnostics = true;
   const Lattice lattice{{}, {1, 1, 1}, {}, {2, 1, 2}};
-  const auto writer = make_lattice_writer(FieldFormat::kCsv, output, lattice, description);
-  test::FourDiagnostics of;
-  const Diagnostics lower = of.from(0, 2), upper = of.from(2, 2);
-  writer->write({{0, 0, 0}, {2, 1, 1}}, std::vector<double>{1, 2}, &lower);
-  writer->write({{0, 0, 1}, {2, 1, 1}}, std::vector<double>{3, 4}, &upper);
+  const auto writer = make_lattice_writer(FieldFormat::kCsv, output, lattice, test::described_with_diagnostics());
+  const test::FourDiagnostics diagnostics;
+  const std::vector<double> lower{1, 2}, upper{3, 4};
+  writer->write({{0, 0, 0}, {2, 1, 1}}, diagnostics.from(0, lower));
+  writer->write({{0, 0, 1}, {2, 1, 1}}, diagnostics.from(2, upper));
   writer->finish({});
   EXPECT_EQ(contents(directory / "out.csv"),
             "i,j,k,x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
@@ -153,13 +164,15 @@ TEST(WriteCsv, PrintsDiagnosticsOfLatticesSampleBySample) {
 TEST(WriteCsv, HasRoomForTheLongestRowsWithDiagnostics) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.csv");
-  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, true);
+  const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, test::described_with_diagnostics());
   const double longest = -2.2250738585072014e-308;
   std::vector<std::int64_t> counts(3000, std::numeric_limits<std::int64_t>::min());
   std::vector<std::uint8_t> flags(3000, 1);
-  std::vector<double> bounds(3000, -longest);
-  const Diagnostics diagnostics{counts, counts, flags, bounds};
-  writer->write(std::vector<Vec3>(3000, {longest, longest, longest}), std::vector<double>(3000, longest), &diagnostics);
+  std::vector<double> values(3000, longest), bounds(3000, -longest);
+  writer->write(std::vector<Vec3>(3000, {longest, longest, longest}),
+                std::vector<FieldValues>{std::span<const double>(values), std::span<const std::int64_t>(counts),
+                                         std::span<const std::int64_t>(counts), std::span<const std::uint8_t>(flags),
+                                         std::span<const double>(bounds)});
   writer->finish();
   const std::string text = contents(directory / "out.csv");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3001);
@@ -171,8 +184,10 @@ TEST(WriteCsv, FlushHandsRowsToTheSystem) {
   ASSERT_EQ(pipe(ends), 0);
   {
     OutputFile output("/dev/fd/" + std::to_string(ends[1]));
-    const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, false);
-    writer->write(std::vector<Vec3>{{1, 2, 3}}, std::vector<double>{4}, nullptr);
+    const auto writer = make_point_writer(FieldFormat::kCsv, output, std::nullopt, {});
+    const std::vector<double> values{4};
+    const FieldValues field = std::span(values);
+    writer->write(std::vector<Vec3>{{1, 2, 3}}, {&field, 1});
     writer->flush();
     char text[64] = {};
     EXPECT_GT(read(ends[0], text, sizeof text - 1), 0);

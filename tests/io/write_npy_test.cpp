@@ -47,7 +47,7 @@ std::string lattice_npy(const Lattice& lattice, const std::vector<double>& value
                         std::int64_t thickness) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.npy");
-  FieldDescription description;
+  OutputDescription description;
   description.double_precision = double_precision;
   test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, thickness);
   return contents(directory / "out.npy");
@@ -94,12 +94,13 @@ TEST(WriteNpy, LatticesDoNotDependOnTheSlabs) {
 void write_points(const std::string& name, const std::vector<double>& values, bool announce) {
   OutputFile output(name);
   const auto size = announce ? std::optional<std::uint64_t>(values.size()) : std::nullopt;
-  const auto writer = make_point_writer(FieldFormat::kNpy, output, size, false);
+  const auto writer = make_point_writer(FieldFormat::kNpy, output, size, {});
   const std::vector<Vec3> points(values.size());
   const std::size_t half = values.size() / 2;
-  writer->write(std::span(points).first(half), std::span(values).first(half), nullptr);
+  const FieldValues first = std::span(values).first(half), second = std::span(values).subspan(half);
+  writer->write(std::span(points).first(half), {&first, 1});
   writer->flush();
-  writer->write(std::span(points).subspan(half), std::span(values).subspan(half), nullptr);
+  writer->write(std::span(points).subspan(half), {&second, 1});
   writer->finish();
 }
 
@@ -147,8 +148,10 @@ TEST(WriteNpy, PointsAreTheSameWhetherTheirNumberIsKnownOrNot) {
 TEST(WriteNpy, PointsMustBeAsManyAsAnnounced) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.npy");
-  const auto writer = make_point_writer(FieldFormat::kNpy, output, 2, false);
-  writer->write(std::vector<Vec3>(1), std::vector<double>(1), nullptr);
+  const auto writer = make_point_writer(FieldFormat::kNpy, output, 2, {});
+  const std::vector<double> values(1);
+  const FieldValues field = std::span(values);
+  writer->write(std::vector<Vec3>(1), {&field, 1});
   EXPECT_THROW(writer->finish(), std::logic_error);
 }
 
@@ -157,11 +160,10 @@ TEST(WriteNpy, PointsWithDiagnosticsAreRowsOfFive) {
   test::FourDiagnostics of;
   for (const std::size_t count : {0U, 4U}) {
     OutputFile output(directory / "out.npy");
-    const auto writer = make_point_writer(FieldFormat::kNpy, output, std::nullopt, true);
+    const auto writer = make_point_writer(FieldFormat::kNpy, output, std::nullopt, test::described_with_diagnostics());
     const std::vector<double> values{0.25, 1, 0, -2};
     for (std::size_t n = 0; n < count; n += 2) {
-      const Diagnostics half = of.from(n, 2);
-      writer->write(std::vector<Vec3>(2), std::span(values).subspan(n, 2), &half);
+      writer->write(std::vector<Vec3>(2), of.from(n, std::span(values).subspan(n, 2)));
     }
     writer->finish();
     const std::string npy = contents(directory / "out.npy");
@@ -176,6 +178,22 @@ TEST(WriteNpy, PointsWithDiagnosticsAreRowsOfFive) {
       EXPECT_EQ(elements<double>(npy), expected);
     }
   }
+}
+
+TEST(WriteNpy, LatticesOfFlagsAreBooleans) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.npy");
+  OutputDescription description;
+  description.fields.front().kind = FieldKind::kFlag;
+  description.double_precision = true;  // of numbers, not of flags
+  const auto writer = make_lattice_writer(FieldFormat::kNpy, output, lattice_of(2, 1, 2), description);
+  const std::vector<std::uint8_t> flags{1, 0, 0, 1};  // x fastest
+  const FieldValues field = std::span(flags);
+  writer->write(whole(lattice_of(2, 1, 2)), {&field, 1});
+  writer->finish({});
+  const std::string npy = contents(directory / "out.npy");
+  EXPECT_TRUE(header_text(npy).starts_with("{'descr': '|b1', 'fortran_order': False, 'shape': (2, 1, 2), }"));
+  EXPECT_EQ(npy.substr(header_size(npy)), std::string("\1\0\0\1", 4));
 }
 
 TEST(WriteNpy, NumpyReadsIt) {

@@ -48,20 +48,19 @@ DiagnosedField diagnosed_field() {
 
 void write_vdb(const std::string& path, const DiagnosedField& field, std::int64_t thickness = 8) {
   OutputFile output(path);
-  FieldDescription description;
+  OutputDescription description = test::described_with_diagnostics();
   description.mesh = "bunny.obj";
-  description.diagnostics = true;
   const auto writer = make_lattice_writer(FieldFormat::kVdb, output, field.lattice, description);
   for (std::int64_t done = 0; done < field.lattice.counts[2]; done += thickness) {
     LatticeBlock slab = whole(field.lattice);
     slab.first[2] += done;
     slab.counts[2] = std::min(thickness, field.lattice.counts[2] - done);
     const auto of_slab = [&](const auto& numbers) { return test::part(field.lattice, numbers, slab); };
-    auto crossings = of_slab(field.crossings), degenerate = of_slab(field.degenerate);
-    auto on_surface = of_slab(field.on_surface);
-    auto error_bound = of_slab(field.error_bound);
-    const Diagnostics diagnostics{crossings, degenerate, on_surface, error_bound};
-    writer->write(slab, of_slab(field.values), &diagnostics);
+    const auto values = of_slab(field.values), error_bound = of_slab(field.error_bound);
+    const auto crossings = of_slab(field.crossings), degenerate = of_slab(field.degenerate);
+    const auto on_surface = of_slab(field.on_surface);
+    writer->write(slab, std::vector<FieldValues>{std::span(values), std::span(crossings), std::span(degenerate),
+                                                 std::span(on_surface), std::span(error_bound)});
   }
   writer->finish({7, 9});
 }

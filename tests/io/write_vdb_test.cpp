@@ -63,8 +63,8 @@ Field ball_field() {
   });
 }
 
-FieldDescription described() {
-  FieldDescription description;
+OutputDescription described() {
+  OutputDescription description;
   description.mesh = "bunny.obj";
   description.mesh_sha256 = "0123456789abcdef";
   description.faces = 5'000'000'000;  // beyond 32 bits
@@ -72,7 +72,7 @@ FieldDescription described() {
   return description;
 }
 
-void write_vdb(const std::string& path, const Field& field, const FieldDescription& description = described(),
+void write_vdb(const std::string& path, const Field& field, const OutputDescription& description = described(),
                std::int64_t thickness = 8) {
   OutputFile output(path);
   test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9});
@@ -87,7 +87,7 @@ typename Grid::Ptr read_grid(const std::string& path, const std::string& name = 
 }
 
 template <typename Grid = openvdb::FloatGrid>
-typename Grid::Ptr written_grid(const Field& field, const FieldDescription& description = described()) {
+typename Grid::Ptr written_grid(const Field& field, const OutputDescription& description = described()) {
   const TemporaryDirectory directory;
   write_vdb(directory / "out.vdb", field, description);
   return read_grid<Grid>(directory / "out.vdb");
@@ -136,7 +136,7 @@ TEST(WriteVdb, HoldsEveryVoxel) { expect_holds(*written_grid(random_field()), ra
 TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_field()), ball_field()); }
 
 TEST(WriteVdb, HoldsDoublesOnRequest) {
-  FieldDescription description = described();
+  OutputDescription description = described();
   description.double_precision = true;
   expect_holds(*written_grid<openvdb::DoubleGrid>(random_field(), description), random_field());
 }
@@ -219,8 +219,8 @@ TEST(WriteVdb, CubicVoxelsHaveUniformScale) {
 }
 
 TEST(WriteVdb, DescribesItself) {
-  FieldDescription description = described();
-  description.rule = "threshold=0.5";
+  OutputDescription description = described();
+  description.fields.front().rule = "threshold=0.5";
   const auto grid = written_grid(random_field(), description);
   EXPECT_EQ(grid->getName(), "winding");
   EXPECT_EQ(grid->getGridClass(), openvdb::GRID_UNKNOWN);

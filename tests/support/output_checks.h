@@ -18,6 +18,16 @@ inline std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// A value and its diagnostics, as the application describes them.
+inline OutputDescription described_with_diagnostics() {
+  OutputDescription description;
+  description.fields.push_back({"crossings", "crossings", "crossings", FieldKind::kCount, 0.0, ""});
+  description.fields.push_back({"degenerate", "degenerate", "degenerate", FieldKind::kCount, 0.0, ""});
+  description.fields.push_back({"on_surface", "on_surface", "on_surface", FieldKind::kFlag, 0.0, ""});
+  description.fields.push_back({"error_bound", "error_bound", "error_bound", FieldKind::kBound, 0.0, ""});
+  return description;
+}
+
 // Diagnostics of four samples, each unlike the others.
 struct FourDiagnostics {
   std::vector<std::int64_t> crossings{0, -3, 9007199254740993, 1};
@@ -25,9 +35,10 @@ struct FourDiagnostics {
   std::vector<std::uint8_t> on_surface{0, 1, 0, 0};
   std::vector<double> error_bound{5e-324, 0.1, 0, 1e-16};
 
-  [[nodiscard]] Diagnostics from(std::size_t first, std::size_t count) {
-    return {std::span(crossings).subspan(first, count), std::span(degenerate).subspan(first, count),
-            std::span(on_surface).subspan(first, count), std::span(error_bound).subspan(first, count)};
+  // `values` and the diagnostics of as many samples from `first` on.
+  [[nodiscard]] std::vector<FieldValues> from(std::size_t first, std::span<const double> values) const {
+    const auto part = [&](const auto& numbers) { return std::span(numbers).subspan(first, values.size()); };
+    return {values, part(crossings), part(degenerate), part(on_surface), part(error_bound)};
   }
 };
 
@@ -60,7 +71,7 @@ inline bool python_has(const std::string& module) { return run_python("import " 
 
 // Writes `values` (x fastest) as a file would be written by the application, in slabs of `thickness`.
 inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice& lattice,
-                           const FieldDescription& description, const std::vector<double>& values,
+                           const OutputDescription& description, const std::vector<double>& values,
                            std::int64_t thickness, const FieldTotals& totals = {}) {
   const auto writer = make_lattice_writer(format, output, lattice, description);
   const auto axis = static_cast<std::size_t>(writer->slab_axis());
@@ -68,7 +79,9 @@ inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice
     LatticeBlock slab = whole(lattice);
     slab.first[axis] += done;
     slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
-    writer->write(slab, part(lattice, values, slab), nullptr);
+    const std::vector<double> in_slab = part(lattice, values, slab);
+    const FieldValues field = std::span(in_slab);
+    writer->write(slab, {&field, 1});
   }
   writer->finish(totals);
 }

@@ -1,0 +1,80 @@
+// The fields of a job: their names, what they are computed from, and room for their numbers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/rule.h"
+#include "io/field_writer.h"
+
+namespace raycone {
+
+enum class Field {
+  kWinding,
+  kInside,   // whether the rule holds
+  kDensity,  // the winding number, clamped to [0, 1]
+};
+
+// "winding", "inside" or "density".
+[[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
+
+// As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
+[[nodiscard]] std::optional<Rule> rule_from_name(std::string_view name);
+[[nodiscard]] std::string name_of(const Rule& rule);
+
+struct FieldOptions {
+  std::vector<Field> fields{Field::kWinding};  // at least one, none twice
+  Rule rule;
+  bool diagnostics = false;
+  std::uint64_t verify = 0;  // samples to be computed again as direct sums
+};
+
+// What is written of each sample, in this order: the fields, then crossings, degenerate, on_surface and error_bound
+// where diagnostics are wanted.
+[[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options);
+
+// Room for all numbers of a slab or batch of samples.
+class FieldSamples {
+ public:
+  explicit FieldSamples(const FieldOptions& options);
+  FieldSamples(const FieldSamples&) = delete;  // fields_ and diagnostics_ refer to its vectors
+  FieldSamples& operator=(const FieldSamples&) = delete;
+
+  [[nodiscard]] static std::size_t bytes_per_sample(const FieldOptions& options);
+
+  // What was obtained from here before is no longer valid.
+  void resize(std::size_t count);
+
+  [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
+  // Null where they are not wanted.
+  [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
+
+  // Computes the fields that follow from winding_numbers(). Threaded.
+  void derive();
+
+  // As describe_fields() lists them.
+  [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }
+
+ private:
+  [[nodiscard]] bool has(Field field) const;
+  [[nodiscard]] FieldValues values_of(Field field) const;
+
+  FieldOptions options_;
+  std::vector<double> winding_numbers_;
+  std::vector<std::uint8_t> inside_;
+  std::vector<double> density_;
+  std::vector<std::int64_t> crossings_;
+  std::vector<std::int64_t> degenerate_;
+  std::vector<std::uint8_t> on_surface_;
+  std::vector<double> error_bound_;
+  std::optional<Diagnostics> diagnostics_;
+  std::vector<FieldValues> fields_;
+};
+
+}  // namespace raycone

@@ -1,0 +1,22 @@
+// Rules that turn a winding number into inside or outside.
+#pragma once
+
+namespace raycone {
+
+enum class RuleKind {
+  kThreshold,  // w >= threshold
+  kAbs,        // |w| >= threshold
+  kNonzero,    // of the integer nearest to w, floor(w + 1/2): is not 0
+  kPositive,   // likewise: is above 0
+  kOdd,        // likewise: is odd
+};
+
+struct Rule {
+  RuleKind kind = RuleKind::kThreshold;
+  double threshold = 0.5;  // finite
+};
+
+// Whether a point of winding number `w` (finite) is inside. Exact.
+[[nodiscard]] bool holds(const Rule& rule, double w);
+
+}  // namespace raycone

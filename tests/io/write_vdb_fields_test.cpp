@@ -1,0 +1,211 @@
+// Grids of the several kinds of fields, and several of them in one file.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Diagnostics.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "io/field_writer.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone {
+namespace {
+
+using test::contents;
+using test::TemporaryDirectory;
+
+constexpr double kVoxel = 0.1;
+
+const FieldDescription kInside{"inside", "inside", "inside", FieldKind::kFlag, 0.0, "threshold=0.5"};
+const FieldDescription kDensity{"density", "density", "density", FieldKind::kDensity, 0.0, ""};
+const FieldDescription kDistance{"sdf", "sdf", "surface", FieldKind::kDistance, 3 * kVoxel, "threshold=0.5"};
+
+Lattice lattice_around_zero() { return {{0, 0, 0}, {kVoxel, kVoxel, kVoxel}, {-30, -30, -30}, {61, 61, 61}}; }
+
+double radius_of(const openvdb::Coord& at) {
+  return kVoxel * std::sqrt(at.x() * at.x() + at.y() * at.y() + at.z() * at.z());
+}
+
+// A ball of radius 2: its signed distance clamped to three voxels.
+double distance_at(const openvdb::Coord& at) { return std::clamp(radius_of(at) - 2.0, -3 * kVoxel, 3 * kVoxel); }
+
+template <typename Function>
+auto samples_of(const Lattice& lattice, const Function& function) {
+  std::vector<decltype(function(openvdb::Coord()))> numbers;
+  for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
+    for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
+      for (std::int64_t i = lattice.index_min[0]; i <= lattice.index_max(0); ++i) {
+        numbers.push_back(function(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k))));
+      }
+    }
+  }
+  return numbers;
+}
+
+void write_vdb(const std::string& path, const OutputDescription& description, const std::vector<FieldValues>& fields) {
+  OutputFile output(path);
+  const auto writer = make_lattice_writer(FieldFormat::kVdb, output, lattice_around_zero(), description);
+  writer->write(whole(lattice_around_zero()), fields);
+  writer->finish({});
+}
+
+template <typename Grid>
+typename Grid::Ptr read_grid(const std::string& path, const std::string& name) {
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.open(false);
+  return openvdb::gridPtrCast<Grid>(file.readGrid(name));
+}
+
+template <typename Grid = openvdb::FloatGrid>
+typename Grid::Ptr written_ball(const OutputDescription& description) {
+  const TemporaryDirectory directory;
+  const auto distances = samples_of(lattice_around_zero(), distance_at);
+  write_vdb(directory / "out.vdb", description, {std::span(distances)});
+  return read_grid<Grid>(directory / "out.vdb", "surface");
+}
+
+OutputDescription described(const std::vector<FieldDescription>& fields) {
+  OutputDescription description;
+  description.fields = fields;
+  return description;
+}
+
+TEST(WriteVdbFields, HoldsEveryFieldUnderItsName) {
+  const TemporaryDirectory directory;
+  const Lattice lattice = lattice_around_zero();
+  const auto inside = samples_of(lattice, [](const auto& at) { return std::uint8_t(radius_of(at) <= 2.0); });
+  const auto density = samples_of(lattice, [](const auto& at) { return std::clamp(2.5 - radius_of(at), 0.0, 1.0); });
+  const auto distances = samples_of(lattice, distance_at);
+  write_vdb(directory / "out.vdb", described({kInside, kDensity, kDistance}),
+            {std::span(inside), std::span(density), std::span(distances)});
+  const auto bools = read_grid<openvdb::BoolGrid>(directory / "out.vdb", "inside");
+  const auto fog = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "density");
+  const auto surface = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface");
+  ASSERT_TRUE(bools && fog && surface);
+  EXPECT_EQ(bools->getGridClass(), openvdb::GRID_UNKNOWN);
+  EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(surface->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(bools->metaValue<std::string>("raycone_rule"), "threshold=0.5");
+  EXPECT_EQ(surface->metaValue<std::string>("raycone_field"), "sdf");
+  EXPECT_FALSE(fog->getMetadata<openvdb::StringMetadata>("raycone_rule"));
+  std::size_t n = 0;
+  samples_of(lattice, [&](const openvdb::Coord& at) {
+    EXPECT_EQ(bools->tree().getValue(at), inside[n] != 0) << at;
+    EXPECT_EQ(bools->tree().isValueOn(at), inside[n] != 0) << at;
+    EXPECT_EQ(fog->tree().getValue(at), static_cast<float>(density[n])) << at;
+    return n++;
+  });
+}
+
+// A rule may hold where the winding number is 0: what differs from the value far away is then outside.
+TEST(WriteVdbFields, FlagsThatHoldFarAwayAreTheBackground) {
+  const TemporaryDirectory directory;
+  const auto inside =
+      samples_of(lattice_around_zero(), [](const auto& at) { return std::uint8_t(radius_of(at) > 2.0); });
+  FieldDescription field = kInside;
+  field.background = 1.0;
+  write_vdb(directory / "out.vdb", described({field}), {std::span(inside)});
+  const auto grid = read_grid<openvdb::BoolGrid>(directory / "out.vdb", "inside");
+  EXPECT_TRUE(grid->background());
+  EXPECT_TRUE(grid->tree().getValue({1000, 0, 0}));
+  std::size_t n = 0;
+  samples_of(lattice_around_zero(), [&](const openvdb::Coord& at) {
+    EXPECT_EQ(grid->tree().getValue(at), inside[n] != 0) << at;
+    EXPECT_EQ(grid->tree().isValueOn(at), inside[n] == 0) << at;
+    return n++;
+  });
+}
+
+TEST(WriteVdbFields, LevelSetsAreActiveExactlyInTheBand) {
+  const auto grid = written_ball(described({kDistance}));
+  samples_of(lattice_around_zero(), [&](const openvdb::Coord& at) {
+    const double distance = distance_at(at);
+    const bool active = std::abs(distance) < 3 * kVoxel;
+    const float value = grid->tree().getValue(at);
+    EXPECT_EQ(grid->tree().isValueOn(at), active) << at;
+    EXPECT_NEAR(value, distance, 3e-8) << at;  // half a unit in the last place of 0.3, and that of the background
+    EXPECT_EQ(std::abs(value) == grid->background(), !active) << at;
+    return 0;
+  });
+  EXPECT_EQ(grid->tree().getValue({1000, 0, 0}), grid->background());
+}
+
+TEST(WriteVdbFields, LevelSetsPassOpenvdbsChecks) {
+  for (const double voxel : {0.1, 1.0 / 3, 0.7, 1.1, 123.456, 0.0123}) {  // 3 voxels round up or down to a float
+    const TemporaryDirectory directory;
+    Lattice lattice = lattice_around_zero();
+    lattice.spacing = {voxel, voxel, voxel};
+    auto distances = samples_of(lattice, distance_at);
+    for (double& distance : distances) distance *= voxel / kVoxel;
+    FieldDescription field = kDistance;
+    field.background = 3 * voxel;
+    {
+      OutputFile output(directory / "out.vdb");
+      const auto writer = make_lattice_writer(FieldFormat::kVdb, output, lattice, described({field}));
+      const FieldValues values = std::span(distances);
+      writer->write(whole(lattice), {&values, 1});
+      writer->finish({});
+    }
+    EXPECT_EQ(openvdb::tools::checkLevelSet(*read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface"), 9), "")
+        << voxel;
+  }
+}
+
+TEST(WriteVdbFields, InteriorsOfLevelSetsAreInactiveTiles) {
+  const auto grid = written_ball(described({kDistance}));
+  EXPECT_FALSE(grid->tree().hasActiveTiles());
+  EXPECT_FALSE(grid->tree().probeConstLeaf({0, 0, 0}));
+  EXPECT_EQ(grid->tree().getValue({0, 0, 0}), -grid->background());
+  EXPECT_EQ(grid->tree().getValueDepth({0, 0, 0}), 2) << "a tile of 8^3 voxels";
+}
+
+// The largest double below the band is the band as a float: still not the background.
+TEST(WriteVdbFields, DistancesThatRoundToTheBandStayActive) {
+  const TemporaryDirectory directory;
+  const auto distances = samples_of(lattice_around_zero(), [](const openvdb::Coord& at) {
+    const double below = std::nextafter(3 * kVoxel, 0.0);
+    return at.x() == 5 ? below : at.x() == 6 ? -below : 3 * kVoxel;
+  });
+  write_vdb(directory / "out.vdb", described({kDistance}), {std::span(distances)});
+  const auto grid = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface");
+  EXPECT_EQ(grid->activeVoxelCount(), 2U * 61 * 61);
+  EXPECT_EQ(openvdb::tools::checkLevelSet(*grid, 8), "");
+}
+
+TEST(WriteVdbFields, DoublesOnRequest) {
+  OutputDescription description = described({kDistance});
+  description.double_precision = true;
+  const auto grid = written_ball<openvdb::DoubleGrid>(description);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->background(), 3 * kVoxel);
+  EXPECT_EQ(grid->tree().getValue({19, 0, 0}), distance_at({19, 0, 0}));
+}
+
+TEST(WriteVdbFields, PyopenvdbReadsThem) {
+  if (!test::python_has("pyopenvdb")) GTEST_SKIP() << "no pyopenvdb in /usr/bin/python3";
+  const TemporaryDirectory directory;
+  const auto inside =
+      samples_of(lattice_around_zero(), [](const auto& at) { return std::uint8_t(radius_of(at) <= 2.0); });
+  const auto distances = samples_of(lattice_around_zero(), distance_at);
+  write_vdb(directory / "out.vdb", described({kInside, kDistance}), {std::span(inside), std::span(distances)});
+  EXPECT_EQ(test::run_python("import pyopenvdb, sys\n"
+                             "grids, _ = pyopenvdb.readAll(sys.argv[1])\n"
+                             "assert [(g.name, type(g).__name__) for g in grids] == "
+                             "[('inside', 'BoolGrid'), ('surface', 'FloatGrid')]\n"
+                             "inside, surface = grids\n"
+                             "assert surface.gridClass == pyopenvdb.GridClass.LEVEL_SET\n"
+                             "assert inside.getConstAccessor().getValue((0, 0, 0)) is True\n"
+                             "assert surface.getConstAccessor().getValue((0, 0, 0)) < -0.29\n",
+                             {directory / "out.vdb"}),
+            "");
+}
+
+}  // namespace
+}  // namespace raycone

@@ -13,7 +13,7 @@
 #include "core/crossings.h"
 #include "core/floating_point.h"
 #include "core/lattice_scan.h"
-#include "core/projected_tree.h"
+#include "core/projected_grid.h"
 #include "core/ray_caster.h"
 #include "core/row.h"
 #include "core/scale.h"
@@ -48,7 +48,6 @@ class TallySum {
 struct Scratch {
   std::vector<std::uint32_t> candidates;
   RowCrossings crossings;
-  std::array<RowCrossings, ProjectedTree::kGroup> group;  // of points
   std::vector<std::int64_t> sums;
   SampleTile tile;
   std::array<Turns, kTile> cone;
@@ -82,34 +81,17 @@ double error_bound(double w, std::int64_t n, const TurnsWithin& enclosure) {
   return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());
 }
 
-// Candidate triangles of single rays.
-class Candidates {
- public:
-  Candidates(const TriangleMesh& mesh, RayEngine engine) {
-    if (engine == RayEngine::kScan) {
-      tree_.emplace(mesh);
-    } else {
-      rays_.emplace(mesh);
-    }
+// What all triangles say about one point.
+struct PointCrossings {
+  std::int64_t n = 0;  // the sum of the signs of the ray's crossings
+  std::int64_t ties = 0;
+  bool on_surface = false;
+
+  void add(const TriangleCrossing& crossing) {
+    if (crossing.crossed > 0) n += crossing.sigma;
+    if (crossing.met > 0) ties += crossing.ties;
+    on_surface = on_surface || crossing.on_begin < crossing.on_end;
   }
-
-  // Calls visit(i, triangle) for each origin and candidate. At most ProjectedTree::kGroup origins.
-  template <class Visit>
-  void find(std::span<const Vec3> origins, std::vector<std::uint32_t>& buffer, const Visit& visit) const {
-    if (tree_) return tree_->find(origins, visit);
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-      rays_->find_candidates(origins[i], buffer);
-      for (const std::uint32_t triangle : buffer) visit(i, triangle);
-    }
-  }
-
-  // Queries in the order of this number are close together.
-  [[nodiscard]] std::size_t place(const Vec3& origin) const { return tree_ ? tree_->place(origin) : 0; }
-  [[nodiscard]] std::size_t places() const { return tree_ ? ProjectedTree::kPlaces : 1; }
-
- private:
-  std::optional<ProjectedTree> tree_;
-  std::optional<RayCaster> rays_;
 };
 
 // The mesh in one scale, with all that is needed to evaluate rows in that scale.
@@ -121,15 +103,20 @@ class Engine {
         engine_(engine),
         mesh_(in_scale(std::move(mesh), scale)),
         cone_(mesh_) {}
-  Engine(const Engine&) = delete;  // candidates_ refers to mesh_
+  Engine(const Engine&) = delete;  // rays_ refers to mesh_
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] RayEngine engine() const { return engine_; }
   [[nodiscard]] const Cone& cone() const { return cone_; }
-  [[nodiscard]] const Candidates& candidates() const {
-    std::call_once(candidates_built_, [this] { candidates_.emplace(mesh_, engine_); });
-    return *candidates_;
+  // Built when first needed: lattices may need neither.
+  [[nodiscard]] const RayCaster& rays() const {
+    std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
+    return *rays_;
+  }
+  [[nodiscard]] const ProjectedGrid& grid() const {
+    std::call_once(grid_built_, [this] { grid_.emplace(mesh_); });
+    return *grid_;
   }
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const { return in_scale(mesh_, inverse_); }
@@ -146,12 +133,19 @@ class Engine {
   }
   [[nodiscard]] Vec3 to_scale(const Vec3& q) const { return {to_scale(q.x), to_scale(q.y), to_scale(q.z)}; }
 
+  void prepare_points() const {
+    if (engine_ == RayEngine::kScan) {
+      (void)grid();
+    } else {
+      (void)rays();
+    }
+  }
+
   // Sets scratch.crossings to what the candidate triangles say about a row.
   void find_crossings(const Row& row, Scratch& scratch) const {
     scratch.crossings.clear();
-    const Vec3 origin = row.query(0);
-    candidates().find({&origin, 1}, scratch.candidates,
-                      [&](std::size_t, std::uint32_t triangle) { scratch.crossings.add(crossing(triangle, row)); });
+    rays().find_candidates(row.query(0), scratch.candidates);
+    for (const std::uint32_t triangle : scratch.candidates) scratch.crossings.add(crossing(triangle, row));
   }
 
   // w = n - w_cone at each sample of a row in the engine's scale, n from scratch.crossings.
@@ -167,21 +161,16 @@ class Engine {
   // w = n - w_cone at the points, which are in the engine's scale.
   Tally evaluate_points(std::span<const Vec3> points, std::span<double> values, const Diagnostics* diagnostics,
                         Scratch& scratch) const {
-    constexpr std::size_t kGroup = ProjectedTree::kGroup;
     Tally tally;
-    std::vector<std::int64_t> n(points.size());
-    std::array<RowCrossings, kGroup>& crossings = scratch.group;
-    for (std::size_t begin = 0; begin < points.size(); begin += kGroup) {
-      const std::span<const Vec3> group = points.subspan(begin, std::min(kGroup, points.size() - begin));
-      candidates().find(group, scratch.candidates, [&](std::size_t i, std::uint32_t triangle) {
-        crossings[i].add(crossing(triangle, {group[i].y, group[i].z, {&group[i].x, 1}}));
-      });
-      for (std::size_t i = 0; i < group.size(); ++i) {
-        for (const RowCrossings::Ending& e : crossings[i].crossings) n[begin + i] += e.count;
-        tally += tally_of(crossings[i], 1);
-        if (diagnostics) diagnose_crossings(crossings[i], part(*diagnostics, begin + i, 1));
-        crossings[i].clear();
-      }
+    std::vector<std::int64_t>& n = scratch.sums;
+    n.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const PointCrossings crossings = crossings_at(points[i], scratch);
+      n[i] = crossings.n;
+      tally += {static_cast<std::uint64_t>(crossings.ties), crossings.on_surface ? 1U : 0U};
+      if (!diagnostics) continue;
+      diagnostics->degenerate[i] = crossings.ties;
+      diagnostics->on_surface[i] = crossings.on_surface ? 1 : 0;
     }
     subtract_cone(
         n, [&](std::size_t i) { return points[i]; }, values, scratch);
@@ -193,6 +182,18 @@ class Engine {
   }
 
  private:
+  [[nodiscard]] PointCrossings crossings_at(const Vec3& q, Scratch& scratch) const {
+    PointCrossings result;
+    const auto decide = [&](std::uint32_t triangle) { result.add(crossing(triangle, {q.y, q.z, {&q.x, 1}})); };
+    if (engine_ == RayEngine::kScan) {
+      result.n += grid().crossings(q, decide);
+    } else {
+      rays().find_candidates(q, scratch.candidates);
+      for (const std::uint32_t triangle : scratch.candidates) decide(triangle);
+    }
+    return result;
+  }
+
   [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const {
     const Triangle& t = mesh_.triangles[triangle];
     return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
@@ -243,8 +244,9 @@ class Engine {
   RayEngine engine_;
   TriangleMesh mesh_;
   Cone cone_;
-  mutable std::once_flag candidates_built_;
-  mutable std::optional<Candidates> candidates_;
+  mutable std::once_flag rays_built_, grid_built_;
+  mutable std::optional<RayCaster> rays_;
+  mutable std::optional<ProjectedGrid> grid_;
 };
 
 // The rows of a block in an engine's scale.
@@ -292,19 +294,20 @@ Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const Lattice
   return total.sum();
 }
 
-// The indices of the points in an order in which neighbours share candidates (a counting sort by place).
-std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points) {
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t places = engine.candidates().places();
-  if (places == 1) return order;
-  std::vector<std::size_t> place(points.size()), begin(places + 1, 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    place[i] = engine.candidates().place(engine.to_scale(points[i]));
-    ++begin[place[i] + 1];
+// The indices [begin, end) in an order in which neighbouring points share triangles (a counting sort by place).
+std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points, std::size_t begin,
+                                        std::size_t end) {
+  std::vector<std::size_t> order(end - begin);
+  std::iota(order.begin(), order.end(), begin);
+  if (engine.engine() != RayEngine::kScan) return order;
+  std::vector<std::uint32_t> places(order.size());
+  std::vector<std::size_t> next(ProjectedGrid::kPlaces + 1, 0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[i] = static_cast<std::uint32_t>(engine.grid().place(engine.to_scale(points[begin + i])));
+    ++next[places[i] + 1];
   }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  for (std::size_t i = 0; i < points.size(); ++i) order[begin[place[i]]++] = i;
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::size_t i = 0; i < places.size(); ++i) order[next[places[i]]++] = begin + i;
   return order;
 }
 
@@ -383,7 +386,7 @@ WindingNumberEvaluator& WindingNumberEvaluator::operator=(WindingNumberEvaluator
 
 std::uint64_t WindingNumberEvaluator::exterior_edges() const { return implementation_->scaled.cone().exterior_edges(); }
 
-void WindingNumberEvaluator::prepare_points() const { (void)implementation_->scaled.candidates(); }
+void WindingNumberEvaluator::prepare_points() const { implementation_->scaled.prepare_points(); }
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
@@ -418,13 +421,11 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
   const DefaultFloatingPoint guard;
-  const std::vector<std::size_t> order = coherent_order(implementation_->scaled, points);
   TallySum total;
   parallel_for(points.size(), 4 * kTile, [&](std::size_t begin, std::size_t end) {
     PointTile tile;
     Tally tally;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t index = order[i];
+    for (const std::size_t index : coherent_order(implementation_->scaled, points, begin, end)) {
       const bool exact = implementation_->scaled.can_take(points[index]);
       if (!exact) tally += tile.evaluate(implementation_->scaled, values, diagnostics);
       const Engine& engine = implementation_->engine_for(exact);

@@ -33,7 +33,7 @@ struct Tally {
 
 // How the triangles along rays are found. Values do not depend on it.
 enum class RayEngine {
-  kScan,    // lattices: scan conversion; points: a packed tree over the projected triangles
+  kScan,    // lattices: scan conversion; points: a grid over the projected triangles
   kEmbree,  // Embree for all
 };
 

@@ -56,6 +56,13 @@ MUTANTS = [
          "  const Vec3 a = rounded(u), b = rounded(v), c = rounded(w);\n")]),
     Mutant("plane_error_too_small", "the place of a crossing along a row is only trusted beyond its error", [
         ("core/crossings.cpp", "error = 1.01 * u *", "error = 0.01 * u *")]),
+    Mutant("grid_error_too_small", "single precision decides for points only beyond its error", [
+        ("core/projected_grid.cpp", "6.01 * v *", "0.06 * v *"), ("core/projected_grid.cpp", "3.01 * v *", "0.03 * v *")]),
+    Mutant("grid_without_lines", "a triangle is listed where the lines of its edges tie, too", [
+        ("core/projected_grid.cpp", "    if (intersection(slab, edge.z).empty()) continue;\n",
+         "    if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
+    Mutant("grid_cuts_too_early", "rays from behind a triangle alone miss it", [
+        ("core/projected_grid.cpp", "kPlacesPerUnit + kRounding)", "kPlacesPerUnit)")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [

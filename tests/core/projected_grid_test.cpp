@@ -1,0 +1,151 @@
+#include "core/projected_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/crossings.h"
+#include "core/floating_point.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+struct Found {
+  int n = 0;
+  int ties = 0;
+  bool on_surface = false;
+  std::size_t decided = 0;  // triangles that exact predicates were asked about
+
+  void add(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& q) {
+    const Triangle& t = mesh.triangles[triangle];
+    const TriangleCrossing c = triangle_crossing(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]],
+                                                 {q.y, q.z, {&q.x, 1}}, nullptr);
+    if (c.crossed > 0) n += c.sigma;
+    if (c.met > 0) ties += c.ties;
+    on_surface = on_surface || c.on_begin < c.on_end;
+    ++decided;
+  }
+};
+
+Found by_all_triangles(const TriangleMesh& mesh, const Vec3& q) {
+  Found found;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) found.add(mesh, i, q);
+  return found;
+}
+
+struct Totals {
+  std::size_t crossed = 0, ties = 0, on_surface = 0, decided = 0;
+};
+
+Totals check(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  const DefaultFloatingPoint guard;
+  const ProjectedGrid grid(mesh);
+  Totals totals;
+  for (const Vec3& q : queries) {
+    Found found;
+    found.n += grid.crossings(q, [&](std::uint32_t triangle) { found.add(mesh, triangle, q); });
+    const Found expected = by_all_triangles(mesh, q);
+    const bool same = found.n == expected.n && found.ties == expected.ties && found.on_surface == expected.on_surface;
+    EXPECT_TRUE(same) << found.n << " for " << expected.n << ", ties " << found.ties << " for " << expected.ties
+                      << " at " << q.x << ' ' << q.y << ' ' << q.z;
+    if (!same) return totals;
+    totals.crossed += expected.n != 0 ? 1 : 0;
+    totals.ties += static_cast<std::size_t>(expected.ties);
+    totals.on_surface += expected.on_surface ? 1 : 0;
+    totals.decided += found.decided;
+  }
+  return totals;
+}
+
+// Random points, vertices, middles of edges and points level with them, before, within and behind the mesh.
+std::vector<Vec3> queries_about(const TriangleMesh& mesh, test::Random& random, std::size_t each) {
+  const Box box = bounding_box(mesh);
+  const Vec3 size = box.upper - box.lower;
+  std::vector<Vec3> queries;
+  for (std::size_t i = 0; i < each; ++i) {
+    queries.push_back(test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size}));
+    const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]];
+    const Vec3 middle = 0.5 * (a + b), beyond = a + 1.5 * (b - a);
+    for (Vec3 q : {a, middle, beyond}) {
+      queries.push_back(q);
+      q.x = test::uniform(random, box.lower.x - size.x, box.upper.x + size.x);
+      queries.push_back(q);
+    }
+  }
+  return queries;
+}
+
+TEST(ProjectedGrid, FindsWhatAllTrianglesSayOnDegenerateLattices) {
+  test::Random random(1);
+  for (const TriangleMesh& mesh : {test::random_cells(random, 8), test::lattice_soup(random, 400, 6)}) {
+    std::vector<Vec3> queries;
+    for (int j = 0; j <= 16; ++j) {
+      for (int k = 0; k <= 16; ++k) queries.push_back({-1.0 + j % 5, 0.5 * j, 0.5 * k});
+    }
+    const Totals totals = check(mesh, queries);
+    EXPECT_GT(totals.crossed, 30U);
+    EXPECT_GT(totals.ties, 1000U);
+    EXPECT_GT(totals.on_surface, 30U);
+  }
+}
+
+// Needles along every direction, some of them edge-on to the rays: the lines of their edges leave them far behind.
+TriangleMesh needles(test::Random& random, int count) {
+  TriangleMesh mesh;
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  for (int i = 0; i < count; ++i) {
+    const Vec3 a = test::uniform_point(random, box), b = test::uniform_point(random, box);
+    const Vec3 c = i % 3 == 0 ? a + Vec3{0.5, 0, 0} : a + 1e-3 * (test::uniform_point(random, box) - a);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+TEST(ProjectedGrid, FindsWhatAllTrianglesSayOfNeedlesLargeTrianglesAndFineParts) {
+  test::Random random(2);
+  const TriangleMesh fine = test::moved(test::sphere(12), {1e-4, 1e-4, 1e-4}, {0.3, 0.4, 0.5});
+  const TriangleMesh finest = test::moved(test::sphere(6), {1e-9, 1e-9, 1e-9}, {0.3, 0.4, 0.5});
+  const std::vector<TriangleMesh> meshes{needles(random, 600), test::soup(random, 300),
+                                         test::joined(test::joined(test::soup(random, 50), fine), finest),
+                                         test::fan(40, 25), test::open_box()};
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    SCOPED_TRACE("mesh " + std::to_string(i));
+    const Totals totals = check(meshes[i], queries_about(meshes[i], random, 120));
+    EXPECT_GT(totals.ties, 50U);
+  }
+}
+
+TEST(ProjectedGrid, FindsWhatAllTrianglesSayAtAnyMagnitude) {
+  test::Random random(3);
+  for (const auto& [factors, shift] : std::vector<std::array<Vec3, 2>>{{Vec3{1, 1, 1}, Vec3{5e5, 4.6e6, 120}},
+                                                                       {Vec3{1, 1e7, 1e-7}, Vec3{3, 5, 4}},
+                                                                       {Vec3{1e-300, 1e-300, 1e-300}, Vec3{0, 0, 0}},
+                                                                       {Vec3{1e-310, 1e-300, 1e250}, Vec3{0, 0, 0}},
+                                                                       {Vec3{1e300, 1e300, 1e300}, Vec3{0, 0, 0}},
+                                                                       {Vec3{1, 1, 0}, Vec3{0, 0, 1}},
+                                                                       {Vec3{0, 0, 0}, Vec3{1, 2, 3}}}) {
+    SCOPED_TRACE(std::to_string(std::log10(factors.y)) + " at " + std::to_string(shift.y));
+    const TriangleMesh mesh = test::moved(test::sphere(8), factors, shift);
+    (void)check(mesh, queries_about(mesh, random, 60));
+  }
+}
+
+TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
+  test::Random random(4);
+  const TriangleMesh mesh = test::sphere(60);
+  std::vector<Vec3> queries(2000);
+  for (Vec3& q : queries) q = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+  const Totals totals = check(mesh, queries);
+  EXPECT_GT(totals.crossed, 800U);
+  EXPECT_LT(totals.decided, queries.size() / 50);
+}
+
+}  // namespace
+}  // namespace raycone

@@ -74,9 +74,9 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
-  TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
+  TriangleMesh mesh =
+      timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
   report.warnings = std::move(file.parsed.warnings);
-  file.parsed.mesh = {};
   report.lattice = lattice_for(command, mesh, report.warnings);
   report.samples = sample_count(*report.lattice);
   warn(report.warnings, command.run, command.mesh.path);

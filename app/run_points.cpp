@@ -55,8 +55,8 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   describe(file, report);
   report.warnings = std::move(file.parsed.warnings);
   warn(report.warnings, command.run, command.mesh.path);
-  TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
-  file.parsed.mesh = {};
+  TriangleMesh mesh =
+      timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
 
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });

@@ -1,44 +1,100 @@
 #include "core/exterior_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <numeric>
+#include <span>
+
+#include "core/buckets.h"
+#include "core/threads.h"
 
 namespace raycone {
 namespace {
 
-// One traversal of an edge as its higher vertex and a direction, filed under its lower vertex.
-struct Traversal {
-  std::uint32_t high;
-  bool forward;
-};
+// Traversals of neighbouring lower vertices share a bucket, which fits a cache and is sorted there.
+constexpr int kBucketLog2 = 12;
+constexpr std::uint32_t kBucketMask = (1U << kBucketLog2) - 1;
 
-// Where the traversals of each lower vertex begin, and all of them, grouped (a counting sort).
-struct TraversalTable {
-  std::vector<std::size_t> begin;  // per vertex, and the end
-  std::vector<Traversal> traversals;
-};
+// One traversal of an edge, filed in the bucket of its lower vertex. From the top: the lower vertex counted from the
+// bucket's first, 32 bits for the higher one, one bit for low to high.
+using Traversal = std::uint64_t;
+constexpr int kLowShift = 33;
 
-template <class Visit>
-void for_each_traversal(const TriangleMesh& mesh, const Visit& visit) {
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t from = t[corner], to = t[(corner + 1) % 3];
-      if (from != to) visit(std::min(from, to), Traversal{std::max(from, to), from < to});
-    }
+Traversal traversal(std::uint32_t low, std::uint32_t high, bool forward) {
+  return Traversal{low & kBucketMask} << kLowShift | Traversal{high} << 1 | Traversal{forward};
+}
+std::uint32_t low_in_bucket(Traversal t) { return static_cast<std::uint32_t>(t >> kLowShift); }
+std::uint32_t high(Traversal t) { return static_cast<std::uint32_t>(t >> 1); }
+bool forward(Traversal t) { return (t & 1) != 0; }
+
+Buckets<Traversal> traversals_of(const TriangleMesh& mesh) {
+  const std::size_t count = (mesh.vertices.size() >> kBucketLog2) + 1;
+  return {mesh.triangles.size(), count, [&](std::size_t begin, std::size_t end, auto emit) {
+            for (std::size_t i = begin; i < end; ++i) {
+              const Triangle& t = mesh.triangles[i];
+              for (std::size_t corner = 0; corner < 3; ++corner) {
+                const std::uint32_t from = t[corner], to = t[corner < 2 ? corner + 1 : 0];
+                const std::uint32_t low = std::min(from, to);
+                if (from != to) emit(low >> kBucketLog2, traversal(low, std::max(from, to), from < to));
+              }
+            }
+          }};
+}
+
+// Few nearly always: six edges meet at a vertex of a large mesh.
+void sort(std::span<Traversal> traversals) {
+  constexpr std::size_t kFew = 24;
+  if (traversals.size() > kFew) return std::sort(traversals.begin(), traversals.end());
+  for (std::size_t i = 1; i < traversals.size(); ++i) {
+    const Traversal t = traversals[i];
+    std::size_t place = i;
+    for (; place > 0 && traversals[place - 1] > t; --place) traversals[place] = traversals[place - 1];
+    traversals[place] = t;
   }
 }
 
-TraversalTable traversal_table(const TriangleMesh& mesh) {
-  TraversalTable table;
-  table.begin.assign(mesh.vertices.size() + 2, 0);
-  for_each_traversal(mesh, [&](std::uint32_t low, const Traversal&) { ++table.begin[low + 2]; });
-  std::partial_sum(table.begin.begin(), table.begin.end(), table.begin.begin());
-  table.traversals.resize(table.begin.back());
+// By lower vertex, then higher one: a counting sort, then one sort per lower vertex.
+std::vector<Traversal> sorted(std::span<const Traversal> bucket) {
+  std::array<std::uint32_t, kBucketMask + 3> begin{};
+  for (const Traversal t : bucket) ++begin[low_in_bucket(t) + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Traversal> all(bucket.size());
   // begin[v + 1] is the next free place of vertex v, and its end when all are filled.
-  for_each_traversal(mesh,
-                     [&](std::uint32_t low, const Traversal& t) { table.traversals[table.begin[low + 1]++] = t; });
-  return table;
+  for (const Traversal t : bucket) all[begin[low_in_bucket(t) + 1]++] = t;
+  for (std::size_t v = 0; v <= kBucketMask; ++v) sort(std::span(all).subspan(begin[v], begin[v + 1] - begin[v]));
+  return all;
+}
+
+// Calls visit for each edge whose traversals are in the bucket, by increasing low, then high.
+template <class Visit>
+void for_each_edge_in(std::span<const Traversal> bucket, std::uint32_t first_vertex, const Visit& visit) {
+  const std::vector<Traversal> all = sorted(bucket);
+  for (auto it = all.begin(); it != all.end();) {
+    const Traversal edge = *it >> 1;
+    EdgeUse use{first_vertex + low_in_bucket(*it), high(*it), 0, 0};
+    for (; it != all.end() && *it >> 1 == edge; ++it) ++(forward(*it) ? use.forward : use.backward);
+    visit(use);
+  }
+}
+
+std::uint32_t first_vertex_of(std::size_t bucket) { return static_cast<std::uint32_t>(bucket << kBucketLog2); }
+
+// By increasing low, then high.
+std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh) {
+  const Buckets<Traversal> buckets = traversals_of(mesh);
+  std::vector<std::vector<ExteriorEdge>> parts(buckets.count());
+  parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for_each_edge_in(buckets[n], first_vertex_of(n), [&](const EdgeUse& use) {
+        const std::int32_t net = static_cast<std::int32_t>(use.forward - use.backward);
+        if (net != 0) parts[n].push_back({use.low, use.high, net});
+      });
+    }
+  });
+  std::vector<ExteriorEdge> edges;
+  for (const auto& part : parts) edges.insert(edges.end(), part.begin(), part.end());
+  return edges;
 }
 
 // Orders the edges of one |multiplicity| into chains, walking from the lexicographically smallest vertex with an unused
@@ -108,25 +164,12 @@ class Chains {
 }  // namespace
 
 void for_each_edge(const TriangleMesh& mesh, const std::function<void(const EdgeUse&)>& visit) {
-  TraversalTable table = traversal_table(mesh);
-  for (std::uint32_t low = 0; low < mesh.vertices.size(); ++low) {
-    const auto begin = table.traversals.begin() + static_cast<std::ptrdiff_t>(table.begin[low]);
-    const auto end = table.traversals.begin() + static_cast<std::ptrdiff_t>(table.begin[low + 1]);
-    std::sort(begin, end, [](const Traversal& a, const Traversal& b) { return a.high < b.high; });
-    for (auto it = begin; it != end;) {
-      EdgeUse use{low, it->high, 0, 0};
-      for (; it != end && it->high == use.high; ++it) ++(it->forward ? use.forward : use.backward);
-      visit(use);
-    }
-  }
+  const Buckets<Traversal> buckets = traversals_of(mesh);
+  for (std::size_t n = 0; n < buckets.count(); ++n) for_each_edge_in(buckets[n], first_vertex_of(n), visit);
 }
 
 std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh) {
-  std::vector<ExteriorEdge> edges;
-  for_each_edge(mesh, [&](const EdgeUse& use) {
-    const std::int32_t net = static_cast<std::int32_t>(use.forward - use.backward);
-    if (net != 0) edges.push_back({use.low, use.high, net});
-  });
+  std::vector<ExteriorEdge> edges = unordered_exterior_edges(mesh);
   std::stable_sort(edges.begin(), edges.end(), [](const ExteriorEdge& a, const ExteriorEdge& b) {
     return std::abs(a.multiplicity) < std::abs(b.multiplicity);
   });

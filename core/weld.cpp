@@ -1,11 +1,16 @@
 #include "core/weld.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <unordered_map>
+
+#include "core/buckets.h"
+#include "core/threads.h"
 
 namespace raycone {
 namespace {
@@ -17,8 +22,8 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
   return h ^ (h >> 29);
 }
 
-std::uint64_t hash(const Vec3& p) {
-  std::uint64_t h = mix(0, std::bit_cast<std::uint64_t>(p.x));
+std::uint64_t hash(const Vec3& p, std::uint64_t seed = 0) {
+  std::uint64_t h = mix(seed, std::bit_cast<std::uint64_t>(p.x));
   h = mix(h, std::bit_cast<std::uint64_t>(p.y));
   return mix(h, std::bit_cast<std::uint64_t>(p.z));
 }
@@ -31,22 +36,70 @@ bool same_bits(const Vec3& a, const Vec3& b) {
 
 Vec3 with_positive_zeros(const Vec3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
 
-// For each vertex the index of the first bitwise equal one, renumbered in order of first appearance.
-std::vector<std::uint32_t> weld_exactly(std::vector<Vec3>& vertices) {
-  const std::size_t slots = std::bit_ceil(2 * vertices.size() + 1);
-  std::vector<std::uint32_t> table(slots, kNone);  // open addressing: representatives
-  std::vector<std::uint32_t> representative(vertices.size());
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    std::size_t slot = hash(vertices[i]) & (slots - 1);
-    while (table[slot] != kNone && !same_bits(vertices[table[slot]], vertices[i])) slot = (slot + 1) & (slots - 1);
-    if (table[slot] == kNone) {
-      table[slot] = count;
-      vertices[count++] = vertices[i];  // count <= i: never overwrites a vertex not yet seen
-    }
-    representative[i] = table[slot];
+struct HashedVertex {
+  std::uint64_t hash;
+  std::uint32_t index;
+};
+
+// Sets first[i] of the vertices of one bucket to the smallest index of a vertex of the same hash. Buckets hold all
+// vertices of a hash, by increasing index.
+void find_first(std::span<const HashedVertex> bucket, std::vector<std::uint32_t>& first) {
+  const std::size_t slots = std::bit_ceil(2 * bucket.size() + 1);
+  std::vector<HashedVertex> table(slots, {0, kNone});  // open addressing
+  for (const HashedVertex& vertex : bucket) {
+    std::size_t slot = vertex.hash & (slots - 1);
+    while (table[slot].index != kNone && table[slot].hash != vertex.hash) slot = (slot + 1) & (slots - 1);
+    if (table[slot].index == kNone) table[slot] = vertex;
+    first[vertex.index] = table[slot].index;
   }
-  vertices.resize(count);
+}
+
+// For each vertex the index of the first one of the same hash. The vertices themselves stay untouched meanwhile: they
+// are far apart in memory, where those of one hash are found.
+std::vector<std::uint32_t> first_of_same_hash(const std::vector<Vec3>& vertices, std::uint64_t seed) {
+  constexpr std::size_t kBucket = 4096;  // vertices: its table fits the second-level cache
+  constexpr std::size_t kMaxBuckets = 4096;
+  const std::size_t count = std::min(std::bit_ceil(vertices.size() / kBucket + 1), kMaxBuckets);
+  const Buckets<HashedVertex> buckets(vertices.size(), count, [&](std::size_t begin, std::size_t end, auto emit) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint64_t h = hash(vertices[i], seed);
+      emit((h >> 40) & (count - 1), HashedVertex{h, static_cast<std::uint32_t>(i)});
+    }
+  });
+  std::vector<std::uint32_t> first(vertices.size());
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) find_first(buckets[n], first);
+  });
+  return first;
+}
+
+// For each vertex the index of the first bitwise equal one.
+std::vector<std::uint32_t> first_equal(const std::vector<Vec3>& vertices) {
+  for (std::uint64_t seed = 0;; ++seed) {
+    std::vector<std::uint32_t> first = first_of_same_hash(vertices, seed);
+    std::atomic<bool> collision = false;
+    parallel_for(vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!same_bits(vertices[i], vertices[first[i]])) collision = true;
+      }
+    });
+    if (!collision) return first;
+  }
+}
+
+// Keeps the first of bitwise equal vertices, in their order. Returns for each vertex the one that stands for it.
+std::vector<std::uint32_t> weld_exactly(std::vector<Vec3>& vertices) {
+  std::vector<std::uint32_t> representative = first_equal(vertices);
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (representative[i] == i) {
+      vertices[kept] = vertices[i];
+      representative[i] = kept++;
+    } else {
+      representative[i] = representative[representative[i]];
+    }
+  }
+  vertices.resize(kept);
   return representative;
 }
 
@@ -108,19 +161,18 @@ std::vector<std::uint32_t> weld_by_distance(std::vector<Vec3>& vertices, double 
 
 }  // namespace
 
-TriangleMesh weld(const TriangleMesh& mesh, const Weld& how) {
-  TriangleMesh welded = mesh;
-  for (Vec3& p : welded.vertices) p = with_positive_zeros(p);
-  if (how.mode == WeldMode::kNone) return welded;
-  std::vector<std::uint32_t> representative = weld_exactly(welded.vertices);
+TriangleMesh weld(TriangleMesh mesh, const Weld& how) {
+  for (Vec3& p : mesh.vertices) p = with_positive_zeros(p);
+  if (how.mode == WeldMode::kNone) return mesh;
+  std::vector<std::uint32_t> representative = weld_exactly(mesh.vertices);
   if (how.mode == WeldMode::kDistance) {
-    const std::vector<std::uint32_t> nearer = weld_by_distance(welded.vertices, how.distance);
+    const std::vector<std::uint32_t> nearer = weld_by_distance(mesh.vertices, how.distance);
     for (std::uint32_t& r : representative) r = nearer[r];
   }
-  for (Triangle& triangle : welded.triangles) {
+  for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& v : triangle) v = representative[v];
   }
-  return welded;
+  return mesh;
 }
 
 }  // namespace raycone

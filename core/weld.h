@@ -16,6 +16,6 @@ struct Weld {
 // lexicographic order of (x, y, z): a vertex joins the first earlier representative within `distance`, or becomes one.
 // Triangles keep their number and order and refer to the representatives. The result does not depend on the order of
 // faces, for kDistance nor on that of vertices; with kNone only the zeros change.
-[[nodiscard]] TriangleMesh weld(const TriangleMesh& mesh, const Weld& how);
+[[nodiscard]] TriangleMesh weld(TriangleMesh mesh, const Weld& how);
 
 }  // namespace raycone

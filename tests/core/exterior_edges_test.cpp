@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <map>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/mesh_statistics.h"
 #include "tests/support/shapes.h"
@@ -96,6 +98,20 @@ TEST(MeshStatistics, OfAFan) {
   EXPECT_EQ(s.components, 1U);
   EXPECT_FALSE(s.closed());
   EXPECT_FALSE(s.signed_volume.has_value());
+}
+
+// More vertices than fit one piece of work, and vertices with very many edges.
+TEST(ExteriorEdges, OfLargeMeshesAreTheirBoundaryChain) {
+  test::Random random(12);
+  const TriangleMesh mesh = test::joined(test::lattice_soup(random, 70'000, 24), test::lattice_soup(random, 500, 1));
+  EXPECT_GT(mesh.vertices.size(), 15'000U);
+  const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
+  EXPECT_EQ(chain_of(mesh, edges), chain_by_definition(mesh));
+  std::pair<std::uint32_t, std::uint32_t> last{0, 0};
+  for_each_edge(mesh, [&](const EdgeUse& use) {
+    EXPECT_LT(last, std::pair(use.low, use.high));
+    last = {use.low, use.high};
+  });
 }
 
 TEST(MeshStatistics, TwoFacesInTheSameDirectionAreInconsistent) {

@@ -4,6 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <random>
+#include <tuple>
+#include <vector>
 
 #include "tests/support/shapes.h"
 
@@ -60,6 +64,30 @@ TEST(Weld, DistanceDoesNotDependOnTheOrderOfVertices) {
   const std::vector<Vec3> expected = representatives(mesh);
   EXPECT_LT(expected.size(), mesh.vertices.size());
   EXPECT_EQ(representatives(test::shuffled(mesh, random)), expected);
+}
+
+// More vertices than fit one piece of work: the first of each position stays, in their order.
+TEST(Weld, LargeMeshesKeepTheFirstOfEachPosition) {
+  test::Random random(11);
+  TriangleMesh mesh;
+  std::map<std::tuple<double, double, double>, std::uint32_t> kept;
+  std::vector<Vec3> expected_vertices;
+  std::vector<Triangle> expected_triangles;
+  for (std::uint32_t i = 0; i < 210'000; ++i) {
+    const auto coordinate = [&] { return std::uniform_int_distribution<int>(0, 40)(random) / 7.0; };
+    const Vec3 p{coordinate(), coordinate(), coordinate()};
+    mesh.vertices.push_back(p);
+    const auto [place, is_new] = kept.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(kept.size()));
+    if (is_new) expected_vertices.push_back(p);
+    if (i % 3 == 0) {
+      mesh.triangles.push_back({i, i + 1, i + 2});
+      expected_triangles.emplace_back();
+    }
+    expected_triangles.back()[i % 3] = place->second;
+  }
+  const TriangleMesh welded = weld(mesh, {});
+  EXPECT_EQ(welded.vertices, expected_vertices);
+  EXPECT_EQ(welded.triangles, expected_triangles);
 }
 
 TEST(Weld, UnusedNonFiniteVerticesDoNoHarm) {

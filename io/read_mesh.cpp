@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/threads.h"
 #include "io/file_error.h"
 #include "io/mesh_builder.h"
 #include "io/mesh_signature.h"
@@ -93,11 +94,16 @@ MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   const MeshSource source{path, directory_of(path), bytes};
   MeshFile file;
   if (path != "-") file.files_read.push_back(path);
-  file.parsed = parse(source, format_of(source, options), &file.files_read);
+  const MeshFormat format = format_of(source, options);
+  // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.
+  constexpr std::size_t kLarge = std::size_t{1} << 20;
+  parallel_for(2, bytes.size() < kLarge ? 2 : 1, [&](std::size_t begin, std::size_t end) {
+    if (begin == 0) file.parsed = parse(source, format, &file.files_read);
+    if (end == 2) file.sha256 = sha256(bytes);
+  });
   if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");
   transform(file.parsed.mesh.vertices, options);
   if (options.scale != 1.0) check_finite(file.parsed.mesh, path);
-  file.sha256 = sha256(bytes);
   return file;
 }
 

@@ -124,10 +124,9 @@ Lattice read(const std::string& path, const std::string& wanted) {
   read_transform(path, *head, lattice);
   const openvdb::CoordBBox extent = read_extent(path, *head, wanted);
   if (extent.empty()) fail(path, *head, "has no active voxels, expected some, or a lattice recorded by raycone");
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    lattice.index_min[a] = extent.min()[axis];
-    lattice.counts[a] = std::int64_t{extent.max()[axis]} - extent.min()[axis] + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lattice.index_min[axis] = extent.min()[axis];
+    lattice.counts[axis] = std::int64_t{extent.max()[axis]} - extent.min()[axis] + 1;
   }
   return lattice;
 }

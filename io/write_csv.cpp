@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <concepts>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/threads.h"
 #include "io/format_writers.h"
 
 namespace raycone {
@@ -24,6 +27,7 @@ std::string columns_of(const OutputDescription& description) {
 
 // Prints at `at`, where there is room for kMaxNumber characters, and returns the end. -0 prints as 0.
 template <typename Number>
+requires std::integral<Number> || std::floating_point<Number>
 char* print(char* at, Number value) {
   if (value == 0) value = 0;
   return std::to_chars(at, at + kMaxNumber, value).ptr;
@@ -42,44 +46,66 @@ std::string joined(Numbers... numbers) {
   return {text.data(), end};
 }
 
-// Collects rows and hands them to the file in large pieces. begin_row() makes room for one row.
-class RowBuffer {
+char* print(char* at, std::string_view text) {
+  std::memcpy(at, text.data(), text.size());
+  return at + text.size();
+}
+
+// Prints sample n's number of each field, and the end of the row.
+char* print(char* at, std::span<const FieldValues> fields, std::size_t n) {
+  for (const FieldValues& field : fields) {
+    if (const auto* const reals = std::get_if<std::span<const double>>(&field)) {
+      at = print(at, (*reals)[n]);
+    } else {
+      std::visit([&](const auto& numbers) { at = print(at, std::int64_t(numbers[n])); }, field);
+    }
+    *at++ = ',';
+  }
+  at[-1] = '\n';
+  return at;
+}
+
+// Prints rows on all threads, piece by piece, and writes them in order.
+class RowWriter {
  public:
   // Rows have at most `columns` numbers.
-  RowBuffer(OutputFile& output, std::size_t columns)
-      : output_(output), longest_row_(columns * (kMaxNumber + 1)), bytes_(std::max(longest_row_, std::size_t{65536})) {}
+  RowWriter(OutputFile& output, std::size_t columns) : output_(output), longest_row_(columns * (kMaxNumber + 1)) {}
 
-  void begin_row() {
-    if (static_cast<std::size_t>(bytes_.data() + bytes_.size() - end_) < longest_row_) hand_over();
-  }
-  void append(std::string_view text) {
-    std::memcpy(end_, text.data(), text.size());
-    end_ += text.size();
-  }
-  void append(char c) { *end_++ = c; }
-  void append(double value) { end_ = print(end_, value); }
-  // Sample n's number of each field, and the end of the row.
-  void append(std::span<const FieldValues> fields, std::size_t n) {
-    for (const FieldValues& field : fields) {
-      if (const auto* const reals = std::get_if<std::span<const double>>(&field)) {
-        end_ = print(end_, (*reals)[n]);
-      } else {
-        std::visit([&](const auto& numbers) { end_ = print(end_, std::int64_t(numbers[n])); }, field);
+  // print_rows(at, begin, end) prints the rows begin to end - 1 and returns what follows them.
+  template <class PrintRows>
+  void write(std::size_t count, const PrintRows& print_rows) {
+    for (std::size_t begin = 0; begin < count; begin += kPieces * kPieceRows) {
+      const std::size_t rows = std::min(count - begin, kPieces * kPieceRows);
+      const std::size_t pieces = (rows + kPieceRows - 1) / kPieceRows;
+      while (pieces_.size() < pieces) pieces_.emplace_back(longest_row_ * kPieceRows);
+      parallel_for(pieces, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+          const std::size_t from = begin + n * kPieceRows;
+          char* const text = pieces_[n].text.get();
+          pieces_[n].end = print_rows(text, from, std::min(from + kPieceRows, count));
+        }
+      });
+      for (std::size_t n = 0; n < pieces; ++n) {
+        const char* const text = pieces_[n].text.get();
+        output_.write(text, static_cast<std::size_t>(pieces_[n].end - text));
       }
-      *end_++ = ',';
     }
-    end_[-1] = '\n';
-  }
-  void hand_over() {
-    output_.write(bytes_.data(), static_cast<std::size_t>(end_ - bytes_.data()));
-    end_ = bytes_.data();
   }
 
  private:
+  // As many as keep the threads busy, and few enough that their text stays in the cache.
+  static constexpr std::size_t kPieceRows = 1024;
+  static constexpr std::size_t kPieces = 32;
+
+  struct Piece {
+    explicit Piece(std::size_t size) : text(std::make_unique_for_overwrite<char[]>(size)) {}
+    std::unique_ptr<char[]> text;
+    char* end = nullptr;
+  };
+
   OutputFile& output_;
   std::size_t longest_row_;  // characters
-  std::vector<char> bytes_;
-  char* end_ = bytes_.data();
+  std::vector<Piece> pieces_;
 };
 
 class CsvLatticeWriter final : public LatticeWriter {
@@ -100,38 +126,39 @@ class CsvLatticeWriter final : public LatticeWriter {
   std::int64_t slab_alignment() const override { return 1; }
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
-    std::size_t row = 0;
-    for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
-      for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-        write_row(j, k, row, fields);
-        row += i_texts_.size();
-      }
-    }
-    rows_.hand_over();
+    rows_.write(static_cast<std::size_t>(block.size()), [&](char* at, std::size_t begin, std::size_t end) {
+      return print_rows(at, block, fields, begin, end);
+    });
   }
 
   void finish(const FieldTotals&) override { output_.commit(); }
 
  private:
-  // The samples of `fields` from `begin` on.
-  void write_row(std::int64_t j, std::int64_t k, std::size_t begin, std::span<const FieldValues> fields) {
-    const std::string jk = joined(j, k);
-    const std::string yz = joined(lattice_.coordinate(1, j), lattice_.coordinate(2, k));
-    for (std::size_t n = 0; n < i_texts_.size(); ++n) {
-      rows_.begin_row();
-      rows_.append(i_texts_[n]);
-      rows_.append(jk);
-      rows_.append(x_texts_[n]);
-      rows_.append(yz);
-      rows_.append(fields, begin + n);
+  // The samples begin to end - 1 of the block.
+  char* print_rows(char* at, const LatticeBlock& block, std::span<const FieldValues> fields, std::size_t begin,
+                   std::size_t end) const {
+    const std::size_t length = i_texts_.size();
+    while (begin < end) {
+      const auto line = static_cast<std::int64_t>(begin / length);
+      const std::int64_t j = block.first[1] + line % block.counts[1];
+      const std::int64_t k = block.first[2] + line / block.counts[1];
+      const std::string jk = joined(j, k);
+      const std::string yz = joined(lattice_.coordinate(1, j), lattice_.coordinate(2, k));
+      std::size_t i = begin % length;
+      for (const std::size_t line_end = std::min(end, begin - i + length); begin < line_end; ++begin, ++i) {
+        at = print(print(at, i_texts_[i]), jk);
+        at = print(print(at, x_texts_[i]), yz);
+        at = print(at, fields, begin);
+      }
     }
+    return at;
   }
 
   OutputFile& output_;
   Lattice lattice_;
   std::vector<std::string> i_texts_;  // of each sample along x, with the comma behind it
   std::vector<std::string> x_texts_;
-  RowBuffer rows_;
+  RowWriter rows_;
 };
 
 class CsvPointWriter final : public PointWriter {
@@ -143,15 +170,16 @@ class CsvPointWriter final : public PointWriter {
   }
 
   void write(std::span<const Vec3> points, std::span<const FieldValues> fields) override {
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      rows_.begin_row();
-      for (const double number : {points[n].x, points[n].y, points[n].z}) {
-        rows_.append(number);
-        rows_.append(',');
+    rows_.write(points.size(), [&](char* at, std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        for (const double number : {points[n].x, points[n].y, points[n].z}) {
+          at = print(at, number);
+          *at++ = ',';
+        }
+        at = print(at, fields, n);
       }
-      rows_.append(fields, n);
-    }
-    rows_.hand_over();
+      return at;
+    });
   }
 
   void flush() override { output_.flush(); }
@@ -159,7 +187,7 @@ class CsvPointWriter final : public PointWriter {
 
  private:
   OutputFile& output_;
-  RowBuffer rows_;
+  RowWriter rows_;
 };
 
 }  // namespace

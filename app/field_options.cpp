@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,15 +13,12 @@ namespace {
 
 constexpr const char* kRules = "threshold=T, abs=T, nonzero, positive or odd";
 
-const std::set<std::string_view> kLaterFields{"sdf"};
-
 std::vector<Field> parse_fields(const Values& values) {
   std::vector<Field> fields;
   const std::string text = values.text("--field");
   for (const std::string_view name : items_of(text)) {
-    if (kLaterFields.contains(name)) not_available("--field " + std::string(name));
     const std::optional<Field> field = field_from_name(name);
-    if (!field) invalid("--field", text, "one or more of winding, inside, density");
+    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf");
     if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
     fields.push_back(*field);
   }
@@ -33,8 +29,9 @@ std::vector<Field> parse_fields(const Values& values) {
 
 OptionGroup field_group() {
   return {"Field",
-          {{"--field", "F[,F...]", "winding (default), inside (whether the rule holds), density (w clamped to 0..1)"},
+          {{"--field", "F[,F...]", "Of winding (default), inside, density (w clamped to 0..1), sdf (signed distance)"},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
+           {"--band", "B", "Voxels on either side of the surface where sdf is not cut off (default: 3)"},
            {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value"},
            {"--verify", "N", "Check N samples against direct sums in 113 bits: 2.7 us per triangle and sample"}}};
 }
@@ -42,7 +39,7 @@ OptionGroup field_group() {
 // Exact is all there is: 0, the default, is accepted for scripts that state it.
 OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
 
-OptionNames later_field_options() { return {{"--band", "--engine", "--simd", "--depfile"}, {}}; }
+OptionNames later_field_options() { return {{"--engine", "--simd", "--depfile"}, {}}; }
 
 FieldOptions parse_field(const Values& values) {
   if (values.given("--tolerance")) {
@@ -57,6 +54,7 @@ FieldOptions parse_field(const Values& values) {
     if (!rule) invalid("--rule", values.text("--rule"), kRules);
     options.rule = *rule;
   }
+  if (values.given("--band")) options.band = values.positive("--band");
   options.diagnostics = values.given("--diagnostics");
   constexpr std::int64_t kMaxVerified = 1'000'000'000;
   if (values.given("--verify")) {

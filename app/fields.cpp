@@ -13,7 +13,7 @@ namespace {
 // Samples per task of loops that do next to nothing for each.
 constexpr std::size_t kGrain = std::size_t{1} << 14;
 
-FieldDescription describe_field(Field field, const Rule& rule) {
+FieldDescription describe_field(Field field, const Rule& rule, double band_width) {
   FieldDescription description;
   switch (field) {
     case Field::kWinding:
@@ -24,16 +24,22 @@ FieldDescription describe_field(Field field, const Rule& rule) {
     case Field::kDensity:
       description = {"density", "density", "density", FieldKind::kDensity, 0.0, ""};
       break;
+    case Field::kDistance:
+      description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
+      break;
   }
   return description;
 }
 
 }  // namespace
 
+bool FieldOptions::has(Field field) const { return std::ranges::count(fields, field) > 0; }
+
 std::optional<Field> field_from_name(std::string_view name) {
   if (name == "winding") return Field::kWinding;
   if (name == "inside") return Field::kInside;
   if (name == "density") return Field::kDensity;
+  if (name == "sdf") return Field::kDistance;
   return std::nullopt;
 }
 
@@ -67,9 +73,9 @@ std::string name_of(const Rule& rule) {
   return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
 }
 
-std::vector<FieldDescription> describe_fields(const FieldOptions& options) {
+std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
   std::vector<FieldDescription> descriptions;
-  for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule));
+  for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
   if (!options.diagnostics) return descriptions;
   for (const auto& [name, kind] :
        {std::pair("crossings", FieldKind::kCount), std::pair("degenerate", FieldKind::kCount),
@@ -87,13 +93,11 @@ std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
   std::size_t bytes = sizeof(double);  // the winding number, which all others come from
   for (const Field field : options.fields) {
     if (field == Field::kInside) bytes += sizeof(std::uint8_t);
-    if (field == Field::kDensity) bytes += sizeof(double);
+    if (field == Field::kDensity || field == Field::kDistance) bytes += sizeof(double);
   }
   if (options.diagnostics) bytes += 2 * sizeof(std::int64_t) + sizeof(std::uint8_t) + sizeof(double);
   return bytes;
 }
-
-bool FieldSamples::has(Field field) const { return std::ranges::count(options_.fields, field) > 0; }
 
 FieldValues FieldSamples::values_of(Field field) const {
   switch (field) {
@@ -103,14 +107,17 @@ FieldValues FieldSamples::values_of(Field field) const {
       return std::span(inside_);
     case Field::kDensity:
       return std::span(density_);
+    case Field::kDistance:
+      return std::span(distances_);
   }
   return std::span(winding_numbers_);
 }
 
 void FieldSamples::resize(std::size_t count) {
   winding_numbers_.resize(count);
-  if (has(Field::kInside)) inside_.resize(count);
-  if (has(Field::kDensity)) density_.resize(count);
+  if (options_.has(Field::kInside)) inside_.resize(count);
+  if (options_.has(Field::kDensity)) density_.resize(count);
+  if (options_.has(Field::kDistance)) distances_.resize(count);
   fields_.clear();
   for (const Field field : options_.fields) fields_.push_back(values_of(field));
   if (!diagnostics_) return;
@@ -124,13 +131,15 @@ void FieldSamples::resize(std::size_t count) {
 }
 
 void FieldSamples::derive() {
-  const bool inside = has(Field::kInside), density = has(Field::kDensity);
-  if (!inside && !density) return;
+  const bool inside = options_.has(Field::kInside), density = options_.has(Field::kDensity);
+  const bool distance = options_.has(Field::kDistance);
+  if (!inside && !density && !distance) return;
   parallel_for(winding_numbers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const double w = winding_numbers_[n];
       if (inside) inside_[n] = holds(options_.rule, w) ? 1 : 0;
       if (density) density_[n] = std::clamp(w, 0.0, 1.0);
+      if (distance && holds(options_.rule, w)) distances_[n] = -distances_[n];
     }
   });
 }

@@ -17,11 +17,12 @@ namespace raycone {
 
 enum class Field {
   kWinding,
-  kInside,   // whether the rule holds
-  kDensity,  // the winding number, clamped to [0, 1]
+  kInside,    // whether the rule holds
+  kDensity,   // the winding number, clamped to [0, 1]
+  kDistance,  // to the triangles, signed: negative inside
 };
 
-// "winding", "inside" or "density".
+// "winding", "inside", "density" or "sdf".
 [[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
 
 // As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
@@ -31,13 +32,16 @@ enum class Field {
 struct FieldOptions {
   std::vector<Field> fields{Field::kWinding};  // at least one, none twice
   Rule rule;
+  double band = 3.0;  // voxels; of distances on lattices
   bool diagnostics = false;
   std::uint64_t verify = 0;  // samples to be computed again as direct sums
+
+  [[nodiscard]] bool has(Field field) const;
 };
 
 // What is written of each sample, in this order: the fields, then crossings, degenerate, on_surface and error_bound
-// where diagnostics are wanted.
-[[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options);
+// where diagnostics are wanted. `band_width`: where distances are cut off, in world units.
+[[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width);
 
 // Room for all numbers of a slab or batch of samples.
 class FieldSamples {
@@ -52,23 +56,25 @@ class FieldSamples {
   void resize(std::size_t count);
 
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
+  // Unsigned until derive(). Empty where they are not wanted.
+  [[nodiscard]] std::span<double> distances() { return distances_; }
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
-  // Computes the fields that follow from winding_numbers(). Threaded.
+  // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
   void derive();
 
   // As describe_fields() lists them.
   [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }
 
  private:
-  [[nodiscard]] bool has(Field field) const;
   [[nodiscard]] FieldValues values_of(Field field) const;
 
   FieldOptions options_;
   std::vector<double> winding_numbers_;
   std::vector<std::uint8_t> inside_;
   std::vector<double> density_;
+  std::vector<double> distances_;
   std::vector<std::int64_t> crossings_;
   std::vector<std::int64_t> degenerate_;
   std::vector<std::uint8_t> on_surface_;

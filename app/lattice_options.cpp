@@ -1,6 +1,7 @@
 #include "app/lattice_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -66,6 +67,15 @@ void check_npy(const LatticeCommand& command) {
   if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
 }
 
+// A level set needs the band on the outside too.
+void make_room_for_band(const Values& values, LatticeCommand& command) {
+  if (values.given("--padding") || values.given("--bounds") || values.given("--like")) return;
+  constexpr double kMost = 1e6;
+  if (command.field.band > kMost) invalid("--band", values.text("--band"), "at most a million voxels");
+  const auto samples = static_cast<std::int64_t>(std::ceil(command.field.band + 1));
+  std::get<LatticeRequest>(command.lattice).padding = VoxelPadding{samples};
+}
+
 OptionNames later_options() {
   OptionNames names = later_field_options();
   names.with_value.insert("--grid-name");
@@ -123,6 +133,7 @@ Command parse_lattice(const Values& values) {
   command.mesh = parse_mesh(values);
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
+  if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
   command.output =
       parse_output(values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy}, "vdb, csv or npy", "vti"});
   command.output.double_precision = values.given("--double");

@@ -1,6 +1,8 @@
 // Straight lines: output opened, mesh read, welded, evaluator built, samples evaluated and written.
 #include "app/run_lattice.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,15 +10,16 @@
 #include <variant>
 #include <vector>
 
+#include "app/field_evaluator.h"
 #include "app/fields.h"
 #include "app/lattice_choice.h"
 #include "app/limits.h"
 #include "app/progress.h"
 #include "app/slabs.h"
 #include "app/stopwatch.h"
+#include "app/usage_error.h"
 #include "app/verify.h"
 #include "core/weld.h"
-#include "core/winding_number.h"
 #include "io/field_writer.h"
 #include "io/output_file.h"
 #include "io/read_vdb.h"
@@ -24,9 +27,25 @@
 namespace raycone {
 namespace {
 
+// A level set has one voxel size.
+void check_cubic(const Vec3& spacing) {
+  constexpr double kRounding = 1e-12;  // of sides divided by counts
+  const auto [least, most] = std::minmax({spacing.x, spacing.y, spacing.z});
+  if (most - least <= kRounding * most) return;
+  char message[160];
+  std::snprintf(message, sizeof message,
+                "--field sdf: voxels of %g x %g x %g, expected cubic ones (--resolution N, --voxel-size H)", spacing.x,
+                spacing.y, spacing.z);
+  throw UsageError(message);
+}
+
 Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
-  if (const auto* grid = std::get_if<GridReference>(&command.lattice)) return read_vdb_lattice(grid->path, grid->name);
-  return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  const Lattice lattice = grid
+                              ? read_vdb_lattice(grid->path, grid->name)
+                              : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
+  if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
+  return lattice;
 }
 
 LatticeBlock first_slab(const Lattice& lattice, const LatticeWriter& writer) {
@@ -51,15 +70,12 @@ LatticeBlock slab_behind(const LatticeBlock& slab, const Lattice& lattice, const
   return slab_from(lattice, writer.slab_axis(), writer.slab_alignment(), slab.first[axis] + slab.counts[axis]);
 }
 
-void evaluate_lattice(const WindingNumberEvaluator& evaluator, LatticeWriter& writer, FieldSamples& samples,
-                      SampleDraw& draw, Progress& progress, RunReport& report) {
+void evaluate_lattice(const FieldEvaluator& evaluator, LatticeWriter& writer, FieldSamples& samples, SampleDraw& draw,
+                      Progress& progress, RunReport& report) {
   const Lattice& lattice = *report.lattice;
   for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
-    samples.resize(static_cast<std::size_t>(slab.size()));
-    report.tally += timed(report.seconds.evaluate, [&] {
-      return evaluator.evaluate(lattice, slab, samples.winding_numbers(), progress.done(), samples.diagnostics());
-    });
-    timed(report.seconds.evaluate, [&] { samples.derive(); });
+    report.tally +=
+        timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, samples, progress.done()); });
     draw.offer(lattice, slab, samples.winding_numbers());
     timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
   }
@@ -82,15 +98,16 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
   warn(report.warnings, command.run, command.mesh.path);
 
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
-  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
-  report.exterior_edges = evaluator.exterior_edges();
+  const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });
+  report.exterior_edges = evaluator.winding_number().exterior_edges();
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, output, report, limits);
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
   FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_lattice(evaluator, *writer, samples, draw, progress, report);
-  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
+  if (command.field.verify > 0)
+    report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   progress.stop();
   total.reset();

@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "app/field_evaluator.h"
 #include "app/fields.h"
 #include "app/limits.h"
 #include "app/progress.h"
 #include "app/stopwatch.h"
 #include "app/verify.h"
 #include "core/weld.h"
-#include "core/winding_number.h"
 #include "io/field_writer.h"
 #include "io/output_file.h"
 #include "io/read_points.h"
@@ -25,17 +25,14 @@ namespace {
 constexpr std::size_t kPointBatch = std::size_t{1} << 18;
 
 // Answers are handed on whenever the next question would have to be waited for.
-void evaluate_points(const WindingNumberEvaluator& evaluator, PointReader& reader, PointWriter& writer,
-                     FieldSamples& samples, SampleDraw& draw, Progress& progress, RunReport& report) {
+void evaluate_points(const FieldEvaluator& evaluator, PointReader& reader, PointWriter& writer, FieldSamples& samples,
+                     SampleDraw& draw, Progress& progress, RunReport& report) {
   std::vector<Vec3> points;
   for (;;) {
     if (reader.would_block()) writer.flush();
     if (!timed(report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
-    samples.resize(points.size());
-    report.tally += timed(report.seconds.evaluate, [&] {
-      return evaluator.evaluate(points, samples.winding_numbers(), progress.done(), samples.diagnostics());
-    });
-    timed(report.seconds.evaluate, [&] { samples.derive(); });
+    report.tally +=
+        timed(report.seconds.evaluate, [&] { return evaluator.evaluate(points, samples, progress.done()); });
     draw.offer(points, samples.winding_numbers());
     timed(report.seconds.write, [&] { writer.write(points, samples.fields()); });
     report.samples += points.size();
@@ -59,9 +56,9 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
       timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
 
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
-  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(std::move(mesh)); });
+  const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });
   timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
-  report.exterior_edges = evaluator.exterior_edges();
+  report.exterior_edges = evaluator.winding_number().exterior_edges();
   const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size(),
                                                                 description_of(report, command.field, command.output));
 
@@ -69,7 +66,8 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_points(evaluator, *reader, *writer, samples, draw, progress, report);
-  if (command.field.verify > 0) report.verification = verify(report.mesh, original, evaluator, draw.samples());
+  if (command.field.verify > 0)
+    report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
   timed(report.seconds.write, [&] { writer->finish(); });
   progress.stop();
   total.reset();

@@ -65,7 +65,7 @@ void describe(const MeshFile& file, RunReport& report) {
 
 OutputDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
   OutputDescription description;
-  description.fields = describe_fields(field);
+  description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->spacing.x : 0.0);
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;
   description.faces = report.faces;

@@ -44,7 +44,7 @@ void refuse_to_replace_input(const OutputOptions& output, const std::vector<std:
 [[nodiscard]] RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const RunLimits& limits);
 void describe(const MeshFile& file, RunReport& report);
 
-// What the output will hold and say about itself; `report` is complete as far as the mesh and its edges go.
+// What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.
 [[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,
                                                const OutputOptions& output);
 

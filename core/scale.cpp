@@ -10,7 +10,7 @@ PowerOfTwo::PowerOfTwo(int exponent)
       half_(std::ldexp(1.0, exponent / 2)),
       other_half_(std::ldexp(1.0, exponent - exponent / 2)) {}
 
-PowerOfTwo unit_scale(const TriangleMesh& mesh) {
+int largest_exponent(const TriangleMesh& mesh) {
   double largest = 0.0;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
@@ -18,9 +18,13 @@ PowerOfTwo unit_scale(const TriangleMesh& mesh) {
       largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
   }
-  if (largest == 0.0) return PowerOfTwo(0);
   int exponent = 0;
   std::frexp(largest, &exponent);
+  return exponent;
+}
+
+PowerOfTwo unit_scale(const TriangleMesh& mesh) {
+  const int exponent = largest_exponent(mesh);
   const PowerOfTwo scale(-exponent);
   const PowerOfTwo inverse(exponent);
   if (exponent <= 0) return scale;  // scaling up loses nothing

@@ -19,6 +19,9 @@ class PowerOfTwo {
   double other_half_;
 };
 
+// e such that the largest coordinate of the triangles is in [2^(e-1), 2^e); 0 where all coordinates are zero.
+[[nodiscard]] int largest_exponent(const TriangleMesh& mesh);
+
 // The power of two that brings the largest coordinate of the triangles into [1/2, 1), so that products neither overflow
 // nor leave the range of the predicates' filters; 2^0 where all coordinates are zero, or where a coordinate of a
 // triangle would lose bits (a mesh that spans more than 2^970: predicates are then slower, not wrong).

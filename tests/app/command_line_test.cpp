@@ -179,7 +179,7 @@ TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {
 }
 
 TEST_F(CommandLine, UnknownWordsListWhatExists) {
-  expect_error(lattice({"--field", "foo"}), 1, "--field foo: expected one or more of winding, inside, density");
+  expect_error(lattice({"--field", "foo"}), 1, "--field foo: expected one or more of winding, inside, density, sdf");
   expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv or npy");
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
@@ -207,7 +207,7 @@ TEST_F(CommandLine, CommandsNotAvailableYetSaySo) {
 }
 
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  for (const char* const option : {"--band", "--engine", "--simd", "--depfile", "--grid-name"}) {
+  for (const char* const option : {"--engine", "--simd", "--depfile", "--grid-name"}) {
     expect_not_available(lattice({option, "1"}), option);
   }
   expect_not_available(lattice({"--half"}), "--half");
@@ -219,7 +219,6 @@ TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
 }
 
 TEST_F(CommandLine, FieldsAndFormatsNotAvailableYetSaySo) {
-  expect_not_available(lattice({"--field", "sdf"}), "--field sdf");
   expect_not_available(lattice({"--format", "vti"}), "--format vti");
   expect_not_available(run_raycone({"lattice", mesh_, "-o", "x.VTI"}), "x.VTI");
   expect_not_available(run_raycone({"points", mesh_, "p.csv", "-o", "x.npz"}), "x.npz");
@@ -235,7 +234,7 @@ TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
     EXPECT_NE(result.out.find("Usage: raycone"), std::string::npos);
     EXPECT_NE(result.out.find("Examples:\n  raycone "), std::string::npos);
     for (const char* const later :
-         {"slice", "batch", "--band", "vti", "npz", "--sample", "--half", "--engine", "--tolerance", "--raw", "sdf"}) {
+         {"slice", "batch", "vti", "npz", "--sample", "--half", "--engine", "--tolerance", "--raw"}) {
       EXPECT_EQ(result.out.find(later), std::string::npos) << later;
     }
   }

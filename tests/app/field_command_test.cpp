@@ -171,8 +171,8 @@ TEST_F(FieldOption, LargeLatticesOfAClosedMeshTakeMemoryOfItsSurface) {
 
 TEST_F(FieldOption, RefusesWhatItDoesNotKnow) {
   const std::map<std::vector<std::string>, std::string> refused{
-      {{"--field", "colour"}, "--field colour: expected one or more of winding, inside, density"},
-      {{"--field", "inside,"}, "--field inside,: expected one or more of winding, inside, density"},
+      {{"--field", "colour"}, "--field colour: expected one or more of winding, inside, density, sdf"},
+      {{"--field", "inside,"}, "--field inside,: expected one or more of winding, inside, density, sdf"},
       {{"--field", "inside,winding,inside"}, "--field inside,winding,inside: expected each field once"},
       {{"--rule", "half"}, "--rule half: expected threshold=T, abs=T, nonzero, positive or odd"},
       {{"--rule", "threshold=inf"}, "--rule threshold=inf: expected threshold=T, abs=T, nonzero, positive or odd"}};

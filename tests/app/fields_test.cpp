@@ -30,18 +30,19 @@ std::vector<std::string> names_of(const std::vector<FieldDescription>& fields) {
 TEST(DescribeFields, ListsFieldsAsAskedForThenDiagnostics) {
   FieldOptions options;
   options.fields = {Field::kDensity, Field::kWinding, Field::kInside};
-  EXPECT_EQ(names_of(describe_fields(options)), (std::vector<std::string>{"density", "winding", "inside"}));
+  EXPECT_EQ(names_of(describe_fields(options, 0.0)), (std::vector<std::string>{"density", "winding", "inside"}));
   options.diagnostics = true;
-  EXPECT_EQ(names_of(describe_fields(options)), (std::vector<std::string>{"density", "winding", "inside", "crossings",
-                                                                          "degenerate", "on_surface", "error_bound"}));
+  EXPECT_EQ(names_of(describe_fields(options, 0.0)),
+            (std::vector<std::string>{"density", "winding", "inside", "crossings", "degenerate", "on_surface",
+                                      "error_bound"}));
 }
 
 TEST(DescribeFields, TheBackgroundOfInsideIsTheRuleFarAway) {
   FieldOptions options;
   options.fields = {Field::kInside};
-  EXPECT_EQ(describe_fields(options).front().background, 0.0);
+  EXPECT_EQ(describe_fields(options, 0.0).front().background, 0.0);
   options.rule = {RuleKind::kThreshold, 0.0};
-  EXPECT_EQ(describe_fields(options).front().background, 1.0);
+  EXPECT_EQ(describe_fields(options, 0.0).front().background, 1.0);
 }
 
 TEST(FieldSamples, DeriveFieldsFromWindingNumbers) {

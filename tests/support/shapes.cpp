@@ -147,6 +147,33 @@ TriangleMesh fan(int triangles, int same) {
   return weld(mesh, {});
 }
 
+TriangleMesh assorted_triangles() {
+  Random random(1);
+  TriangleMesh mesh;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  const auto point = [&] { return uniform_point(random, {{0, 0, 0}, {1, 1, 1}}); };
+  for (int n = 0; n < 6; ++n) {
+    const Vec3 a = point(), b = point();
+    add(a, b, point());
+  }
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 at = point(), side = 0.03 * point();
+    add(at, at + side, at + 0.03 * point());
+  }
+  const Vec3 a = point(), b = point();
+  add(a, b, a + 0.3 * (b - a) + 1e-9 * point());
+  add(a, b, b);
+  add({0.9, 0.1, 0.1}, {0.9, 0.1, 0.1}, {0.9, 0.1, 0.1});
+  add({-3, 0.5, 0.5}, {5, 0.4, 0.5}, {5, 0.5, 0.6});
+  add({0.2, 0, 0}, {0.2, 1, 0}, {0.2, 0, 1});
+  add({0, 0.6, 0}, {1, 0.6, 0}, {0, 0.6, 1});
+  return mesh;
+}
+
 TriangleMesh reversed(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;

@@ -30,6 +30,10 @@ using Random = std::mt19937_64;
 // Triangles around one common edge, the first `same` of them in one direction, the others in the other.
 [[nodiscard]] TriangleMesh fan(int triangles, int same);
 
+// Large triangles and small ones, a needle, a segment and a point, across and along the axes, some reaching far out of
+// [0, 1]^3.
+[[nodiscard]] TriangleMesh assorted_triangles();
+
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
 [[nodiscard]] TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 // All vertices as A v + shift, A diagonal.

@@ -1,0 +1,36 @@
+// Unsigned distances to the triangles of a mesh, in double precision.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/lattice.h"
+#include "core/triangle_mesh.h"
+
+namespace raycone {
+
+class DistanceEvaluator {
+ public:
+  // `mesh` has at least one triangle; vertices used by triangles are finite.
+  explicit DistanceEvaluator(const TriangleMesh& mesh);
+  ~DistanceEvaluator();
+  DistanceEvaluator(DistanceEvaluator&&) noexcept;
+  DistanceEvaluator& operator=(DistanceEvaluator&&) noexcept;
+
+  // Distances (world units) of a block of `lattice`, x fastest, cut off at `band`: distances.size() == block.size().
+  // Uses the threads that ThreadLimit allows; the distances depend on neither their number nor the block's extent.
+  // Const calls may run concurrently.
+  void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
+
+  // Builds the search tree that points need and lattices do not; else the first evaluation of points does.
+  void prepare_points() const;
+
+  // Distances (world units) at finite points, in their order: distances.size() == points.size().
+  void evaluate(std::span<const Vec3> points, std::span<double> distances) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<const Implementation> implementation_;
+};
+
+}  // namespace raycone

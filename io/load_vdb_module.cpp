@@ -3,7 +3,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <new>
+#include <string>
 
 #include "io/file_error.h"
 #include "io/format_writers.h"
@@ -13,12 +15,17 @@
 namespace raycone {
 namespace {
 
+// A place relative to the executable, in the build directory as in an installation, which may be moved.
+std::string module_path() {
+  const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe");
+  return executable.parent_path() / RAYCONE_MODULE_FROM_EXECUTABLE / vdb::kModuleFile;
+}
+
 // `name`: the file that asks for it. Throws Error where the module cannot be loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
-  // Sought where the executable's RPATH points (CMakeLists.txt). Bound lazily: OpenVDB has tens of thousands of
-  // functions. Stays loaded to the end.
-  void* const library = dlopen(vdb::kModuleFile, RTLD_LAZY | RTLD_LOCAL);
+  // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
+  void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
   if (symbol) return *static_cast<const vdb::Module*>(symbol);
   const std::string reason = dlerror();

@@ -173,7 +173,27 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 namespace {
-HWY_EXPORT(multiply_chains_here);
+
+using Kernel = void(std::span<const ChainStep>, const SampleTile&, ProductTile&);
+
+// The kernel of the best level that the CPU has. Highway would choose it too, but its library, where it is linked,
+// measures the clock whenever the program starts, for as long as all the rest of a small run takes.
+Kernel* best_kernel() {
+#if HWY_ARCH_X86
+  const bool sse4 =
+      __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("aes");
+  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+  // Null where the compiler lacks a level.
+  if (Kernel* const kernel = avx512 ? HWY_CHOOSE_AVX3(multiply_chains_here) : nullptr) return kernel;
+  if (Kernel* const kernel = avx2 ? HWY_CHOOSE_AVX2(multiply_chains_here) : nullptr) return kernel;
+  if (Kernel* const kernel = sse4 ? HWY_CHOOSE_SSE4(multiply_chains_here) : nullptr) return kernel;
+#endif
+  return &HWY_STATIC_DISPATCH(multiply_chains_here);
+}
+
 }  // namespace
 
 void SampleTile::add(const Vec3& q) {
@@ -192,7 +212,8 @@ void SampleTile::fill_up() {
 }
 
 void multiply_chains(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
-  HWY_DYNAMIC_DISPATCH(multiply_chains_here)(steps, samples, products);
+  static Kernel* const kernel = best_kernel();
+  kernel(steps, samples, products);
 }
 
 }  // namespace raycone

@@ -38,8 +38,8 @@ class Choices {
       case 2:
         return next<std::int16_t>() / 1024.0 + next<std::int8_t>() * 0x1p-40;
       default:
-        const double any = std::bit_cast<double>(next<std::uint64_t>());
-        return std::abs(any) < 0x1p+200 ? any : 1.0;
+        // All digits, and magnitudes that a step of the definition's, taken for values on the surface, is small beside.
+        return std::ldexp(static_cast<double>(next<std::int64_t>()), -63 - 40 + static_cast<int>(below(81)));
     }
   }
   Vec3 point() {

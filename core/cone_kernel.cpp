@@ -1,5 +1,6 @@
 #include "core/cone_kernel.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -32,30 +33,69 @@ constexpr double kSmallestFactor = 0x1p-120;
 constexpr double kLargestFactor = 0x1p120;
 constexpr int kFactorsPerScaling = 8;
 
-// A vertex seen from the samples: P = y + i z, and s = |p| - p_x; NaN where |P|^2 is out of bounds.
+// The projections P = y + i z of a vertex, one per sample, or one for all where the samples share a ray.
+struct OfEachSample {
+  static constexpr bool kShared = false;
+  alignas(64) Tile y_, z_;
+
+  void look(const Vec3& v, const SampleTile& samples) {
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+      hn::Store(hn::Sub(hn::Set(d, v.y), hn::Load(d, &samples.y[i])), d, &y_[i]);
+      hn::Store(hn::Sub(hn::Set(d, v.z), hn::Load(d, &samples.z[i])), d, &z_[i]);
+    }
+  }
+  [[nodiscard]] Lanes y(std::size_t i) const { return hn::Load(d, &y_[i]); }
+  [[nodiscard]] Lanes z(std::size_t i) const { return hn::Load(d, &z_[i]); }
+};
+
+struct OfOneRay {
+  static constexpr bool kShared = true;
+  double y_ = 0.0, z_ = 0.0;
+
+  void look(const Vec3& v, const SampleTile& samples) {
+    y_ = v.y - samples.y[0];
+    z_ = v.z - samples.z[0];
+  }
+  [[nodiscard]] Lanes y(std::size_t) const { return hn::Set(d, y_); }
+  [[nodiscard]] Lanes z(std::size_t) const { return hn::Set(d, z_); }
+};
+
+// Calls body(i, projected(i)) for each group of lanes, from sample i on; where projections are shared, projected() once
+// for all.
+template <class Projection, class Projected, class Body>
+HWY_INLINE void for_lanes(const SampleTile& samples, const Projected& projected, const Body& body) {
+  if constexpr (Projection::kShared) {
+    const auto of_all = projected(0);
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) body(i, of_all);
+  } else {
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) body(i, projected(i));
+  }
+}
+
+// A vertex seen from the samples: P, and s = |p| - p_x, both times t > 0, which does not change the argument of z. For
+// p_x > 0, where s = |P|^2 / (|p| + p_x), t is the denominator, which saves the division. s is NaN where |P|^2 is out
+// of bounds.
+template <class Projection>
 struct Corner {
   Vec3 vertex;
-  alignas(64) Tile y;
-  alignas(64) Tile z;
+  Projection p;
   alignas(64) Tile s;
+  alignas(64) Tile t;
 
   void look(const Vec3& v, const SampleTile& samples) {
     vertex = v;
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+    p.look(v, samples);
+    const auto squared = [&](std::size_t i) { return hn::Add(hn::Mul(p.y(i), p.y(i)), hn::Mul(p.z(i), p.z(i))); };
+    for_lanes<Projection>(samples, squared, [&](std::size_t i, Lanes square) {
       const Lanes px = hn::Sub(hn::Set(d, v.x), hn::Load(d, &samples.x[i]));
-      const Lanes py = hn::Sub(hn::Set(d, v.y), hn::Load(d, &samples.y[i]));
-      const Lanes pz = hn::Sub(hn::Set(d, v.z), hn::Load(d, &samples.z[i]));
-      const Lanes square = hn::Add(hn::Mul(py, py), hn::Mul(pz, pz));
       const Lanes norm = hn::Sqrt(hn::Add(hn::Mul(px, px), square));
-      // p_x > 0: |P|^2 / (|p| + p_x), which does not cancel.
       const Lanes sum = hn::Add(norm, hn::Abs(px));
-      const Lanes length = hn::IfThenElse(hn::Gt(px, hn::Zero(d)), hn::Div(square, sum), sum);
+      const auto ahead = hn::Gt(px, hn::Zero(d));
       const auto ordinary =
           hn::And(hn::Gt(square, hn::Set(d, kSmallestSquare)), hn::Lt(square, hn::Set(d, kLargestSquare)));
-      hn::Store(py, d, &y[i]);
-      hn::Store(pz, d, &z[i]);
-      hn::Store(hn::IfThenElse(ordinary, length, hn::NaN(d)), d, &s[i]);
-    }
+      hn::Store(hn::IfThenElse(ordinary, hn::IfThenElse(ahead, square, sum), hn::NaN(d)), d, &s[i]);
+      hn::Store(hn::IfThenElse(ahead, sum, hn::Set(d, 1.0)), d, &t[i]);
+    });
   }
 };
 
@@ -103,29 +143,41 @@ HWY_NOINLINE void multiply_carefully(ProductTile& z, std::size_t i, std::uint64_
   }
 }
 
-void multiply_edge(ProductTile& product, const Corner& a, const Corner& b, bool reversed, const SampleTile& samples) {
-  const Lanes dy = hn::Set(d, b.vertex.y - a.vertex.y), dz = hn::Set(d, b.vertex.z - a.vertex.z);
-  const Lanes orientation = hn::Set(d, reversed ? -1.0 : 1.0);
-  for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-    const Lanes ay = hn::Load(d, &a.y[i]), az = hn::Load(d, &a.z[i]);
-    const Lanes by = hn::Load(d, &b.y[i]), bz = hn::Load(d, &b.z[i]);
-    // The edge determinant as in predicates.h: from the nearer end, and trusted beyond its error.
-    const auto a_is_nearer = hn::Le(hn::Add(hn::Abs(ay), hn::Abs(az)), hn::Add(hn::Abs(by), hn::Abs(bz)));
-    const Lanes left = hn::Mul(hn::IfThenElse(a_is_nearer, ay, by), dz);
-    const Lanes right = hn::Mul(hn::IfThenElse(a_is_nearer, az, bz), dy);
-    const Lanes determinant = hn::Sub(left, right);
-    const Lanes doubt =
-        hn::Add(hn::Mul(hn::Set(d, kSideFilter), hn::Add(hn::Abs(left), hn::Abs(right))), hn::Set(d, kSideUnderflow));
+// What the projections of an edge say: P_a . P_b, and D times the orientation, whose sign is sure or not.
+struct ProjectedEdge {
+  Lanes re, im;
+  hn::Mask<Doubles> side_is_sure;
+};
 
+// The edge determinant as in predicates.h: from the nearer end, and trusted beyond its error.
+HWY_INLINE ProjectedEdge project(Lanes ay, Lanes az, Lanes by, Lanes bz, Lanes dy, Lanes dz, Lanes orientation) {
+  const auto a_is_nearer = hn::Le(hn::Add(hn::Abs(ay), hn::Abs(az)), hn::Add(hn::Abs(by), hn::Abs(bz)));
+  const Lanes left = hn::Mul(hn::IfThenElse(a_is_nearer, ay, by), dz);
+  const Lanes right = hn::Mul(hn::IfThenElse(a_is_nearer, az, bz), dy);
+  const Lanes determinant = hn::Sub(left, right);
+  const Lanes doubt =
+      hn::Add(hn::Mul(hn::Set(d, kSideFilter), hn::Add(hn::Abs(left), hn::Abs(right))), hn::Set(d, kSideUnderflow));
+  return {hn::Add(hn::Mul(ay, by), hn::Mul(az, bz)), hn::Mul(determinant, orientation),
+          hn::Gt(hn::Abs(determinant), doubt)};
+}
+
+template <class Projection>
+void multiply_edge(ProductTile& product, const Corner<Projection>& a, const Corner<Projection>& b, bool reversed,
+                   const SampleTile& samples) {
+  const auto projected = [&](std::size_t i) {
+    return project(a.p.y(i), a.p.z(i), b.p.y(i), b.p.z(i), hn::Set(d, b.vertex.y - a.vertex.y),
+                   hn::Set(d, b.vertex.z - a.vertex.z), hn::Set(d, reversed ? -1.0 : 1.0));
+  };
+  for_lanes<Projection>(samples, projected, [&](std::size_t i, const ProjectedEdge& edge) {
     const Lanes product_of_s = hn::Mul(hn::Load(d, &a.s[i]), hn::Load(d, &b.s[i]));
-    const Lanes re = hn::Add(product_of_s, hn::Add(hn::Mul(ay, by), hn::Mul(az, bz)));
-    const Lanes im = hn::Mul(determinant, orientation);
+    const Lanes product_of_t = hn::Mul(hn::Load(d, &a.t[i]), hn::Load(d, &b.t[i]));
+    const Lanes re = hn::Add(product_of_s, hn::Mul(product_of_t, edge.re));
+    const Lanes im = hn::Mul(product_of_t, edge.im);
     const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
-    const auto side_is_sure = hn::Gt(hn::Abs(determinant), doubt);
     const auto not_near = hn::Gt(magnitude, hn::Mul(hn::Set(d, kNearEdge), product_of_s));
     const auto in_range =
         hn::And(hn::Gt(magnitude, hn::Set(d, kSmallestFactor)), hn::Lt(magnitude, hn::Set(d, kLargestFactor)));
-    const auto trusted = hn::And(side_is_sure, hn::And(not_near, in_range));  // false for NaN
+    const auto trusted = hn::And(edge.side_is_sure, hn::And(not_near, in_range));  // false for NaN
     if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
       multiply(product, i, re, im);
     } else {
@@ -133,7 +185,7 @@ void multiply_edge(ProductTile& product, const Corner& a, const Corner& b, bool 
       hn::StoreMaskBits(d, trusted, bits);
       multiply_carefully(product, i, bits[0], re, im, a.vertex, b.vertex, reversed, samples);
     }
-  }
+  });
 }
 
 // Takes the power of two out of the products, which is exact.
@@ -149,11 +201,12 @@ void scale(ProductTile& z, std::size_t count) {
   }
 }
 
-void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
+template <class Projection>
+void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   products.re.fill(1.0);
   products.im.fill(0.0);
   products.turns.fill(0.0);
-  std::array<Corner, 2> corners;  // of the edge at hand, in turns
+  std::array<Corner<Projection>, 2> corners;  // of the edge at hand, in turns
   std::size_t here = 0;
   int factors = 0;
   for (const ChainStep& step : steps) {
@@ -162,6 +215,14 @@ void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& sa
     if (!step.joined) continue;
     multiply_edge(products, corners[1 - here], corners[here], step.reversed, samples);
     if (++factors % kFactorsPerScaling == 0) scale(products, samples.count);
+  }
+}
+
+void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
+  if (samples.share_a_ray()) {
+    multiply_all<OfOneRay>(steps, samples, products);
+  } else {
+    multiply_all<OfEachSample>(steps, samples, products);
   }
 }
 
@@ -209,6 +270,11 @@ void SampleTile::fill_up() {
     y[i] = y[count - 1];
     z[i] = z[count - 1];
   }
+}
+
+bool SampleTile::share_a_ray() const {
+  return std::all_of(y.begin(), y.begin() + count, [&](double value) { return value == y[0]; }) &&
+         std::all_of(z.begin(), z.begin() + count, [&](double value) { return value == z[0]; });
 }
 
 void multiply_chains(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {

@@ -29,6 +29,7 @@ struct SampleTile {
   void clear() { count = 0; }
   void add(const Vec3& q);
   void fill_up();
+  [[nodiscard]] bool share_a_ray() const;  // one y and one z, as along a row of a lattice
 };
 
 // Per sample the product of the factors, scaled by a power of two, and the turns that its argument has completed.

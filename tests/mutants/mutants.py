@@ -41,7 +41,7 @@ MUTANTS = [
         ("core/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
          "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
     Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
-        ("core/cone_kernel.cpp", "hn::And(side_is_sure, hn::And(not_near, in_range));", "hn::And(not_near, in_range);")]),
+        ("core/cone_kernel.cpp", "hn::And(edge.side_is_sure, hn::And(not_near, in_range));", "hn::And(not_near, in_range);")]),
     Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
         ("core/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
     Mutant("side_filter_without_underflow", "products that underflow vouch for nothing", [
@@ -73,8 +73,10 @@ MUTANTS = [
         ("core/predicates.h", "<= std::abs(by) + std::abs(bz);", "> std::abs(by) + std::abs(bz);"),
         ("core/cone_kernel.cpp", "a_is_nearer = hn::Le(", "a_is_nearer = hn::Gt(")]),
     Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
-        ("core/cone_kernel.cpp", "length = hn::IfThenElse(hn::Gt(px, hn::Zero(d)), hn::Div(square, sum), sum);",
-         "length = hn::Sub(norm, px);")]),
+        ("core/cone_kernel.cpp", "hn::IfThenElse(ahead, square, sum), hn::NaN(d))",
+         "hn::IfThenElse(ahead, hn::Sub(norm, hn::Abs(px)), sum), hn::NaN(d))"),
+        ("core/cone_kernel.cpp", "hn::Store(hn::IfThenElse(ahead, sum, hn::Set(d, 1.0)), d, &t[i]);",
+         "hn::Store(hn::Set(d, 1.0), d, &t[i]);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
         ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, std::abs(bz))) : std::nullopt", "std::nullopt"),
         ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, std::abs(az))) : std::nullopt", "std::nullopt")]),
@@ -95,7 +97,8 @@ MUTANTS = [
     Mutant("near_edge_form_always_normal", "the better conditioned of z and z' is taken", [
         ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
     Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
-        ("core/cone_kernel.cpp", "hn::IfThenElse(ordinary, length, hn::NaN(d))", "length"),
+        ("core/cone_kernel.cpp", "hn::IfThenElse(ordinary, hn::IfThenElse(ahead, square, sum), hn::NaN(d))",
+         "hn::IfThenElse(ahead, square, sum)"),
         ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest;", "return true;")]),
 
     # --- The product ---

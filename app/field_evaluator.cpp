@@ -7,7 +7,7 @@ namespace raycone {
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options)
     : band_(options.band),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(mesh) : std::nullopt),
-      winding_number_(std::move(mesh)) {}
+      winding_number_(std::move(mesh), options.engine, options.simd) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

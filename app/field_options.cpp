@@ -1,6 +1,7 @@
 #include "app/field_options.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,23 @@ std::vector<Field> parse_fields(const Values& values) {
   return fields;
 }
 
+RayEngine parse_engine(const std::string& text) {
+  if (text == "auto" || text == "scan") return RayEngine::kScan;
+  if (text == "embree") return RayEngine::kEmbree;
+  invalid("--engine", text, "auto, scan or embree");
+}
+
+SimdLevel parse_simd(const std::string& text) {
+  const std::map<std::string, SimdLevel> levels{{"auto", SimdLevel::kBest},
+                                                {"sse4", SimdLevel::kSse4},
+                                                {"avx2", SimdLevel::kAvx2},
+                                                {"avx512", SimdLevel::kAvx512}};
+  const auto level = levels.find(text);
+  if (level == levels.end()) invalid("--simd", text, "auto, sse4, avx2 or avx512");
+  if (!is_available(level->second)) invalid("--simd", text, "a level that this processor has");
+  return level->second;
+}
+
 }  // namespace
 
 OptionGroup field_group() {
@@ -33,13 +51,15 @@ OptionGroup field_group() {
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--band", "B", "Voxels on either side of the surface where sdf is not cut off (default: 3)"},
            {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value"},
-           {"--verify", "N", "Check N samples against direct sums in 113 bits: 2.7 us per triangle and sample"}}};
+           {"--verify", "N", "Check N samples against direct sums in 113 bits: 2.7 us per triangle and sample"},
+           {"--engine", "auto|scan|embree", "How crossings are found; for tests, values do not depend on it"},
+           {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, values do not depend on them"}}};
 }
 
 // Exact is all there is: 0, the default, is accepted for scripts that state it.
 OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
 
-OptionNames later_field_options() { return {{"--engine", "--simd", "--depfile"}, {}}; }
+OptionNames later_field_options() { return {{"--depfile"}, {}}; }
 
 FieldOptions parse_field(const Values& values) {
   if (values.given("--tolerance")) {
@@ -55,6 +75,8 @@ FieldOptions parse_field(const Values& values) {
     options.rule = *rule;
   }
   if (values.given("--band")) options.band = values.positive("--band");
+  if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));
+  if (values.given("--simd")) options.simd = parse_simd(values.text("--simd"));
   options.diagnostics = values.given("--diagnostics");
   constexpr std::int64_t kMaxVerified = 1'000'000'000;
   if (values.given("--verify")) {

@@ -11,6 +11,8 @@
 
 #include "core/diagnostics.h"
 #include "core/rule.h"
+#include "core/simd.h"
+#include "core/winding_number.h"
 #include "io/field_writer.h"
 
 namespace raycone {
@@ -34,7 +36,9 @@ struct FieldOptions {
   Rule rule;
   double band = 3.0;  // voxels; of distances on lattices
   bool diagnostics = false;
-  std::uint64_t verify = 0;  // samples to be computed again as direct sums
+  std::uint64_t verify = 0;             // samples to be computed again as direct sums
+  RayEngine engine = RayEngine::kScan;  // no value depends on these two
+  SimdLevel simd = SimdLevel::kBest;
 
   [[nodiscard]] bool has(Field field) const;
 };

@@ -8,7 +8,7 @@
 
 namespace raycone {
 
-Cone::Cone(const TriangleMesh& mesh) {
+Cone::Cone(const TriangleMesh& mesh, SimdLevel level) : multiply_chains_(cone_kernel(level)) {
   const std::vector<ExteriorEdge> edges = raycone::exterior_edges(mesh);
   edges_ = edges.size();
   const ExteriorEdge* previous = nullptr;
@@ -30,7 +30,7 @@ void Cone::winding_numbers(SampleTile& samples, std::span<Turns> cone) const {
   std::fill(cone.begin(), cone.end(), Turns{});
   ProductTile products;
   for (const Group& group : groups_) {
-    multiply_chains(group.steps, samples, products);
+    multiply_chains_(group.steps, samples, products);
     for (std::size_t i = 0; i < samples.count; ++i) {
       cone[i].whole += group.multiplicity * static_cast<std::int64_t>(products.turns[i]);
       cone[i].rest += group.multiplicity * argument_in_turns<double>(products.re[i], products.im[i]);

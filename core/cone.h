@@ -31,7 +31,7 @@ struct TurnsWithin {
 class Cone {
  public:
   // The cone over the exterior edges of a welded mesh.
-  explicit Cone(const TriangleMesh& mesh);
+  Cone(const TriangleMesh& mesh, SimdLevel level);
 
   [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
 
@@ -51,6 +51,7 @@ class Cone {
     std::vector<ChainStep> steps;
   };
 
+  ConeKernel multiply_chains_;
   std::uint64_t edges_ = 0;
   std::vector<Group> groups_;
 };

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/edge_factor.h"
 #include "core/near_edge.h"
@@ -235,11 +236,11 @@ HWY_AFTER_NAMESPACE();
 namespace raycone {
 namespace {
 
-using Kernel = void(std::span<const ChainStep>, const SampleTile&, ProductTile&);
+using Kernel = std::remove_pointer_t<ConeKernel>;
 
-// The kernel of the best level that the CPU has. Highway would choose it too, but its library, where it is linked,
-// measures the clock whenever the program starts, for as long as all the rest of a small run takes.
-Kernel* best_kernel() {
+// Null where the processor or the compiler lacks the level. Highway would choose it too, but its library, where it is
+// linked, measures the clock whenever the program starts, for as long as all the rest of a small run takes.
+Kernel* kernel_of([[maybe_unused]] SimdLevel level) {
 #if HWY_ARCH_X86
   const bool sse4 =
       __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("aes");
@@ -247,11 +248,17 @@ Kernel* best_kernel() {
                     __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
   const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  // Null where the compiler lacks a level.
-  if (Kernel* const kernel = avx512 ? HWY_CHOOSE_AVX3(multiply_chains_here) : nullptr) return kernel;
-  if (Kernel* const kernel = avx2 ? HWY_CHOOSE_AVX2(multiply_chains_here) : nullptr) return kernel;
-  if (Kernel* const kernel = sse4 ? HWY_CHOOSE_SSE4(multiply_chains_here) : nullptr) return kernel;
+  if (level == SimdLevel::kAvx512) return avx512 ? HWY_CHOOSE_AVX3(multiply_chains_here) : nullptr;
+  if (level == SimdLevel::kAvx2) return avx2 ? HWY_CHOOSE_AVX2(multiply_chains_here) : nullptr;
+  if (level == SimdLevel::kSse4) return sse4 ? HWY_CHOOSE_SSE4(multiply_chains_here) : nullptr;
 #endif
+  return nullptr;
+}
+
+Kernel* best_kernel() {
+  for (const SimdLevel level : {SimdLevel::kAvx512, SimdLevel::kAvx2, SimdLevel::kSse4}) {
+    if (Kernel* const kernel = kernel_of(level)) return kernel;
+  }
   return &HWY_STATIC_DISPATCH(multiply_chains_here);
 }
 
@@ -277,9 +284,10 @@ bool SampleTile::share_a_ray() const {
          std::all_of(z.begin(), z.begin() + count, [&](double value) { return value == z[0]; });
 }
 
-void multiply_chains(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
-  static Kernel* const kernel = best_kernel();
-  kernel(steps, samples, products);
+bool is_available(SimdLevel level) { return level == SimdLevel::kBest || kernel_of(level) != nullptr; }
+
+ConeKernel cone_kernel(SimdLevel level) {
+  return level == SimdLevel::kBest || !kernel_of(level) ? best_kernel() : kernel_of(level);
 }
 
 }  // namespace raycone

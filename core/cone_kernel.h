@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "core/simd.h"
 #include "core/vec3.h"
 
 namespace raycone {
@@ -39,8 +40,11 @@ struct ProductTile {
   alignas(64) Tile turns;  // integers
 };
 
-// One lane is one sample, and its operations come in one order, without fused multiply-add: results are the same for
-// every SIMD level, which is chosen at run time. Needs DefaultFloatingPoint. Thread-safe.
-void multiply_chains(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products);
+// Multiplies the factors of all edges at all samples. One lane is one sample, and its operations come in one order,
+// without fused multiply-add: results are the same for every SIMD level. Needs DefaultFloatingPoint. Thread-safe.
+using ConeKernel = void (*)(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products);
+
+// That of the level, of the best one where the level is not available.
+[[nodiscard]] ConeKernel cone_kernel(SimdLevel level);
 
 }  // namespace raycone

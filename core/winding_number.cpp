@@ -97,17 +97,19 @@ struct PointCrossings {
 // The mesh in one scale, with all that is needed to evaluate rows in that scale.
 class Engine {
  public:
-  Engine(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine)
+  Engine(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level)
       : scale_(scale),
         inverse_(-scale.exponent()),
         engine_(engine),
+        level_(level),
         mesh_(in_scale(std::move(mesh), scale)),
-        cone_(mesh_) {}
+        cone_(mesh_, level) {}
   Engine(const Engine&) = delete;  // rays_ refers to mesh_
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] RayEngine engine() const { return engine_; }
+  [[nodiscard]] SimdLevel level() const { return level_; }
   [[nodiscard]] const Cone& cone() const { return cone_; }
   // Built when first needed: lattices may need neither.
   [[nodiscard]] const RayCaster& rays() const {
@@ -242,6 +244,7 @@ class Engine {
   PowerOfTwo scale_;
   PowerOfTwo inverse_;
   RayEngine engine_;
+  SimdLevel level_;
   TriangleMesh mesh_;
   Cone cone_;
   mutable std::once_flag rays_built_, grid_built_;
@@ -358,15 +361,16 @@ class PointTile {
 struct WindingNumberEvaluator::Implementation {
   Engine scaled;
 
-  Implementation(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine)
-      : scaled(std::move(mesh), scale, engine) {}
+  Implementation(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level)
+      : scaled(std::move(mesh), scale, engine, level) {}
 
   // The engine for queries with these coordinates: where scaling would drop bits of one (a number below 1e-290 mesh
   // sizes), the mesh as it is, in which predicates are slower. Built when first needed.
   [[nodiscard]] const Engine& engine_for(bool scaling_is_exact) const {
     if (scaling_is_exact) return scaled;
-    std::call_once(unscaled_built,
-                   [this] { unscaled.emplace(scaled.unscaled_mesh(), PowerOfTwo(0), scaled.engine()); });
+    std::call_once(unscaled_built, [this] {
+      unscaled.emplace(scaled.unscaled_mesh(), PowerOfTwo(0), scaled.engine(), scaled.level());
+    });
     return *unscaled;
   }
 
@@ -375,10 +379,10 @@ struct WindingNumberEvaluator::Implementation {
   mutable std::optional<Engine> unscaled;
 };
 
-WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine) {
+WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level) {
   const DefaultFloatingPoint guard;
   const PowerOfTwo scale = unit_scale(mesh);
-  implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine);
+  implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine, level);
 }
 WindingNumberEvaluator::~WindingNumberEvaluator() = default;
 WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept = default;

@@ -15,6 +15,7 @@
 
 #include "core/diagnostics.h"
 #include "core/lattice.h"
+#include "core/simd.h"
 #include "core/triangle_mesh.h"
 
 namespace raycone {
@@ -41,7 +42,8 @@ class WindingNumberEvaluator {
  public:
   // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/weld.h); vertices used
   // by triangles are finite. Throws std::bad_alloc.
-  explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan);
+  explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
+                                  SimdLevel level = SimdLevel::kBest);
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Every shared mesh through the executable: python3 tests/shared_meshes_test.py RAYCONE MESHES
 
-Meshes that should load become a VDB whose transform and values, read by pyopenvdb, are those of the CSV. The others get
-one line on standard error and exit status 2, and leave no output. Exit status 77 where meshes or pyopenvdb are absent.
+Meshes that should load become a VDB whose transform and values, read by pyopenvdb, are those of the CSV; the CSV is the
+same, to the byte, by the other engine with the lowest SIMD level, and so are the values of its samples taken as points.
+The others get one line on standard error and exit status 2, and leave no output. Exit status 77 where meshes or pyopenvdb are absent.
 """
 
 import csv
@@ -60,6 +61,19 @@ def compare(mesh, vdb, text, tolerance):
     return expect(rows.line_num > 1, mesh, "empty CSV")
 
 
+def compare_engines(mesh, path, folder, text, options):
+    other = run("lattice", path, "-o", "-", *options, "--engine", "embree", "--simd", "sse4")
+    expect(other.stdout == text, mesh, f"Embree's lattice differs: {other.stderr}")
+    samples = os.path.join(folder, "samples.csv")
+    with open(samples, "w", encoding="utf-8") as file:
+        file.write(text)
+    scale = [option for option in options if option in ("--scale", "1e9")]
+    points = run("points", path, samples, "--quiet", *scale)
+    expected = [line.split(",")[3:] for line in text.splitlines()]
+    expect([line.split(",") for line in points.stdout.splitlines()] == expected, mesh, f"points differ: {points.stderr}")
+    os.remove(samples)
+
+
 def check_good(mesh, path, folder):
     vdb = os.path.join(folder, "out.vdb")
     options = ["--resolution", RESOLUTION, "--quiet"]
@@ -75,6 +89,7 @@ def check_good(mesh, path, folder):
         numbers = [abs(float(row[name])) for row in csv.DictReader(text.stdout.splitlines()) for name in "xyz"]
         # Position = origin + index * spacing, rounded in another order by OpenVDB: some units in the last place.
         compare(mesh, vdb, text.stdout, 8 * math.ulp(max(numbers)))
+        compare_engines(mesh, path, folder, text.stdout, options)
         os.remove(vdb)
 
 

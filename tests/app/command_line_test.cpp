@@ -207,7 +207,7 @@ TEST_F(CommandLine, CommandsNotAvailableYetSaySo) {
 }
 
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  for (const char* const option : {"--engine", "--simd", "--depfile", "--grid-name"}) {
+  for (const char* const option : {"--depfile", "--grid-name"}) {
     expect_not_available(lattice({option, "1"}), option);
   }
   expect_not_available(lattice({"--half"}), "--half");
@@ -234,7 +234,7 @@ TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
     EXPECT_NE(result.out.find("Usage: raycone"), std::string::npos);
     EXPECT_NE(result.out.find("Examples:\n  raycone "), std::string::npos);
     for (const char* const later :
-         {"slice", "batch", "vti", "npz", "--sample", "--half", "--engine", "--tolerance", "--raw"}) {
+         {"slice", "batch", "vti", "npz", "--sample", "--half", "--tolerance", "--raw"}) {
       EXPECT_EQ(result.out.find(later), std::string::npos) << later;
     }
   }

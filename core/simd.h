@@ -1,0 +1,16 @@
+// SIMD levels of the processor. No value depends on them.
+#pragma once
+
+namespace raycone {
+
+enum class SimdLevel {
+  kBest,  // that this processor has
+  kSse4,
+  kAvx2,
+  kAvx512,
+};
+
+// Whether this processor has the level (and the compiler knew it).
+[[nodiscard]] bool is_available(SimdLevel level);
+
+}  // namespace raycone

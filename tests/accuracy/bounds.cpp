@@ -1,0 +1,189 @@
+// raycone_bounds: whether the printed error bounds hold, and how close they are, on millions of values; and Figure 4 of
+// "Fast and Exact Winding Numbers" as a slice.
+//
+//   raycone_bounds [--values N]      (default: 2000000 values, 2.7 us each per triangle of meshes of about a hundred)
+//   raycone_bounds --slice MESH      the mesh's connectivity with uniformly random vertices, a slice of 2000^2 samples:
+//                                    the same to the bit by scan conversion, by Embree and as points; 200 by the oracle
+//
+// Exit status 1 if a bound does not hold, if fewer than 99.9 % of them are below 1e-9, or if values differ.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/direct_sum.h"
+#include "core/threads.h"
+#include "core/weld.h"
+#include "core/winding_number.h"
+#include "io/read_mesh.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+// ---- Bounds ----------------------------------------------------------------------------------------------------
+
+struct NamedMesh {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+TriangleMesh without_first(TriangleMesh mesh, std::ptrdiff_t faces) {
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + faces);
+  return mesh;
+}
+
+TriangleMesh scrambled(TriangleMesh mesh, Random& random) {
+  for (Vec3& v : mesh.vertices) v = test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
+  return mesh;
+}
+
+// A strip rolled up three times ("Fast and Exact Winding Numbers", Fig. 5).
+TriangleMesh swiss_roll() {
+  constexpr std::uint32_t kSteps = 60;
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    const double t = static_cast<double>(i) / kSteps, phi = 6 * std::numbers::pi * t, r = 0.1 + t;
+    for (const double z : {0.0, 1.0}) mesh.vertices.push_back({r * std::cos(phi), r * std::sin(phi), z});
+  }
+  for (std::uint32_t i = 0; i < 2 * kSteps; i += 2) {
+    mesh.triangles.push_back({i, i + 2, i + 1});
+    mesh.triangles.push_back({i + 1, i + 2, i + 3});
+  }
+  return mesh;
+}
+
+// Open ones: bounds of closed meshes are zero.
+std::vector<NamedMesh> meshes() {
+  Random random(1);
+  return {{"sphere with a hole", without_first(test::sphere(6), 30)},
+          {"scrambled sphere with a hole", scrambled(without_first(test::sphere(5), 20), random)},
+          {"soup", test::soup(random, 80)},
+          {"Swiss roll", swiss_roll()},
+          {"fan about one edge", test::fan(60, 40)},
+          {"box without a lid, far away", test::moved(test::open_box(), {10, 10, 3}, {5e5, 4.6e6, 120})}};
+}
+
+// A third of them anywhere, a third near faces, a third near exterior edges, at 1e-2 to 1e-9 of the size.
+std::vector<Vec3> queries_about(const TriangleMesh& mesh, Random& random, std::size_t count) {
+  const Box box = bounding_box(mesh);
+  const Vec3 size = box.upper - box.lower;
+  std::vector<Vec3> queries;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 3 == 0) {
+      queries.push_back(test::uniform_point(random, {box.lower - 0.2 * size, box.upper + 0.2 * size}));
+      continue;
+    }
+    const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const double u = uniform(random, 0, 1), v = i % 3 == 1 ? uniform(random, 0, 1 - u) : 0.0;
+    const Vec3 step = std::pow(10.0, -uniform(random, 2, 9)) * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+    queries.push_back(a + u * (b - a) + v * (c - a) + Vec3{step.x * size.x, step.y * size.y, step.z * size.z});
+  }
+  return queries;
+}
+
+struct Quality {
+  std::size_t values = 0;
+  std::size_t violated = 0;
+  std::size_t undecided = 0;  // the oracle's own error is as large as the bound
+  std::size_t above = 0;      // 1e-9
+  double median_ratio = 0.0;
+  double largest = 0.0;
+};
+
+Quality quality_of(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  const std::size_t n = queries.size();
+  std::vector<double> values(n), bounds(n), ratios(n);
+  std::vector<std::int64_t> crossings(n), degenerate(n);
+  std::vector<std::uint8_t> on_surface(n);
+  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
+  WindingNumberEvaluator(mesh).evaluate(queries, values, nullptr, &diagnostics);
+  std::atomic<std::size_t> violated = 0, undecided = 0;
+  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (on_surface[i] != 0) continue;
+      const Vec3& q = queries[i];
+      const QuadWithin exact = direct_winding_number(mesh, QuadVec3{q.x, q.y, q.z});
+      const Quad difference = Quad(values[i]) - exact.value, error = difference < 0 ? -difference : difference;
+      if (error > Quad(bounds[i]) + exact.error) ++violated;
+      if (exact.error > Quad(bounds[i])) ++undecided;
+      // A value cannot be better than its own rounding.
+      ratios[i] = bounds[i] / std::max(static_cast<double>(error), std::abs(values[i]) * 0x1p-53);
+    }
+  });
+  Quality quality{n, violated, undecided, 0, 0.0, *std::max_element(bounds.begin(), bounds.end())};
+  quality.above = static_cast<std::size_t>(std::ranges::count_if(bounds, [](double b) { return b > 1e-9; }));
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(n / 2), ratios.end());
+  quality.median_ratio = ratios[n / 2];
+  return quality;
+}
+
+int check_bounds(std::size_t values) {
+  Random random(2);
+  std::size_t violated = 0, above = 0, total = 0;
+  const std::vector<NamedMesh> all = meshes();
+  std::printf("| mesh | faces | values | violated | oracle too coarse | median of bound / error | largest bound |\n");
+  std::printf("|---|--:|--:|--:|--:|--:|--:|\n");
+  for (const auto& [name, mesh] : all) {
+    const Quality q = quality_of(weld(mesh, {}), queries_about(mesh, random, values / all.size()));
+    std::printf("| %s | %zu | %zu | %zu | %zu | %.2g | %.2g |\n", name.c_str(), mesh.triangles.size(), q.values,
+                q.violated, q.undecided, q.median_ratio, q.largest);
+    std::fflush(stdout);
+    violated += q.violated;
+    above += q.above;
+    total += q.values;
+  }
+  std::printf("\n%zu values, %zu bounds violated, %zu above 1e-9\n", total, violated, above);
+  return violated > 0 || above * 1000 > total ? 1 : 0;
+}
+
+// ---- The slice -------------------------------------------------------------------------------------------------
+
+int check_slice(const char* path) {
+  constexpr std::int64_t kSide = 2000;
+  Random random(4);
+  const TriangleMesh mesh = weld(scrambled(weld(read_mesh(path).parsed.mesh, {}), random), {});
+  const double h = 1.0 / (kSide - 1);
+  const Lattice lattice{{0, 0, 0.5}, {h, h, 1}, {0, 0, 0}, {kSide, kSide, 1}};
+  const auto samples = static_cast<std::size_t>(whole(lattice).size());
+  std::vector<Vec3> points(samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto n = static_cast<std::int64_t>(i);
+    points[i] = {lattice.coordinate(0, n % kSide), lattice.coordinate(1, n / kSide), 0.5};
+  }
+  std::vector<double> scan(samples), embree(samples), one_by_one(samples);
+  const WindingNumberEvaluator evaluator(mesh), by_embree(mesh, RayEngine::kEmbree);
+  evaluator.evaluate(lattice, whole(lattice), scan);
+  by_embree.evaluate(lattice, whole(lattice), embree);
+  evaluator.evaluate(points, one_by_one);
+  double largest = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t at = random() % samples;
+    largest = std::max(largest, std::abs(scan[at] - test::direct_winding_number(mesh, points[at])));
+  }
+  const auto [lower, upper] = std::ranges::minmax(scan);
+  std::printf(
+      "%zu faces, %llu exterior edges, w from %g to %g; %zu samples: Embree %s, points %s, oracle within %.2g\n",
+      mesh.triangles.size(), static_cast<unsigned long long>(evaluator.exterior_edges()), lower, upper, samples,
+      embree == scan ? "same" : "DIFFERS", one_by_one == scan ? "same" : "DIFFERS", largest);
+  return embree == scan && one_by_one == scan && largest < 1e-9 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace raycone
+
+int main(int argc, char** argv) {
+  if (argc == 3 && std::strcmp(argv[1], "--slice") == 0) return raycone::check_slice(argv[2]);
+  const bool given = argc == 3 && std::strcmp(argv[1], "--values") == 0;
+  return raycone::check_bounds(given ? std::strtoull(argv[2], nullptr, 10) : 2'000'000);
+}

@@ -7,6 +7,18 @@
 
 namespace raycone {
 
+namespace {
+
+class NoWriter : public LatticeWriter {
+ public:
+  [[nodiscard]] int slab_axis() const override { return 2; }
+  [[nodiscard]] std::int64_t slab_alignment() const override { return 1; }
+  void write(const LatticeBlock& /*block*/, std::span<const FieldValues> /*fields*/) override {}
+  void finish(const FieldTotals& /*totals*/) override {}
+};
+
+}  // namespace
+
 std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   std::string lower(name);
   std::transform(lower.begin(), lower.end(), lower.begin(),
@@ -14,6 +26,7 @@ std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   if (lower == "vdb") return FieldFormat::kVdb;
   if (lower == "csv") return FieldFormat::kCsv;
   if (lower == "npy") return FieldFormat::kNpy;
+  if (lower == "none") return FieldFormat::kNone;
   return std::nullopt;
 }
 
@@ -26,6 +39,8 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
       return make_csv_lattice_writer(output, lattice, description);
     case FieldFormat::kNpy:
       return make_npy_lattice_writer(output, lattice, description);
+    case FieldFormat::kNone:
+      return std::make_unique<NoWriter>();
   }
   throw std::logic_error("unknown field format");
 }
@@ -39,7 +54,8 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
     case FieldFormat::kNpy:
       return make_npy_point_writer(output, size, description);
     case FieldFormat::kVdb:
-      break;  // holds lattices only; options are checked before anything is opened
+    case FieldFormat::kNone:
+      break;  // lattices only; options are checked before anything is opened
   }
   throw std::logic_error("no point writer for this format");
 }

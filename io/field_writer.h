@@ -16,9 +16,10 @@
 
 namespace raycone {
 
-enum class FieldFormat { kVdb, kCsv, kNpy };
+// kNone: nothing is written, for measurements.
+enum class FieldFormat { kVdb, kCsv, kNpy, kNone };
 
-// "vdb", "csv" or "npy", in any case.
+// "vdb", "csv", "npy" or "none", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
 
 // What the numbers of a field are; formats choose how they store them.

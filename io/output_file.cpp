@@ -1,8 +1,10 @@
 // Atomic output: everything goes to a temporary file in the target's directory, which rename(2) puts in its place.
 #include "io/output_file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <stdio.h>  // renameat2
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -92,11 +94,45 @@ std::string follow_links(std::string path) {
   return path;
 }
 
+constexpr std::string_view kTemporaryPrefix = ".raycone-";
+
 // A name in the directory of `target` that nobody else uses: not even a process of the same number on another host or
 // in another container that shares the directory.
 std::string temporary_path(const std::string& target) {
   std::random_device random;
-  return directory_of(target) + "/.raycone-" + std::to_string(getpid()) + '-' + std::to_string(random());
+  return directory_of(target) + '/' + std::string(kTemporaryPrefix) + std::to_string(getpid()) + '-' +
+         std::to_string(random());
+}
+
+// --- Whose temporary file is it? Its writer holds a lock (flock(2)) until it ends, however it ends.
+
+// Whether the file is now ours: not where remove_abandoned_files() was faster than the lock. File systems without locks
+// leave all as it is.
+bool claim(int descriptor) {
+  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
+  struct stat status {};
+  return fstat(descriptor, &status) != 0 || status.st_nlink > 0;
+}
+
+// Keeps the lock of a descriptor beyond its close(), which tells the last error of writing.
+class LockKeeper {
+ public:
+  explicit LockKeeper(int original) : number_(fcntl(original, F_DUPFD_CLOEXEC, 0)) {}
+  ~LockKeeper() {
+    if (number_ >= 0) close(number_);
+  }
+  LockKeeper(const LockKeeper&) = delete;
+  LockKeeper& operator=(const LockKeeper&) = delete;
+
+ private:
+  int number_;
+};
+
+void remove_if_abandoned(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(path.c_str());
+  close(descriptor);
 }
 
 // --- Calls that differ from their POSIX namesakes
@@ -199,12 +235,14 @@ void OutputFile::State::open_special() {
 void OutputFile::State::open_temporary() {
   constexpr mode_t kMode = 0666;  // less the umask
   std::string path;
-  do {
+  for (;;) {
     path = temporary_path(target);
     forget_temporary(entry);
     entry = remember_temporary(path);  // before the file exists: a signal may arrive at any time
     descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-  } while (descriptor < 0 && errno == EEXIST);
+    if (descriptor >= 0 ? claim(descriptor) : errno != EEXIST) break;
+    if (descriptor >= 0) close(descriptor);
+  }
   if (descriptor < 0) {
     fail("cannot create a file in " + directory_of(target) + ": " + std::generic_category().message(errno));
   }
@@ -254,6 +292,7 @@ void OutputFile::commit() {
     if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
     if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
   }
+  const LockKeeper lock(state.descriptor);
   const int descriptor = std::exchange(state.descriptor, -1);
   if (close(descriptor) != 0 && errno != EINTR) state.fail_writing(errno);
   if (!state.temporary.empty()) state.put_in_place();
@@ -267,6 +306,16 @@ void remove_temporary_files() noexcept {
     if (entry.state == TemporaryEntry::kInUse) unlink(entry.path.data());
   }
   errno = saved;
+}
+
+void remove_abandoned_files(const std::string& directory) {
+  DIR* const entries = opendir(directory.c_str());
+  if (entries == nullptr) return;
+  while (const dirent* const entry = readdir(entries)) {
+    if (std::string_view(entry->d_name).starts_with(kTemporaryPrefix))
+      remove_if_abandoned(directory + '/' + entry->d_name);
+  }
+  closedir(entries);
 }
 
 }  // namespace raycone

@@ -42,4 +42,8 @@ class OutputFile {
 // Removes the temporary files of all open OutputFiles. Async-signal-safe: for signal handlers.
 void remove_temporary_files() noexcept;
 
+// Removes the temporary files in `directory` whose writers were killed, and never one that is being written, be it by
+// another process or, where the file system's locks reach that far, on another host. Ignores errors.
+void remove_abandoned_files(const std::string& directory);
+
 }  // namespace raycone

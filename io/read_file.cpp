@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <system_error>
+#include <vector>
 
 #include "io/file_error.h"
 
@@ -55,6 +56,22 @@ std::uint64_t expected_size(int descriptor) {
   throw LimitError(path + ": larger than " + std::to_string(max_bytes) + " bytes");
 }
 
+void add(sha256_ctx& context, std::string_view bytes) {
+  sha256_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+}
+
+std::string digest(sha256_ctx& context) {
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> bytes{};
+  sha256_digest(&context, bytes.size(), bytes.data());
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string read_file(const std::string& path, std::uint64_t max_bytes) {
@@ -83,16 +100,22 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
 std::string sha256(std::string_view bytes) {
   sha256_ctx context;
   sha256_init(&context);
-  sha256_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
-  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-  sha256_digest(&context, digest.size(), digest.data());
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
+  add(context, bytes);
+  return digest(context);
+}
+
+std::string sha256_of_file(const std::string& path) {
+  const Descriptor descriptor(path);
+  sha256_ctx context;
+  sha256_init(&context);
+  std::vector<char> block(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t count = read(descriptor.number(), block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, errno);
+    if (count == 0) return digest(context);
+    add(context, {block.data(), static_cast<std::size_t>(count)});
   }
-  return text;
 }
 
 }  // namespace raycone

@@ -14,4 +14,7 @@ namespace raycone {
 // SHA-256 as 64 lower-case hexadecimal digits.
 [[nodiscard]] std::string sha256(std::string_view bytes);
 
+// The same of a file of any size, in little memory. Throws InputError.
+[[nodiscard]] std::string sha256_of_file(const std::string& path);
+
 }  // namespace raycone

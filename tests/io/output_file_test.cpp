@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <climits>
 #include <csignal>
 #include <filesystem>
@@ -398,6 +399,36 @@ TEST(SpoolFile, CopiesItsFinalBytes) {
   spool.copy_to(output);
   output.commit();
   EXPECT_EQ(contents(directory / "out"), "head" + much);
+}
+
+TEST(RemoveAbandonedFiles, TakesThoseOfKilledWritersOnly) {
+  const TemporaryDirectory directory;
+  put(directory / ".raycone-1-2", "of a process that was killed");
+  put(directory / "raycone-1-2", "not ours");
+  OutputFile output(directory / "out");
+  write(output, "complete");
+  remove_abandoned_files(directory.path());
+  EXPECT_EQ(entries(directory).size(), 2U);  // "raycone-1-2" and the temporary file of `output`
+  output.commit();
+  EXPECT_EQ(contents(directory / "out"), "complete");
+  EXPECT_TRUE(std::filesystem::exists(directory / "raycone-1-2"));
+}
+
+TEST(RemoveAbandonedFiles, NeverDisturbsWritersThatStart) {
+  const TemporaryDirectory directory;
+  std::atomic<bool> done{false};
+  std::thread remover([&] {
+    while (!done) remove_abandoned_files(directory.path());
+  });
+  for (int i = 0; i < 300; ++i) {
+    OutputFile output(directory / "out");
+    write(output, std::to_string(i));
+    EXPECT_NO_THROW(output.commit());
+  }
+  done = true;
+  remover.join();
+  EXPECT_EQ(contents(directory / "out"), "299");
+  EXPECT_EQ(entries(directory), std::vector<std::string>{"out"});
 }
 
 }  // namespace

@@ -173,6 +173,13 @@ TEST(Sha256, AgreesWithThePublishedExample) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const TemporaryDirectory directory;
+  const std::string bytes(3'000'000, 'x');  // several blocks
+  EXPECT_EQ(sha256_of_file(write(directory, "x", bytes)), sha256(bytes));
+  EXPECT_THROW((void)sha256_of_file(directory / "absent"), InputError);
+}
+
 TEST(ReadFile, LimitHoldsForFilesAndPipes) {
   const TemporaryDirectory directory;
   const std::string path = write(directory, "a", "12345");

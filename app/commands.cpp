@@ -1,34 +1,40 @@
 #include "app/commands.h"
 
+#include "app/batch_options.h"
 #include "app/info_options.h"
 #include "app/lattice_options.h"
 #include "app/points_options.h"
+#include "app/report_options.h"
 
 namespace raycone {
 
 const std::vector<CommandEntry>& commands() {
-  static const std::vector<CommandEntry> all{
-      {lattice_spec(), parse_lattice}, {points_spec(), parse_points}, {info_spec(), parse_info}};
+  static const std::vector<CommandEntry> all{{lattice_spec(), parse_lattice},
+                                             {points_spec(), parse_points},
+                                             {info_spec(), parse_info},
+                                             {batch_spec(), parse_batch},
+                                             {report_spec(), parse_report}};
   return all;
 }
 
 const CommandSpec& program_spec() {
-  static const CommandSpec spec{.name = "raycone",
-                                .description = "Exact winding numbers of triangle meshes",
-                                .operands = {},
-                                .groups = {{"Options",
-                                            {{"-h,--help", "", "Print this help"},
-                                             {"--version", "", "Print the versions of raycone and its libraries"}}}},
-                                .examples = {"raycone info bunny.obj", "raycone lattice bunny.obj -o bunny.vdb",
-                                             "raycone points bunny.obj points.csv > values.csv"},
-                                .notes =
-                                    "Each command has its own help: raycone lattice --help\n"
-                                    "Exit status: 0 done, 1 usage, 2 input, 3 output, 4 limit, 6 internal error"};
+  static const CommandSpec spec{
+      .name = "raycone",
+      .description = "Exact winding numbers of triangle meshes",
+      .operands = {},
+      .groups = {{"Options",
+                  {{"-h,--help", "", "Print this help"},
+                   {"--version", "", "Print the versions of raycone and its libraries"}}}},
+      .examples = {"raycone info bunny.obj", "raycone lattice bunny.obj -o bunny.vdb",
+                   "raycone points bunny.obj points.csv > values.csv"},
+      .notes =
+          "Each command has its own help: raycone lattice --help\n"
+          "Exit status: 0 done, 1 usage, 2 input, 3 output, 4 limit, 5 some meshes of a batch, 6 internal error"};
   return spec;
 }
 
 const std::set<std::string>& later_commands() {
-  static const std::set<std::string> names{"slice", "batch", "report"};
+  static const std::set<std::string> names{"slice"};
   return names;
 }
 

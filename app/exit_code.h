@@ -9,6 +9,7 @@ enum class ExitCode : int {
   kInput = 2,
   kOutput = 3,
   kLimit = 4,
+  kBatch = 5,  // some meshes of a batch failed
   kInternal = 6,
 };
 

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/worker.h"
 #include "app/exit_code.h"
 #include "app/options.h"
 #include "app/report.h"
@@ -11,9 +12,11 @@
 int main(int argc, char** argv) {
   using namespace raycone;
   set_up_process();
+  const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
   try {
-    run(parse_command_line({argv + (argc > 0 ? 1 : 0), argv + argc}));
-    return static_cast<int>(ExitCode::kDone);
+    const bool is_worker = !words.empty() && words.front() == kWorkerCommand;
+    const ExitCode code = is_worker ? run_worker({words.begin() + 1, words.end()}) : run(parse_command_line(words));
+    return static_cast<int>(code);
   } catch (...) {
     return static_cast<int>(report_current_exception());
   }

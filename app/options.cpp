@@ -25,7 +25,7 @@ namespace {
 void add_operand(CLI::App& app, const OperandSpec& spec) {
   CLI::Option* const operand = app.add_option(spec.name)->description(spec.description)->option_text(" ");
   operand->required(spec.count != OperandCount::kOptional);
-  if (spec.count == OperandCount::kMany) operand->expected(1, CLI::detail::expected_max_vector_size);
+  if (spec.count == OperandCount::kMany) operand->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
 }
 
 void add_option(CLI::App& app, const std::string& group, const OptionSpec& spec) {

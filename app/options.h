@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "app/batch/batch_meshes.h"
+#include "app/batch/shard.h"
 #include "app/fields.h"
 #include "app/lattice_choice.h"
 #include "app/progress.h"
@@ -69,12 +71,31 @@ struct InfoCommand {
   bool json = false;
 };
 
+// What is done to each mesh of a batch, how, and where results go.
+struct BatchCommand {
+  MeshSearch search;
+  std::string directory;  // of outputs and results
+  Shard shard;
+  std::string format;                        // of outputs; "none": none
+  std::vector<std::string> lattice_options;  // "--name=value", by name: for lattice_command_of()
+  RunOptions run;
+  std::optional<int> jobs;  // meshes at a time; else as many as threads
+  bool retry_failed = false;
+  bool fail_fast = false;
+  bool dry_run = false;
+};
+
+struct ReportCommand {
+  std::string directory;  // of a batch
+  std::string output;     // "-": standard output
+};
+
 // --help and --version: their text is a result.
 struct PrintCommand {
   std::string text;
 };
 
-using Command = std::variant<LatticeCommand, PointsCommand, InfoCommand, PrintCommand>;
+using Command = std::variant<LatticeCommand, PointsCommand, InfoCommand, BatchCommand, ReportCommand, PrintCommand>;
 
 // `arguments` without the program's name. Throws UsageError.
 [[nodiscard]] Command parse_command_line(const std::vector<std::string>& arguments);

@@ -13,12 +13,25 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kInterval{100};
 
-std::string readable_rate(double per_second) {
-  constexpr const char* kPrefixes[] = {"", " k", " M", " G"};
+std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
+  const auto count = static_cast<double>(done);
+  const double rate = seconds > 0.0 ? count / seconds : 0.0;
+  if (!total) return std::to_string(done) + " samples  " + readable_count(rate) + "samples/s";
+  const auto all = static_cast<double>(*total);
+  std::string line =
+      std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_count(rate) + "samples/s";
+  if (rate > 0.0) line += "  " + readable_time((all - count) / rate) + " left";
+  return line;
+}
+
+}  // namespace
+
+std::string readable_count(double count) {
+  constexpr const char* kPrefixes[] = {"", "k", "M", "G"};
   std::size_t prefix = 0;
-  for (; per_second >= 1000.0 && prefix + 1 < std::size(kPrefixes); ++prefix) per_second /= 1000.0;
+  for (; count >= 1000.0 && prefix + 1 < std::size(kPrefixes); ++prefix) count /= 1000.0;
   char text[48];
-  std::snprintf(text, sizeof text, "%.3g%s samples/s", per_second, kPrefixes[prefix]);
+  std::snprintf(text, sizeof text, "%.3g %s", count, kPrefixes[prefix]);
   return text;
 }
 
@@ -32,18 +45,6 @@ std::string readable_time(double seconds) {
   }
   return text;
 }
-
-std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
-  const auto count = static_cast<double>(done);
-  const double rate = seconds > 0.0 ? count / seconds : 0.0;
-  if (!total) return std::to_string(done) + " samples  " + readable_rate(rate);
-  const auto all = static_cast<double>(*total);
-  std::string line = std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_rate(rate);
-  if (rate > 0.0) line += "  " + readable_time((all - count) / rate) + " left";
-  return line;
-}
-
-}  // namespace
 
 bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output) {
   if (quiet || mode == ProgressMode::kNever) return false;

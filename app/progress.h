@@ -16,6 +16,12 @@ enum class ProgressMode { kAuto, kAlways, kNever };
 // Whether to show progress: on a terminal that is not already busy with the results, unless told otherwise.
 [[nodiscard]] bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output);
 
+// "1:05", "2:00:00"
+[[nodiscard]] std::string readable_time(double seconds);
+
+// "4.2 M", "870": a count or rate with the prefix of a unit that follows.
+[[nodiscard]] std::string readable_count(double count);
+
 // Rewrites one line about `done` from a thread of its own, at most ten times a second, until stop().
 class Progress {
  public:

@@ -11,11 +11,6 @@
 namespace raycone {
 namespace {
 
-ExitCode print_error(const char* message, ExitCode code) {
-  print_message(message);
-  return code;
-}
-
 // "1 face", "2 faces"
 std::string counted(std::uint64_t count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
@@ -52,24 +47,30 @@ std::string message_line(std::string_view message) {
 
 void print_message(std::string_view message) { std::fputs(message_line(message).c_str(), stderr); }
 
-ExitCode report_current_exception() {
+Failure current_failure() {
   try {
     throw;
   } catch (const UsageError& error) {
-    return print_error(error.what(), ExitCode::kUsage);
+    return {ExitCode::kUsage, error.what()};
   } catch (const InputError& error) {
-    return print_error(error.what(), ExitCode::kInput);
+    return {ExitCode::kInput, error.what()};
   } catch (const OutputError& error) {
-    return print_error(error.what(), ExitCode::kOutput);
+    return {ExitCode::kOutput, error.what()};
   } catch (const LimitError& error) {
-    return print_error(error.what(), ExitCode::kLimit);
+    return {ExitCode::kLimit, error.what()};
   } catch (const std::bad_alloc&) {
-    return print_error("out of memory", ExitCode::kLimit);
+    return {ExitCode::kLimit, "out of memory"};
   } catch (const std::exception& error) {
-    return print_error((std::string("internal error, please report: ") + error.what()).c_str(), ExitCode::kInternal);
+    return {ExitCode::kInternal, std::string("internal error, please report: ") + error.what()};
   } catch (...) {
-    return print_error("internal error, please report", ExitCode::kInternal);
+    return {ExitCode::kInternal, "internal error, please report"};
   }
+}
+
+ExitCode report_current_exception() {
+  const Failure failure = current_failure();
+  print_message(failure.message);
+  return failure.code;
 }
 
 }  // namespace raycone

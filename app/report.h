@@ -23,7 +23,8 @@ struct Seconds {
 };
 
 struct RunReport {
-  std::string mesh;  // files as named on the command line
+  std::string mesh;                     // files as named on the command line
+  std::vector<std::string> files_read;  // the mesh and what it refers to
   std::string sha256;
   std::string output;
   std::uint64_t vertices = 0;  // as read, before welding
@@ -49,7 +50,16 @@ struct RunReport {
 // Writes that line to standard error.
 void print_message(std::string_view message);
 
-// Prints the exception being handled and returns its exit status. Call in a catch block.
+// How a run failed: its exit status, and what to tell the user.
+struct Failure {
+  ExitCode code = ExitCode::kInternal;
+  std::string message;
+};
+
+// The exception being handled. Call in a catch block.
+[[nodiscard]] Failure current_failure();
+
+// Prints it and returns its exit status.
 [[nodiscard]] ExitCode report_current_exception();
 
 }  // namespace raycone

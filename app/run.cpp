@@ -3,11 +3,12 @@
 
 #include <memory>
 #include <new>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "app/batch/report_page.h"
+#include "app/batch/run_batch.h"
 #include "app/info.h"
 #include "app/json.h"
 #include "app/limits.h"
@@ -28,21 +29,23 @@ void print(const std::string& text) {
   standard_output.commit();
 }
 
-void run(const LatticeCommand& command) {
+ExitCode run(const LatticeCommand& command) {
   const RunLimits limits(command.run, command.mesh.path);
   refuse_to_replace_input(command.output, {command.mesh.path});
   const std::unique_ptr<OutputFile> report_file = open_report(command.output);
   publish(run_lattice(command, limits), command.run, report_file.get());
+  return ExitCode::kDone;
 }
 
-void run(const PointsCommand& command) {
+ExitCode run(const PointsCommand& command) {
   const RunLimits limits(command.run, command.mesh.path);
   refuse_to_replace_input(command.output, {command.mesh.path, command.points});
   const std::unique_ptr<OutputFile> report_file = open_report(command.output);
   publish(run_points(command, limits), command.run, report_file.get());
+  return ExitCode::kDone;
 }
 
-void run(const InfoCommand& command) {
+ExitCode run(const InfoCommand& command) {
   const RunLimits limits(command.run, command.mesh.path);
   const MeshFile file = read(command.mesh, limits);
   warn(file.parsed.warnings, command.run, command.mesh.path);
@@ -56,26 +59,35 @@ void run(const InfoCommand& command) {
   info.bounds = bounding_box(mesh);
   info.statistics = mesh_statistics(mesh);
   print(command.json ? to_json(info) : info_text(info, limits.threads()));
+  return ExitCode::kDone;
 }
 
 // Failed allocations are a limit of the run, so the message names it.
 template <typename MeshCommand>
-void run_within_limits(const MeshCommand& command) {
+ExitCode run_within_limits(const MeshCommand& command) {
   try {
-    run(command);
+    return run(command);
   } catch (const std::bad_alloc&) {
-    const std::optional<std::uint64_t> limit = command.run.memory_limit;
-    throw LimitError(command.mesh.path + ": out of memory" +
-                     (limit ? ", the limit is " + readable_bytes(static_cast<double>(*limit)) : ""));
+    throw LimitError(out_of_memory(command.mesh.path, command.run));
   }
 }
 
-void run_within_limits(const PrintCommand& command) { print(command.text); }
+ExitCode run_within_limits(const BatchCommand& command) { return run_batch(command); }
+
+ExitCode run_within_limits(const ReportCommand& command) {
+  write_report_page(command);
+  return ExitCode::kDone;
+}
+
+ExitCode run_within_limits(const PrintCommand& command) {
+  print(command.text);
+  return ExitCode::kDone;
+}
 
 }  // namespace
 
-void run(const Command& command) {
-  std::visit([](const auto& one) { run_within_limits(one); }, command);
+ExitCode run(const Command& command) {
+  return std::visit([](const auto& one) { return run_within_limits(one); }, command);
 }
 
 }  // namespace raycone

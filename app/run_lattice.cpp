@@ -71,19 +71,20 @@ LatticeBlock slab_behind(const LatticeBlock& slab, const Lattice& lattice, const
 }
 
 void evaluate_lattice(const FieldEvaluator& evaluator, LatticeWriter& writer, FieldSamples& samples, SampleDraw& draw,
-                      Progress& progress, RunReport& report) {
+                      const SlabObserver& observe, Progress& progress, RunReport& report) {
   const Lattice& lattice = *report.lattice;
   for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
     report.tally +=
         timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, samples, progress.done()); });
     draw.offer(lattice, slab, samples.winding_numbers());
+    if (observe) observe(lattice, slab, samples.winding_numbers());
     timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
   }
 }
 
 }  // namespace
 
-RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
+RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, const SlabObserver& observe) {
   RunReport report = report_on(command.mesh, command.output, limits);
   auto total = std::make_optional<Stopwatch>(report.seconds.total);
   OutputFile output(command.output.path, command.output.no_clobber);
@@ -105,7 +106,7 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits) {
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
   FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
-  evaluate_lattice(evaluator, *writer, samples, draw, progress, report);
+  evaluate_lattice(evaluator, *writer, samples, draw, observe, progress, report);
   if (command.field.verify > 0)
     report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });

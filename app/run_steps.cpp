@@ -1,6 +1,7 @@
 #include "app/run_steps.h"
 
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "app/json.h"
@@ -59,6 +60,7 @@ RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const 
 
 void describe(const MeshFile& file, RunReport& report) {
   report.sha256 = file.sha256;
+  report.files_read = file.files_read;
   report.vertices = file.parsed.mesh.vertices.size();
   report.faces = file.parsed.mesh.triangles.size();
 }
@@ -83,6 +85,11 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 
 TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field) {
   return field.verify > 0 ? mesh : TriangleMesh{};
+}
+
+std::string out_of_memory(const std::string& mesh, const RunOptions& options) {
+  const std::optional<std::uint64_t> limit = options.memory_limit;
+  return mesh + ": out of memory" + (limit ? ", the limit is " + readable_bytes(static_cast<double>(*limit)) : "");
 }
 
 void publish(const RunReport& report, const RunOptions& options, OutputFile* report_file) {

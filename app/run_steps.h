@@ -54,6 +54,9 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 // The mesh that verification will need beside the evaluator's own; empty where none is asked for.
 [[nodiscard]] TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field);
 
+// What to tell the user where an allocation failed.
+[[nodiscard]] std::string out_of_memory(const std::string& mesh, const RunOptions& options);
+
 // Writes `report` to `report_file`, if there is one, and prints its summary. Throws OutputError.
 void publish(const RunReport& report, const RunOptions& options, OutputFile* report_file);
 

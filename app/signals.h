@@ -1,6 +1,7 @@
 // Signals and inherited descriptors of the process: interrupted runs leave no debris and die as their caller expects.
 #pragma once
 
+#include <csignal>
 #include <string>
 
 namespace raycone {
@@ -12,5 +13,24 @@ void set_up_process();
 
 // Ends the process with status 4 and a message about `name` after so many seconds.
 void start_timeout(double seconds, const std::string& name);
+
+// While this lives, the signals that end a process wait until take() asks for them: for a process that must end others
+// first. Those that were ignored stay so.
+class HeldSignals {
+ public:
+  HeldSignals();
+  ~HeldSignals();  // what has not been taken comes now
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+
+  // Readable when a signal waits.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+  // A signal that waits, or 0.
+  [[nodiscard]] int take() const;
+
+ private:
+  sigset_t before_{};
+  int descriptor_ = -1;
+};
 
 }  // namespace raycone

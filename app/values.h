@@ -16,6 +16,7 @@ class Values {
   // What was given by the long name of the option, or the operand's name: of an option, the last value counts.
   explicit Values(std::map<std::string, std::vector<std::string>> given) : given_(std::move(given)) {}
 
+  [[nodiscard]] const std::map<std::string, std::vector<std::string>>& all() const { return given_; }
   [[nodiscard]] bool given(const std::string& name) const { return given_.contains(name); }
   [[nodiscard]] std::string text(const std::string& name) const;                // empty if not given
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;  // of operands that may be many

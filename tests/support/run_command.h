@@ -42,6 +42,7 @@ class Command {
   // The next line of standard output without its line feed; nothing if none comes in time or ever.
   [[nodiscard]] std::optional<std::string> read_line(std::chrono::milliseconds patience);
   void send_signal(int signal) const;
+  [[nodiscard]] pid_t process() const { return process_; }
   // Reads both outputs to their ends.
   [[nodiscard]] CommandResult wait();
 

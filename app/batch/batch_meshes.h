@@ -1,0 +1,40 @@
+// The meshes of a batch: from operands to files, and the outputs they are to have.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace raycone {
+
+// What tells quickly that a file is still the same.
+struct FileStamp {
+  std::uint64_t size = 0;     // bytes; 0 where there is no file
+  std::int64_t modified = 0;  // nanoseconds since 1970
+
+  friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+
+[[nodiscard]] FileStamp stamp_of(const std::string& path);
+
+struct BatchMesh {
+  std::string path;    // to open, and for messages
+  std::string name;    // relative to the directory given, or the file's own name: its identity in the results
+  std::string output;  // relative to the directory of outputs
+  FileStamp stamp;
+};
+
+struct MeshSearch {
+  std::vector<std::string> operands;  // MESH, DIR, @LIST, and @- or - for a list on standard input
+  bool nul_separated_lists = false;
+  bool full_names = false;  // outputs keep the extension of the mesh
+  std::string extension;    // of outputs, without the dot
+};
+
+// In byte order of their names; a file given twice is there once. Directories are searched recursively for the
+// extensions of meshes, in any case, symbolic links followed but never in circles. A directory that cannot be read is
+// there itself, its name ending with a slash: as a mesh it will fail with the reason. Throws InputError for a list that
+// cannot be read, UsageError for two meshes with one output.
+[[nodiscard]] std::vector<BatchMesh> find_meshes(const MeshSearch& search);
+
+}  // namespace raycone

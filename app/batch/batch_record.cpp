@@ -1,0 +1,107 @@
+#include "app/batch/batch_record.h"
+
+#include <charconv>
+#include <utility>
+
+#include "app/parse_value.h"
+#include "io/read_file.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kRow = 1;
+
+std::string hash_of_line(const std::string& line) {
+  constexpr std::size_t kDigits = 16;
+  return sha256(line).substr(0, kDigits);
+}
+
+std::string number_text(double number) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+// A CSV line a file, as one field.
+std::string to_text(const std::vector<StampedFile>& files) {
+  std::string text;
+  for (const StampedFile& file : files) {
+    text += csv_line({file.path, std::to_string(file.stamp.size), std::to_string(file.stamp.modified)});
+  }
+  return text;
+}
+
+std::optional<FileStamp> stamp_from(const std::string& size, const std::string& modified) {
+  const std::optional<std::int64_t> bytes = integer_from(size);
+  const std::optional<std::int64_t> time = integer_from(modified);
+  if (!bytes || !time) return std::nullopt;
+  return FileStamp{static_cast<std::uint64_t>(*bytes), *time};
+}
+
+std::optional<std::vector<StampedFile>> files_from(const std::string& text) {
+  std::vector<StampedFile> files;
+  for (const CsvRecord& record : parse_csv(text).records) {
+    if (record.size() != 3) return std::nullopt;
+    const std::optional<FileStamp> stamp = stamp_from(record[1], record[2]);
+    if (!stamp) return std::nullopt;
+    files.push_back({record[0], *stamp});
+  }
+  return files;
+}
+
+}  // namespace
+
+void keep_latest(BatchRecord record, BatchRecords& records) {
+  const auto finished = [](const BatchRecord& one) { return one.origin ? one.origin->finished : 0; };
+  const std::string mesh = record.row.mesh;
+  const auto known = records.find(mesh);
+  if (known == records.end() || finished(known->second) <= finished(record)) {
+    records.insert_or_assign(mesh, std::move(record));
+  }
+}
+
+const CsvRecord& origin_columns() {
+  static const CsvRecord columns{"mesh",        "row",      "size",         "modified_ns",          "companions",
+                                 "version",     "options",  "memory_limit", "default_memory_limit", "timeout_s",
+                                 "finished_ns", "thumbnail"};
+  return columns;
+}
+
+CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std::string& line) {
+  return {mesh,
+          hash_of_line(line),
+          std::to_string(origin.stamp.size),
+          std::to_string(origin.stamp.modified),
+          to_text(origin.companions),
+          origin.version,
+          origin.options,
+          std::to_string(origin.memory_limit),
+          origin.default_memory_limit ? "1" : "0",
+          number_text(origin.timeout),
+          std::to_string(origin.finished),
+          origin.thumbnail};
+}
+
+bool is_about(const CsvRecord& record, const std::string& line) {
+  return record.size() == origin_columns().size() && record[kRow] == hash_of_line(line);
+}
+
+std::optional<RowOrigin> origin_from(const CsvRecord& record) {
+  if (record.size() != origin_columns().size()) return std::nullopt;
+  const std::optional<FileStamp> stamp = stamp_from(record[2], record[3]);
+  std::optional<std::vector<StampedFile>> companions = files_from(record[4]);
+  const std::optional<std::int64_t> memory_limit = integer_from(record[7]);
+  const std::optional<double> timeout = number_from(record[9]);
+  const std::optional<std::int64_t> finished = integer_from(record[10]);
+  if (!stamp || !companions || !memory_limit || !timeout || !finished) return std::nullopt;
+  return RowOrigin{*stamp,
+                   std::move(*companions),
+                   record[5],
+                   record[6],
+                   static_cast<std::uint64_t>(*memory_limit),
+                   record[8] == "1",
+                   *timeout,
+                   *finished,
+                   record[11]};
+}
+
+}  // namespace raycone

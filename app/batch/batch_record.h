@@ -1,0 +1,55 @@
+// A row of the results and what it was made from: whether it still holds is told from here.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/batch/batch_meshes.h"
+#include "app/batch/csv.h"
+#include "app/batch/result_row.h"
+
+namespace raycone {
+
+struct StampedFile {
+  std::string path;
+  FileStamp stamp;
+
+  friend bool operator==(const StampedFile&, const StampedFile&) = default;
+};
+
+struct RowOrigin {
+  FileStamp stamp;                        // of the mesh, before it was read
+  std::vector<StampedFile> companions{};  // further files that were read: the buffers of a glTF
+  std::string version{};                  // of raycone
+  std::string options{};                  // those that results depend on
+  std::uint64_t memory_limit = 0;         // bytes
+  bool default_memory_limit = false;
+  double timeout = 0.0;       // seconds
+  std::int64_t finished = 0;  // nanoseconds since 1970: of two rows of a mesh the later one counts
+  std::string thumbnail{};    // PNG in base64; empty where there is none
+};
+
+struct BatchRecord {
+  ResultRow row;
+  std::optional<RowOrigin> origin;  // absent where lost
+};
+
+// By mesh.
+using BatchRecords = std::map<std::string, BatchRecord>;
+
+// Keeps, of `record` and the one that `records` may have of the same mesh, the one that was finished last.
+void keep_latest(BatchRecord record, BatchRecords& records);
+
+// The names of the columns of the files that keep the origins.
+[[nodiscard]] const CsvRecord& origin_columns();
+
+// The origin of the row whose CSV line is `line`.
+[[nodiscard]] CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std::string& line);
+// Whether `record` is about a row with this CSV line, of which it keeps a hash; and the origin in it.
+[[nodiscard]] bool is_about(const CsvRecord& record, const std::string& line);
+[[nodiscard]] std::optional<RowOrigin> origin_from(const CsvRecord& record);
+
+}  // namespace raycone

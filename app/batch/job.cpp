@@ -1,0 +1,58 @@
+#include "app/batch/job.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "app/parse_value.h"
+
+namespace raycone {
+namespace {
+
+std::int64_t integer_in(const std::string& text) {
+  if (const std::optional<std::int64_t> number = integer_from(text)) return *number;
+  throw std::runtime_error("a message has no number where one is expected");
+}
+
+}  // namespace
+
+Message to_message(const Job& job) {
+  return {job.mesh, job.output, std::to_string(job.threads), std::to_string(job.memory_limit)};
+}
+
+Job job_from(const Message& message) {
+  if (message.size() != 4) throw std::runtime_error("not a job");
+  return {message[0], message[1], static_cast<int>(integer_in(message[2])),
+          static_cast<std::uint64_t>(integer_in(message[3]))};
+}
+
+// The row, the thumbnail, the number of companions with three strings each, and the warnings.
+Message to_message(const JobResult& result) {
+  Message message = to_record(result.row);
+  message.push_back(result.thumbnail);
+  message.push_back(std::to_string(result.companions.size()));
+  for (const StampedFile& file : result.companions) {
+    message.insert(message.end(), {file.path, std::to_string(file.stamp.size), std::to_string(file.stamp.modified)});
+  }
+  message.insert(message.end(), result.warnings.begin(), result.warnings.end());
+  return message;
+}
+
+JobResult result_from(const Message& message) {
+  const std::size_t columns = result_columns().size();
+  if (message.size() < columns + 2) throw std::runtime_error("not a result");
+  const auto row_end = message.begin() + static_cast<std::ptrdiff_t>(columns);
+  std::optional<ResultRow> row = row_from({message.begin(), row_end});
+  if (!row) throw std::runtime_error("not a result");
+  JobResult result{std::move(*row), {}, {}, message[columns]};
+  const auto companions = static_cast<std::size_t>(integer_in(message[columns + 1]));
+  std::size_t at = columns + 2;
+  if ((message.size() - at) / 3 < companions) throw std::runtime_error("not a result");
+  for (std::size_t i = 0; i < companions; ++i, at += 3) {
+    result.companions.push_back(
+        {message[at], {static_cast<std::uint64_t>(integer_in(message[at + 1])), integer_in(message[at + 2])}});
+  }
+  result.warnings.assign(message.begin() + static_cast<std::ptrdiff_t>(at), message.end());
+  return result;
+}
+
+}  // namespace raycone

@@ -1,0 +1,94 @@
+#include "app/batch/plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "io/file_error.h"
+#include "io/read_file.h"
+
+namespace raycone {
+namespace {
+
+// Memory that is free differs from run to run; only a default limit that grew by more than this is another one.
+constexpr double kMoreMemory = 1.25;
+
+bool same_content(const BatchMesh& mesh, const std::string& sha256) {
+  try {
+    return !sha256.empty() && sha256_of_file(mesh.path) == sha256;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+bool mesh_changed(const BatchMesh& mesh, const BatchRecord& record) {
+  return mesh.stamp != record.origin->stamp &&
+         (mesh.stamp.size != record.origin->stamp.size || !same_content(mesh, record.row.sha256));
+}
+
+bool companions_changed(const RowOrigin& origin) {
+  return std::ranges::any_of(origin.companions,
+                             [](const StampedFile& file) { return stamp_of(file.path) != file.stamp; });
+}
+
+bool memory_limit_changed(const RowOrigin& origin, const PlanOptions& options) {
+  if (!origin.default_memory_limit || !options.default_memory_limit) return origin.memory_limit != options.memory_limit;
+  return static_cast<double>(options.memory_limit) > kMoreMemory * static_cast<double>(origin.memory_limit);
+}
+
+bool output_missing(const BatchMesh& mesh, const ResultRow& row, const PlanOptions& options) {
+  if (!options.writes) return false;
+  std::error_code error;
+  return row.output != mesh.output || !std::filesystem::exists(options.directory + '/' + mesh.output, error);
+}
+
+// Why a mesh with a row that holds is done again; empty where it is not.
+std::string reason_to_repeat(const BatchMesh& mesh, const ResultRow& row, const RowOrigin& origin,
+                             const PlanOptions& options) {
+  switch (row.status) {
+    case MeshStatus::kOk:
+      return output_missing(mesh, row, options) ? "output missing" : "";
+    case MeshStatus::kCrashed:
+    case MeshStatus::kUnwritable:
+      return name_of(row.status) + " before";
+    case MeshStatus::kTimeout:
+      if (origin.timeout != options.timeout) return "time limit changed";
+      break;
+    case MeshStatus::kMemory:
+      if (memory_limit_changed(origin, options)) return "memory limit changed";
+      break;
+    case MeshStatus::kInvalid:
+      break;
+  }
+  return options.retry_failed ? name_of(row.status) + " before" : "";
+}
+
+std::string reason_to_evaluate(const BatchMesh& mesh, const BatchRecord& record, const PlanOptions& options) {
+  if (!record.origin) return "not known how it was made";
+  if (record.origin->version != options.version) return "another version";
+  if (record.origin->options != options.options) return "options changed";
+  if (mesh_changed(mesh, record)) return "mesh changed";
+  if (companions_changed(*record.origin)) return "a file that the mesh refers to changed";
+  return reason_to_repeat(mesh, record.row, *record.origin, options);
+}
+
+}  // namespace
+
+Plan make_plan(const std::vector<BatchMesh>& meshes, const BatchRecords& records, const PlanOptions& options) {
+  Plan plan;
+  for (const BatchMesh& mesh : meshes) {
+    const auto known = records.find(mesh.name);
+    const std::string reason = known == records.end() ? "new" : reason_to_evaluate(mesh, known->second, options);
+    if (!reason.empty()) {
+      plan.todo.push_back({mesh, reason});
+      continue;
+    }
+    BatchRecord record = known->second;
+    record.origin->stamp = mesh.stamp;
+    plan.kept.emplace(mesh.name, record);
+  }
+  return plan;
+}
+
+}  // namespace raycone

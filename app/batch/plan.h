@@ -1,0 +1,39 @@
+// What of a batch is to be done: all that is missing or out of date, and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/batch/batch_meshes.h"
+#include "app/batch/batch_record.h"
+
+namespace raycone {
+
+struct PlanOptions {
+  std::string directory;  // of outputs
+  bool writes = true;     // outputs, not just measurements
+  bool retry_failed = false;
+  // What is done to a mesh, as rows remember it.
+  std::string version;
+  std::string options;
+  std::uint64_t memory_limit = 0;  // bytes
+  bool default_memory_limit = false;
+  double timeout = 0.0;  // seconds
+};
+
+struct PlannedMesh {
+  BatchMesh mesh;
+  std::string reason;  // "new", "mesh changed", ...
+};
+
+struct Plan {
+  std::vector<PlannedMesh> todo;
+  BatchRecords kept;  // of the meshes that need nothing, their stamps brought up to date
+};
+
+// Reads the meshes whose stamp changed, to see whether their content did.
+[[nodiscard]] Plan make_plan(const std::vector<BatchMesh>& meshes, const BatchRecords& records,
+                             const PlanOptions& options);
+
+}  // namespace raycone

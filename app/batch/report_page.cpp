@@ -1,0 +1,223 @@
+// One file without references to others, readable without scripts; the only one sorts the table.
+#include "app/batch/report_page.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/batch/batch_record.h"
+#include "app/batch/html.h"
+#include "app/batch/results_files.h"
+#include "app/batch/svg_plot.h"
+#include "app/limits.h"
+#include "app/version.h"
+#include "io/file_error.h"
+#include "io/output_file.h"
+
+namespace raycone {
+namespace {
+
+constexpr const char* kStyle = R"(
+:root { color-scheme: light dark; --ink: #1c2733; --quiet: #5d6b7a; --line: #d7dee6; --paper: #fff; --panel: #f5f7f9;
+  --mark: #2563a8; --bad: #b3261e; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e9ee; --quiet: #9aa7b4; --line: #37424d; --paper: #14191e;
+  --panel: #1d242b; --mark: #6aa9ea; --bad: #f2867e; } }
+body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper); margin: 0 auto;
+  padding: 1.5rem; max-width: 1320px; }
+h1 { font-size: 1.6rem; margin: 0; overflow-wrap: anywhere; }
+h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; }
+.quiet { color: var(--quiet); }
+.tiles { display: flex; flex-wrap: wrap; gap: .7rem; margin: 1.2rem 0; }
+.tile { background: var(--panel); border-radius: 6px; padding: .6rem 1rem; min-width: 6.5rem; }
+.tile b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
+.bad, .bad b { color: var(--bad); }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(360px, 1fr)); gap: 1rem; }
+figure { margin: 0; }
+svg { display: block; width: 100%; background: var(--panel); border-radius: 6px; }
+svg text { font-size: 11px; fill: var(--quiet); }
+svg .label { font-size: 12px; fill: var(--ink); }
+svg .grid { stroke: var(--line); fill: none; }
+svg circle { fill: var(--mark); fill-opacity: .55; }
+svg rect { fill: var(--mark); fill-opacity: .75; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-size: 13px; }
+th, td { padding: .3rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: middle; }
+th { position: sticky; top: 0; background: var(--paper); white-space: nowrap; }
+th.sort { cursor: pointer; }
+td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+td.name { overflow-wrap: anywhere; min-width: 14rem; }
+td.message { overflow-wrap: anywhere; }
+td img { display: block; width: 48px; height: 48px; object-fit: contain; background: var(--panel); }
+)";
+
+// Sorts by the column whose heading is clicked, downwards first for numbers.
+constexpr const char* kScript = R"(
+for (const head of document.querySelectorAll('th.sort')) head.addEventListener('click', () => {
+  const body = head.closest('table').tBodies[0], column = head.cellIndex, numeric = head.classList.contains('n');
+  const up = head.dataset.up = head.dataset.up === undefined ? (numeric ? '' : '1') : head.dataset.up ? '' : '1';
+  const key = row => { const c = row.cells[column]; return numeric ? Number(c.dataset.v ?? -1) : c.textContent; };
+  const order = (a, b) => { const x = key(a), y = key(b); return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1); };
+  body.append(...[...body.rows].sort(order));
+});
+)";
+
+using Quantities = std::vector<double>;
+
+bool is_ok(const BatchRecord& record) { return record.row.status == MeshStatus::kOk; }
+
+// One number of each mesh that was evaluated.
+Quantities collect(const BatchRecords& records, const std::function<double(const MeshFigures&)>& quantity) {
+  Quantities all;
+  for (const auto& [mesh, record] : records) {
+    if (is_ok(record)) all.push_back(quantity(*record.row.figures));
+  }
+  return all;
+}
+
+double sum(const Quantities& quantities) {
+  double total = 0.0;
+  for (const double quantity : quantities) total += quantity;
+  return total;
+}
+
+double faces_of(const MeshFigures& f) { return static_cast<double>(f.faces); }
+double edges_of(const MeshFigures& f) { return static_cast<double>(f.exterior_edges); }
+double samples_of(const MeshFigures& f) { return static_cast<double>(f.samples); }
+
+// --- Summary
+
+std::string tile(const std::string& value, const std::string& name, bool bad = false) {
+  return std::string("<div class=\"tile") + (bad ? " bad" : "") + "\"><b>" + html_text(value) + "</b>" +
+         html_text(name) + "</div>\n";
+}
+
+std::string tiles(const BatchRecords& records) {
+  std::map<MeshStatus, std::size_t> counts;
+  for (const auto& [mesh, record] : records) ++counts[record.row.status];
+  std::string html = "<div class=\"tiles\">\n" + tile(std::to_string(records.size()), "meshes");
+  for (const auto& [status, count] : counts)
+    html += tile(std::to_string(count), name_of(status), status != MeshStatus::kOk);
+  const double samples = sum(collect(records, samples_of));
+  const double seconds = sum(collect(records, [](const MeshFigures& f) { return f.seconds(); }));
+  html += tile(readable_quantity(samples, Quantity::kCount), "samples");
+  html += tile(readable_quantity(seconds, Quantity::kSeconds), "in all meshes together");
+  if (seconds > 0.0) html += tile(readable_quantity(samples / seconds, Quantity::kCount), "samples per second");
+  return html + "</div>\n";
+}
+
+// --- Plots
+
+using Figure = double (*)(const MeshFigures&);
+
+struct PlottedQuantity {
+  PlotAxis axis;
+  Figure figure;
+};
+
+const PlottedQuantity kFaces{{"faces", Quantity::kCount}, faces_of};
+const PlottedQuantity kEdges{{"exterior edges (0: closed)", Quantity::kCount}, edges_of};
+const PlottedQuantity kPrepare{{"prepare", Quantity::kSeconds}, [](const MeshFigures& f) { return f.prepare_s; }};
+const PlottedQuantity kEvaluate{{"evaluate", Quantity::kSeconds}, [](const MeshFigures& f) { return f.evaluate_s; }};
+const PlottedQuantity kTotal{{"read, prepare, evaluate and write", Quantity::kSeconds},
+                             [](const MeshFigures& f) { return f.seconds(); }};
+
+std::string scatter(const BatchRecords& records, const PlottedQuantity& x, const PlottedQuantity& y) {
+  std::vector<PlotPoint> points;
+  for (const auto& [mesh, record] : records) {
+    if (is_ok(record)) points.push_back({x.figure(*record.row.figures), y.figure(*record.row.figures), mesh});
+  }
+  return "<figure>" + scatter_plot(x.axis, y.axis, points) + "</figure>\n";
+}
+
+std::string plots(const BatchRecords& records) {
+  std::string html = "<h2>Time against size</h2>\n<div class=\"plots\">\n";
+  for (const PlottedQuantity* const time : {&kPrepare, &kEvaluate}) {
+    for (const PlottedQuantity* const size : {&kFaces, &kEdges}) html += scatter(records, *size, *time);
+  }
+  html += "</div>\n<h2>Distributions</h2>\n<div class=\"plots\">\n";
+  for (const PlottedQuantity* const quantity : {&kTotal, &kFaces, &kEdges}) {
+    html += "<figure>" + histogram(quantity->axis, collect(records, quantity->figure)) + "</figure>\n";
+  }
+  return html + "</div>\n";
+}
+
+// --- Tables
+
+std::string number_cell(double value, const std::string& text) {
+  char exact[48];
+  std::snprintf(exact, sizeof exact, "%.9g", value);
+  return std::string("<td class=\"n\" data-v=\"") + exact + "\">" + html_text(text) + "</td>";
+}
+
+std::string count_cell(std::uint64_t count) { return number_cell(static_cast<double>(count), std::to_string(count)); }
+
+std::string time_cell(double seconds) { return number_cell(seconds, readable_quantity(seconds, Quantity::kSeconds)); }
+
+std::string figure_cells(const MeshFigures& f) {
+  return count_cell(f.faces) + count_cell(f.exterior_edges) + count_cell(f.samples) + time_cell(f.read_s) +
+         time_cell(f.prepare_s) + time_cell(f.evaluate_s) + time_cell(f.write_s) +
+         number_cell(static_cast<double>(f.peak_memory_bytes),
+                     readable_bytes(static_cast<double>(f.peak_memory_bytes)));
+}
+
+std::string thumbnail_cell(const BatchRecord& record) {
+  const std::string image = record.origin ? record.origin->thumbnail : "";
+  if (image.empty()) return "<td></td>";
+  return "<td><img alt=\"\" loading=\"lazy\" src=\"data:image/png;base64," + html_text(image) + "\"></td>";
+}
+
+std::string failures(const BatchRecords& records) {
+  std::string rows;
+  for (const auto& [mesh, record] : records) {
+    if (is_ok(record)) continue;
+    rows += "<tr><td class=\"name\">" + html_text(mesh) + "</td><td class=\"bad\">" + name_of(record.row.status) +
+            "</td><td class=\"message\">" + html_text(record.row.message) + "</td></tr>\n";
+  }
+  if (rows.empty()) return "";
+  return "<h2>Failures</h2>\n<div class=\"scroll\"><table><thead><tr><th class=\"sort\">mesh</th>"
+         "<th class=\"sort\">cause</th><th class=\"sort\">message</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string evaluated(const BatchRecords& records) {
+  std::string html =
+      "<h2>Meshes</h2>\n<div class=\"scroll\"><table><thead><tr><th>middle layer</th><th class=\"sort\">mesh</th>";
+  for (const char* const column :
+       {"faces", "exterior edges", "samples", "read", "prepare", "evaluate", "write", "peak memory"}) {
+    html += std::string("<th class=\"n sort\">") + column + "</th>";
+  }
+  html += "<th class=\"sort\">warnings</th></tr></thead><tbody>\n";
+  for (const auto& [mesh, record] : records) {
+    if (!is_ok(record)) continue;
+    html += "<tr>" + thumbnail_cell(record) + "<td class=\"name\">" + html_text(mesh) + "</td>" +
+            figure_cells(*record.row.figures) + "<td class=\"message\">" + html_text(record.row.message) +
+            "</td></tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string page(const std::string& directory, const BatchRecords& records) {
+  const std::string title = html_text("raycone batch " + directory);
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+         title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
+         "</h1>\n<div class=\"quiet\">raycone " + kVersion + "</div>\n" + tiles(records) + failures(records) +
+         plots(records) + evaluated(records) + "<script>" + kScript + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace
+
+void write_report_page(const ReportCommand& command) {
+  const BatchRecords records = read_all_results(command.directory);
+  if (records.empty()) throw InputError(command.directory + ": no results, expected the results.csv of a batch");
+  OutputFile output(command.output);
+  const std::string html = page(command.directory, records);
+  output.write(html.data(), html.size());
+  output.commit();
+}
+
+}  // namespace raycone

@@ -1,0 +1,190 @@
+#include "app/batch/results_files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <optional>
+#include <regex>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+
+#include "io/file_error.h"
+#include "io/output_file.h"
+#include "io/read_file.h"
+
+namespace raycone {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Held while a results file of `directory` changes: runs of one batch, should there be several, change the same one.
+// Where the file system has no locks, runs of different shards still do not get in each other's way.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const std::string& directory)
+      : descriptor_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~DirectoryLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+[[noreturn]] void fail_writing(const std::string& path, int error) {
+  throw OutputError(path + ": cannot write: " + std::generic_category().message(error));
+}
+
+// "" or "-3-of-8": the names of a shard's files end so.
+std::string suffix_of(const Shard& shard) {
+  if (shard.count == 1) return "";
+  return "-" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
+}
+
+// The shard whose rows are kept in a file of this name.
+std::optional<Shard> shard_of_results(const std::string& name) {
+  if (name == "results.csv") return Shard{};
+  static const std::regex pattern("results-([0-9]{1,18})-of-([0-9]{1,18})\\.csv");
+  std::smatch match;
+  if (!std::regex_match(name, match, pattern)) return std::nullopt;
+  return Shard{std::stoull(match[1]), std::stoull(match[2])};
+}
+
+BatchRecord record_of(ResultRow row, const std::unordered_map<std::string, CsvRecord>& origins) {
+  const auto origin = origins.find(row.mesh);
+  BatchRecord record{std::move(row), std::nullopt};
+  if (origin != origins.end() && is_about(origin->second, csv_line(to_record(record.row)))) {
+    record.origin = origin_from(origin->second);
+  }
+  return record;
+}
+
+}  // namespace
+
+std::string CsvLog::text() const {
+  std::error_code error;
+  return fs::exists(path_, error) || error ? read_file(path_) : "";
+}
+
+std::vector<CsvRecord> CsvLog::read() const {
+  const std::string all = text();
+  const std::string header = csv_line(columns_);
+  if (header.starts_with(all)) return {};  // empty, or a header that was never completed
+  if (!all.starts_with(header)) throw InputError(path_ + ":1: not written by raycone batch, expected " + header);
+  return parse_csv(std::string_view(all).substr(header.size())).records;
+}
+
+// Where the last write(2) was cut short, because its process was killed, its line is cut off. That needs a look at the
+// whole file, as fields may hold line feeds, but only where others have written to it.
+off_t CsvLog::drop_incomplete_line(int descriptor) const {
+  const off_t size = lseek(descriptor, 0, SEEK_END);
+  if (size == complete_) return size;
+  const auto complete = static_cast<off_t>(parse_csv(read_file(path_)).complete);
+  if (ftruncate(descriptor, complete) != 0) fail_writing(path_, errno);
+  return complete;
+}
+
+void CsvLog::append(const std::string& line) const {
+  constexpr mode_t kMode = 0666;  // less the umask
+  const int descriptor = open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, kMode);
+  if (descriptor < 0) fail_writing(path_, errno);
+  const off_t size = drop_incomplete_line(descriptor);
+  const std::string text = (size == 0 ? csv_line(columns_) : "") + line;
+  const ssize_t written = write(descriptor, text.data(), text.size());
+  int error = written < 0 ? errno : ENOSPC;
+  const bool complete = written == static_cast<ssize_t>(text.size());
+  if (!complete && written > 0 && ftruncate(descriptor, size) != 0) error = errno;
+  if (close(descriptor) != 0 && complete && errno != EINTR) fail_writing(path_, errno);
+  if (!complete) fail_writing(path_, error);
+  complete_ = size + written;
+}
+
+void CsvLog::replace(const std::vector<std::string>& lines) const {
+  std::string wanted = csv_line(columns_);
+  for (const std::string& line : lines) wanted += line;
+  if (text() == wanted) return;
+  OutputFile file(path_);
+  file.write(wanted.data(), wanted.size());
+  file.commit();
+}
+
+ResultsFiles::ResultsFiles(std::string directory, const Shard& shard)
+    : directory_(std::move(directory)),
+      rows_(directory_ + "/results" + suffix_of(shard) + ".csv", result_columns()),
+      origins_(directory_ + "/batch-state" + suffix_of(shard) + ".csv", origin_columns()) {}
+
+BatchRecords ResultsFiles::read() const {
+  std::unordered_map<std::string, CsvRecord> origins;  // of each mesh the last one
+  for (CsvRecord& record : origins_.read()) {
+    const std::string mesh = record.front();
+    origins.insert_or_assign(mesh, std::move(record));
+  }
+  BatchRecords records;
+  for (const CsvRecord& record : rows_.read()) {
+    std::optional<ResultRow> row = row_from(record);
+    if (!row) continue;
+    const std::string mesh = row->mesh;
+    records.insert_or_assign(mesh, record_of(std::move(*row), origins));
+  }
+  return records;
+}
+
+void ResultsFiles::forget(const std::set<std::string>& meshes) const {
+  const DirectoryLock lock(directory_);
+  BatchRecords records = read();
+  std::erase_if(records, [&meshes](const auto& record) { return meshes.contains(record.first); });
+  write(records);
+}
+
+// The origin first: without it a row would have to be made again.
+void ResultsFiles::append(const BatchRecord& record) const {
+  const DirectoryLock lock(directory_);
+  const std::string line = csv_line(to_record(record.row));
+  if (record.origin) origins_.append(csv_line(to_record(*record.origin, record.row.mesh, line)));
+  rows_.append(line);
+}
+
+void ResultsFiles::merge(const BatchRecords& records) const {
+  const DirectoryLock lock(directory_);
+  BatchRecords all = read();
+  for (const auto& [mesh, record] : records) keep_latest(record, all);
+  write(all);
+}
+
+void ResultsFiles::write(const BatchRecords& records) const {
+  std::vector<std::string> rows;
+  std::vector<std::string> origins;
+  for (const auto& [mesh, record] : records) {
+    rows.push_back(csv_line(to_record(record.row)));
+    if (record.origin) origins.push_back(csv_line(to_record(*record.origin, mesh, rows.back())));
+  }
+  origins_.replace(origins);
+  rows_.replace(rows);
+}
+
+BatchRecords read_all_results(const std::string& directory) {
+  BatchRecords all;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+    const std::optional<Shard> shard = shard_of_results(entry.path().filename().string());
+    if (!shard) continue;
+    for (auto& [mesh, record] : ResultsFiles(directory, *shard).read()) keep_latest(std::move(record), all);
+  }
+  return all;
+}
+
+bool is_results_file(const std::string& name) {
+  const std::string state = "batch-state";
+  return shard_of_results(name) || (name.starts_with(state) && shard_of_results("results" + name.substr(state.size())));
+}
+
+}  // namespace raycone

@@ -1,0 +1,64 @@
+// The files in which a batch keeps its results. For each batch or shard there are two: results.csv, for users, with a
+// row a mesh, and batch-state.csv, which tells what each row was made from. Both are appended to as results come, a
+// write(2) a line, and sorted at the end; what a killed writer left of a line is dropped.
+#pragma once
+
+#include <sys/types.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/batch/batch_record.h"
+#include "app/batch/shard.h"
+
+namespace raycone {
+
+// A CSV file with a fixed header that several processes may append to.
+class CsvLog {
+ public:
+  CsvLog(std::string path, CsvRecord columns) : path_(std::move(path)), columns_(std::move(columns)) {}
+
+  // Nothing where there is no file. Throws InputError where it is no such table.
+  [[nodiscard]] std::vector<CsvRecord> read() const;
+  // Throw OutputError. append() leaves the file as it was where it cannot write all of the line.
+  void append(const std::string& line) const;
+  void replace(const std::vector<std::string>& lines) const;  // does nothing where they are there already
+
+ private:
+  [[nodiscard]] std::string text() const;
+  off_t drop_incomplete_line(int descriptor) const;
+
+  std::string path_;
+  CsvRecord columns_;
+  mutable off_t complete_ = 0;  // the size that this has left behind: it ends with a complete line
+};
+
+class ResultsFiles {
+ public:
+  // Those of `shard`, in `directory`; of the whole batch where it is the only one.
+  ResultsFiles(std::string directory, const Shard& shard);
+
+  [[nodiscard]] BatchRecords read() const;
+  // Forgets the rows of `meshes`, and what a killed writer left incomplete.
+  void forget(const std::set<std::string>& meshes) const;
+  void append(const BatchRecord& record) const;
+  // Adds `records` where they are newer than what is there, and sorts by mesh.
+  void merge(const BatchRecords& records) const;
+
+ private:
+  void write(const BatchRecords& records) const;
+
+  std::string directory_;
+  CsvLog rows_;
+  CsvLog origins_;
+};
+
+// Of the whole batch and all its shards together. Throws InputError.
+[[nodiscard]] BatchRecords read_all_results(const std::string& directory);
+
+// Whether a batch keeps its results in files of this name.
+[[nodiscard]] bool is_results_file(const std::string& name);
+
+}  // namespace raycone

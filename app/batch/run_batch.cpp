@@ -1,0 +1,234 @@
+// Straight lines: meshes found, what is up to date left out, the others handed to workers, results kept.
+#include "app/batch/run_batch.h"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "app/batch/batch_summary.h"
+#include "app/batch/plan.h"
+#include "app/batch/results_files.h"
+#include "app/batch/supervisor.h"
+#include "app/batch/worker.h"
+#include "app/batch_options.h"
+#include "app/limits.h"
+#include "app/progress.h"
+#include "app/report.h"
+#include "app/signals.h"
+#include "app/stopwatch.h"
+#include "app/usage_error.h"
+#include "app/version.h"
+#include "io/file_error.h"
+#include "io/output_file.h"
+#include "io/read_file.h"
+
+namespace raycone {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
+  std::vector<BatchMesh> all = find_meshes(command.search);
+  if (all.empty()) print_message("warning: no meshes found");
+  for (const BatchMesh& mesh : all) {
+    if (command.format == "none" || !is_results_file(mesh.output)) continue;
+    throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
+  }
+  std::vector<SizedName> names;
+  for (const BatchMesh& mesh : all) names.push_back({mesh.name, mesh.stamp.size});
+  std::vector<BatchMesh> part;
+  for (const std::size_t i : part_of(names, command.shard)) part.push_back(std::move(all[i]));
+  return part;
+}
+
+// The options that outputs and results depend on, as text.
+std::string shaping_options(const BatchCommand& command) {
+  const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
+  std::string text = "--format=" + command.format;
+  for (const std::string& option : command.lattice_options) {
+    if (!without_effect.contains(option.substr(0, option.find('=')))) text += '\n' + option;
+  }
+  const LatticeCommand lattice = lattice_command_of(command.format, command.lattice_options);
+  if (const auto* const grid = std::get_if<GridReference>(&lattice.lattice)) text += '\n' + sha256_of_file(grid->path);
+  return text;
+}
+
+SupervisorOptions supervisor_options(const BatchCommand& command) {
+  constexpr double kDefaultTimeout = 3600.0;  // seconds
+  SupervisorOptions options;
+  options.worker_words = {"raycone", kWorkerCommand, command.format};
+  options.worker_words.insert(options.worker_words.end(), command.lattice_options.begin(),
+                              command.lattice_options.end());
+  options.threads = command.run.threads ? *command.run.threads : default_threads();
+  options.jobs = std::min(command.jobs.value_or(options.threads), options.threads);
+  options.memory_limit = command.run.memory_limit ? *command.run.memory_limit
+                                                  : available_memory() / static_cast<std::uint64_t>(options.jobs);
+  options.timeout = command.run.timeout.value_or(kDefaultTimeout);
+  return options;
+}
+
+PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& limits) {
+  return {.directory = command.directory,
+          .writes = command.format != "none",
+          .retry_failed = command.retry_failed,
+          .version = kVersion,
+          .options = shaping_options(command),
+          .memory_limit = limits.memory_limit,
+          .default_memory_limit = !command.run.memory_limit,
+          .timeout = limits.timeout};
+}
+
+void print_plan(const Plan& plan) {
+  OutputFile standard_output("-");
+  for (const PlannedMesh& planned : plan.todo) {
+    standard_output.stream() << planned.mesh.path << '\t' << planned.reason << '\n';
+  }
+  standard_output.commit();
+}
+
+void make_directory(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw OutputError(path + ": cannot create the directory: " + error.message());
+}
+
+// One batch run, from its plan to its results.
+class BatchRun {
+ public:
+  BatchRun(const BatchCommand& command, Plan plan, const PlanOptions& options)
+      : command_(command),
+        plan_(std::move(plan)),
+        options_(options),
+        results_(command.directory, command.shard),
+        progress_(progress_is_shown(command.run.progress, command.run.quiet, ""), plan_.todo.size()) {}
+
+  // Returns the signal that interrupted it, or 0.
+  int run(const SupervisorOptions& limits) {
+    const HeldSignals signals;
+    prepare_directory();
+    const int signal = timed(outcome_.seconds, [&] {
+      return supervise(
+          jobs(), limits, signals,
+          [this](std::size_t job, JobResult result, double part) { return take(job, std::move(result), part); },
+          [this] { progress_.show(); });
+    });
+    progress_.erase();
+    outcome_.kept = plan_.kept;
+    outcome_.not_done = plan_.todo.size() - outcome_.evaluated.size();
+    BatchRecords records = outcome_.kept;
+    for (const auto& [mesh, record] : outcome_.evaluated) records.insert_or_assign(mesh, record);
+    results_.merge(records);
+    return signal;
+  }
+
+  [[nodiscard]] const BatchOutcome& outcome() const { return outcome_; }
+
+ private:
+  // Rows that are about to be made again are forgotten, and what killed runs left is removed.
+  void prepare_directory() const {
+    std::set<std::string> names;
+    std::set<std::string> directories{command_.directory};
+    for (const PlannedMesh& planned : plan_.todo) {
+      names.insert(planned.mesh.name);
+      directories.insert(fs::path(path_of_output(planned.mesh)).parent_path().string());
+    }
+    for (const std::string& directory : directories) remove_abandoned_files(directory);
+    results_.forget(names);
+  }
+
+  [[nodiscard]] std::string path_of_output(const BatchMesh& mesh) const {
+    return options_.writes ? command_.directory + '/' + mesh.output : "/dev/null";
+  }
+
+  [[nodiscard]] const std::vector<SupervisedJob>& jobs() {
+    for (const PlannedMesh& planned : plan_.todo) {
+      const std::string output = path_of_output(planned.mesh);
+      std::error_code error;  // where it matters, the worker will notice and say so
+      if (options_.writes) fs::create_directories(fs::path(output).parent_path(), error);
+      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp.size});
+    }
+    return jobs_;
+  }
+
+  // Whether to go on.
+  bool take(std::size_t job, JobResult result, double part) {
+    const BatchMesh& mesh = plan_.todo[job].mesh;
+    BatchRecord record = record_of(mesh, std::move(result));
+    results_.append(record);
+    const bool failed = record.row.status != MeshStatus::kOk;
+    progress_.erase();
+    if (failed) print_message(record.row.message);
+    if (!failed && !record.row.message.empty() && !command_.run.quiet) {
+      print_message("warning: " + mesh.path + ": " + record.row.message);
+    }
+    progress_.add(failed, part);
+    outcome_.evaluated.insert_or_assign(mesh.name, std::move(record));
+    return !(failed && command_.fail_fast);
+  }
+
+  [[nodiscard]] BatchRecord record_of(const BatchMesh& mesh, JobResult result) const {
+    ResultRow& row = result.row;
+    row.mesh = mesh.name;
+    if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
+    if (row.sha256.empty()) row.sha256 = hash_of(mesh);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    RowOrigin origin{.stamp = mesh.stamp,
+                     .companions = std::move(result.companions),
+                     .version = options_.version,
+                     .options = options_.options,
+                     .memory_limit = options_.memory_limit,
+                     .default_memory_limit = options_.default_memory_limit,
+                     .timeout = options_.timeout,
+                     .finished = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(),
+                     .thumbnail = std::move(result.thumbnail)};
+    return {std::move(row), std::move(origin)};
+  }
+
+  // Of a mesh that failed: what tells later whether it is still the same. A pipe would have to be waited for.
+  static std::string hash_of(const BatchMesh& mesh) {
+    std::error_code error;
+    if (!fs::is_regular_file(mesh.path, error)) return "";
+    try {
+      return sha256_of_file(mesh.path);
+    } catch (const InputError&) {
+      return "";
+    }
+  }
+
+  const BatchCommand& command_;
+  Plan plan_;
+  const PlanOptions& options_;
+  ResultsFiles results_;
+  BatchProgress progress_;
+  std::vector<SupervisedJob> jobs_;
+  BatchOutcome outcome_;
+};
+
+}  // namespace
+
+ExitCode run_batch(const BatchCommand& command) {
+  const std::vector<BatchMesh> meshes = meshes_of(command);
+  const SupervisorOptions limits = supervisor_options(command);
+  const PlanOptions options = plan_options(command, limits);
+  Plan plan = make_plan(meshes, read_all_results(command.directory), options);
+  if (command.dry_run) {
+    print_plan(plan);
+    return ExitCode::kDone;
+  }
+  make_directory(command.directory);
+  BatchRun run(command, std::move(plan), options);
+  if (const int signal = run.run(limits)) raise(signal);
+  if (!command.run.quiet) {
+    for (const std::string& line : summary_lines(run.outcome())) print_message(line);
+  }
+  return run.outcome().any_failed() ? ExitCode::kBatch : ExitCode::kDone;
+}
+
+}  // namespace raycone

@@ -1,0 +1,13 @@
+// `raycone batch`: lattices of many meshes.
+#pragma once
+
+#include "app/exit_code.h"
+#include "app/options.h"
+
+namespace raycone {
+
+// Returns kBatch where meshes failed, now or earlier; dies of the signal that interrupts it. Throws UsageError,
+// InputError, OutputError, LimitError about what concerns the batch as a whole.
+[[nodiscard]] ExitCode run_batch(const BatchCommand& command);
+
+}  // namespace raycone

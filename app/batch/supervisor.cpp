@@ -1,0 +1,177 @@
+#include "app/batch/supervisor.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/batch/worker_process.h"
+#include "app/exit_code.h"
+#include "app/limits.h"
+#include "app/signals.h"
+#include "io/output_file.h"
+
+namespace raycone {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kTick{250};
+
+JobResult failed(MeshStatus status, int exit, const std::string& message) {
+  JobResult result;
+  result.row.status = status;
+  result.row.exit = exit;
+  result.row.message = message;
+  return result;
+}
+
+// A worker and what it is doing.
+struct Slot {
+  std::unique_ptr<WorkerProcess> worker;
+  std::optional<Schedule::Start> running;
+  Clock::time_point deadline;
+};
+
+class Supervisor {
+ public:
+  Supervisor(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options, const ResultHandler& handle)
+      : jobs_(jobs), options_(options), handle_(handle), schedule_(sizes_of(jobs), options.threads, options.jobs) {}
+
+  int run(const HeldSignals& signals, const std::function<void()>& tick) {
+    for (;;) {
+      if (stopped_) return 0;
+      while (const std::optional<Schedule::Start> start = schedule_.next()) begin(*start);
+      if (std::ranges::none_of(slots_, [](const Slot& slot) { return slot.running.has_value(); })) return 0;
+      wait(signals);
+      if (const int signal = signals.take()) return signal;
+      for (Slot& slot : slots_) look_after(slot);
+      tick();
+    }
+  }
+
+  // Ends the workers that still run; what they were doing is not done.
+  ~Supervisor() {
+    for (Slot& slot : slots_) replace(slot);
+  }
+
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+ private:
+  static std::vector<std::uint64_t> sizes_of(const std::vector<SupervisedJob>& jobs) {
+    std::vector<std::uint64_t> sizes;
+    for (const SupervisedJob& job : jobs) sizes.push_back(job.size);
+    return sizes;
+  }
+
+  Slot& idle_slot() {
+    const auto idle = std::ranges::find_if(slots_, [](const Slot& slot) { return !slot.running; });
+    return idle != slots_.end() ? *idle : slots_.emplace_back();
+  }
+
+  void begin(const Schedule::Start& start) {
+    const SupervisedJob& job = jobs_[start.mesh];
+    Slot& slot = idle_slot();
+    if (!slot.worker) slot.worker = std::make_unique<WorkerProcess>(options_.worker_words);
+    slot.running = start;
+    slot.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(std::min(options_.timeout, kMaxTimeout)));
+    slot.worker->send({job.mesh, job.output, start.threads, options_.memory_limit});
+  }
+
+  // Until a worker or a signal has something to say, the next deadline, or the next tick.
+  void wait(const HeldSignals& signals) const {
+    std::vector<pollfd> descriptors{{signals.descriptor(), POLLIN, 0}};
+    Clock::duration patience = kTick;
+    for (const Slot& slot : slots_) {
+      if (!slot.running) continue;
+      descriptors.push_back({slot.worker->descriptor(), POLLIN, 0});
+      patience = std::min(patience, slot.deadline - Clock::now());
+    }
+    const auto milliseconds = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
+    poll(descriptors.data(), descriptors.size(), static_cast<int>(std::max<decltype(milliseconds)>(milliseconds, 0)));
+  }
+
+  void look_after(Slot& slot) {
+    if (!slot.running || stopped_) return;
+    if (std::optional<JobResult> result = slot.worker->receive()) {
+      const MeshStatus status = result->row.status;
+      const bool reusable =
+          status == MeshStatus::kOk || status == MeshStatus::kInvalid || status == MeshStatus::kUnwritable;
+      if (!reusable) replace(slot);
+      finish(slot, std::move(*result));
+    } else if (slot.worker->ended()) {
+      const int wait_status = replace(slot);
+      finish(slot, crash(jobs_[slot.running->mesh].mesh, wait_status));
+    } else if (Clock::now() >= slot.deadline) {
+      replace(slot);
+      char limit[32];
+      std::snprintf(limit, sizeof limit, "%g", options_.timeout);
+      finish(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
+                          jobs_[slot.running->mesh].mesh + ": not finished within " + limit + " seconds (--timeout)"));
+    }
+  }
+
+  // Ends the worker and removes what it was writing. Returns how it ended.
+  int replace(Slot& slot) {
+    if (!slot.worker) return 0;
+    const int status = slot.worker->end();
+    slot.worker.reset();
+    if (slot.running) {
+      remove_abandoned_files(std::filesystem::path(jobs_[slot.running->mesh].output).parent_path().string());
+    }
+    return status;
+  }
+
+  [[nodiscard]] JobResult crash(const std::string& mesh, int wait_status) const {
+    constexpr int kSignalBase = 128;  // as in shells
+    const auto internal = static_cast<int>(ExitCode::kInternal);
+    if (WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == static_cast<int>(ExitCode::kLimit)) {
+      return failed(
+          MeshStatus::kMemory, static_cast<int>(ExitCode::kLimit),
+          mesh + ": out of memory, the limit is " + readable_bytes(static_cast<double>(options_.memory_limit)));
+    }
+    if (!WIFSIGNALED(wait_status)) {
+      return failed(MeshStatus::kCrashed, internal, mesh + ": its process ended unexpectedly, please report");
+    }
+    const int signal = WTERMSIG(wait_status);
+    const std::string hint = signal == SIGKILL ? ", perhaps by the system for lack of memory" : ", please report";
+    return failed(
+        MeshStatus::kCrashed, kSignalBase + signal,
+        mesh + ": its process was killed by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")" + hint);
+  }
+
+  void finish(Slot& slot, JobResult result) {
+    const Schedule::Start start = *std::exchange(slot.running, std::nullopt);
+    schedule_.finished(start);
+    stopped_ = !handle_(start.mesh, std::move(result), schedule_.progress());
+  }
+
+  // 30 years: what clocks can add.
+  static constexpr double kMaxTimeout = 1e9;
+
+  const std::vector<SupervisedJob>& jobs_;
+  const SupervisorOptions& options_;
+  const ResultHandler& handle_;
+  Schedule schedule_;
+  std::vector<Slot> slots_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options, const HeldSignals& signals,
+              const ResultHandler& handle, const std::function<void()>& tick) {
+  return Supervisor(jobs, options, handle).run(signals, tick);
+}
+
+}  // namespace raycone

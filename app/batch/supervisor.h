@@ -1,0 +1,40 @@
+// The process of a batch that starts workers, hands them meshes and sees to it that none outlives its limits.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/batch/job.h"
+#include "app/batch/schedule.h"
+#include "app/signals.h"
+
+namespace raycone {
+
+struct SupervisedJob {
+  std::string mesh;  // files, as for Job
+  std::string output;
+  std::uint64_t size = 0;  // of the mesh, bytes
+};
+
+struct SupervisorOptions {
+  std::vector<std::string> worker_words;  // the command line of a worker, the program's name first
+  int threads = 1;                        // busy ones at a time, in all workers together
+  int jobs = 1;                           // meshes at a time
+  std::uint64_t memory_limit = 0;         // of each mesh, bytes
+  double timeout = 0.0;                   // of each mesh, seconds
+};
+
+// Told of each mesh, by its position, as soon as it is done, and what part of the work that makes, 0 to 1. Ends the
+// batch by returning false.
+using ResultHandler = std::function<bool(std::size_t job, JobResult result, double progress)>;
+
+// Does all jobs, each in a worker process. A worker is used again after it evaluated or rejected a mesh, and replaced
+// where it ran out of time or memory or crashed. `tick` is called at least four times a second. Returns the one of
+// `signals` that interrupted it, or 0; either way no worker is left, nor any file that one was writing. Call in a
+// process of one thread.
+[[nodiscard]] int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options,
+                            const HeldSignals& signals, const ResultHandler& handle, const std::function<void()>& tick);
+
+}  // namespace raycone

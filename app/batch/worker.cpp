@@ -1,0 +1,180 @@
+#include "app/batch/worker.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <exception>
+#include <fstream>
+#include <new>
+#include <utility>
+
+#include "app/batch/job.h"
+#include "app/batch_options.h"
+#include "app/limits.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "app/run_lattice.h"
+#include "app/run_steps.h"
+
+namespace raycone {
+namespace {
+
+// The peak of memory counts from here on: each job has its own.
+void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << '5'; }
+
+// A job of many gigabytes must not leave the next one, perhaps in another worker, without memory.
+void return_unused_memory(std::uint64_t used) {
+  constexpr std::uint64_t kWorthReturning = std::uint64_t{64} << 20;
+  if (used > kWorthReturning) malloc_trim(0);
+}
+
+// Allocations may fail where no exception can pass, as in a library's destructor.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    _exit(static_cast<int>(ExitCode::kLimit));
+  } catch (...) {
+  }
+  std::abort();
+}
+
+// The supervisor decides when workers end.
+void leave_signals_to_supervisor() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
+}
+
+// The socket, out of the way of whatever reads standard input or prints.
+int take_socket() {
+  const int socket = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  dup2(nothing, STDIN_FILENO);
+  close(nothing);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  return socket;
+}
+
+class Connection {
+ public:
+  explicit Connection(int socket) : socket_(socket) {}
+
+  // Waits; nothing at the end of the supervisor.
+  std::optional<Message> receive() {
+    for (;;) {
+      if (std::optional<Message> message = reader_.next()) return message;
+      char buffer[4096];
+      const ssize_t count = recv(socket_, buffer, sizeof buffer, 0);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return std::nullopt;
+      reader_.add({buffer, static_cast<std::size_t>(count)});
+    }
+  }
+
+  // False at the end of the supervisor.
+  [[nodiscard]] bool send(const Message& message) const {
+    const std::string frame = to_frame(message);
+    for (std::size_t sent = 0; sent < frame.size();) {
+      const ssize_t count = ::send(socket_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      sent += static_cast<std::size_t>(count);
+    }
+    return true;
+  }
+
+ private:
+  int socket_;
+  MessageReader reader_;
+};
+
+MeshFigures figures_of(const RunReport& report) {
+  const Seconds& seconds = report.seconds;
+  return {report.faces, report.exterior_edges, report.samples,   report.tally.degenerate, report.tally.on_surface,
+          seconds.read, seconds.prepare,       seconds.evaluate, seconds.write,           report.peak_memory_bytes};
+}
+
+// "FILE: 3 faces skipped; 1 triangle ..."
+std::string joined(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += (text.empty() ? "" : "; ") + warning;
+  return text;
+}
+
+JobResult result_of(const RunReport& report) {
+  JobResult result;
+  result.row.figures = figures_of(report);
+  result.row.sha256 = report.sha256;
+  result.row.message = joined(report.warnings);
+  result.warnings = report.warnings;
+  for (const std::string& file : report.files_read) {
+    if (file != report.mesh) result.companions.push_back({file, stamp_of(file)});
+  }
+  return result;
+}
+
+MeshStatus status_of(ExitCode code) {
+  switch (code) {
+    case ExitCode::kDone:
+      return MeshStatus::kOk;
+    case ExitCode::kUsage:  // options that do not suit this mesh
+    case ExitCode::kInput:
+      return MeshStatus::kInvalid;
+    case ExitCode::kOutput:
+      return MeshStatus::kUnwritable;
+    case ExitCode::kLimit:
+      return MeshStatus::kMemory;
+    default:
+      return MeshStatus::kCrashed;
+  }
+}
+
+JobResult result_of(const Failure& failure) {
+  JobResult result;
+  result.row.status = status_of(failure.code);
+  result.row.exit = static_cast<int>(failure.code);
+  result.row.message = failure.message;
+  return result;
+}
+
+// `command` with the files and limits of `job`.
+LatticeCommand command_for(const Job& job, LatticeCommand command) {
+  command.mesh.path = job.mesh;
+  command.output.path = job.output;
+  command.run.threads = job.threads;
+  command.run.memory_limit = job.memory_limit;
+  return command;
+}
+
+JobResult perform(const LatticeCommand& command) {
+  reset_peak_memory();
+  try {
+    const RunLimits limits(command.run, command.mesh.path);
+    refuse_to_replace_input(command.output, {command.mesh.path});
+    return result_of(run_lattice(command, limits));
+  } catch (const std::bad_alloc&) {
+    return result_of(Failure{ExitCode::kLimit, out_of_memory(command.mesh.path, command.run)});
+  } catch (...) {
+    return result_of(current_failure());
+  }
+}
+
+}  // namespace
+
+ExitCode run_worker(const std::vector<std::string>& words) {
+  leave_signals_to_supervisor();
+  std::set_terminate(end_without_memory);
+  Connection supervisor(take_socket());
+  const LatticeCommand command = lattice_command_of(words.at(0), {words.begin() + 1, words.end()});
+  while (const std::optional<Message> message = supervisor.receive()) {
+    const JobResult result = perform(command_for(job_from(*message), command));
+    if (!supervisor.send(to_message(result))) break;
+    return_unused_memory(peak_memory());
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace raycone

@@ -1,0 +1,91 @@
+#include "app/batch/worker_process.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include "io/file_error.h"
+
+namespace raycone {
+namespace {
+
+// In the child: async-signal-safe calls only.
+[[noreturn]] void become_worker(int socket, pid_t parent, char* const* words) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // the supervisor died before this could notice
+  dup2(socket, STDIN_FILENO);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv("/proc/self/exe", words);
+  _exit(1);
+}
+
+}  // namespace
+
+WorkerProcess::WorkerProcess(const std::vector<std::string>& words) {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw LimitError("cannot connect to a worker: " + std::generic_category().message(errno));
+  }
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ == 0) become_worker(ends[1], parent, arguments.data());
+  const int error = errno;
+  close(ends[1]);
+  socket_ = ends[0];
+  if (process_ > 0) return;
+  close(socket_);
+  throw LimitError("cannot start a worker: " + std::generic_category().message(error));
+}
+
+WorkerProcess::~WorkerProcess() {
+  end();
+  close(socket_);
+}
+
+void WorkerProcess::send(const Job& job) {
+  const std::string frame = to_frame(to_message(job));  // an idle worker's socket has room for it
+  ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL);
+}
+
+std::optional<JobResult> WorkerProcess::receive() {
+  char buffer[65536];
+  const ssize_t count = recv(socket_, buffer, sizeof buffer, MSG_DONTWAIT);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
+  if (count <= 0) {
+    ended_ = true;
+    return std::nullopt;
+  }
+  reader_.add({buffer, static_cast<std::size_t>(count)});
+  try {
+    if (const std::optional<Message> message = reader_.next()) return result_from(*message);
+  } catch (const std::exception&) {
+    kill(process_, SIGKILL);
+    ended_ = true;
+  }
+  return std::nullopt;
+}
+
+int WorkerProcess::end() {
+  const pid_t process = std::exchange(process_, -1);
+  if (process < 0) return 0;
+  // One that closed its socket is ending by itself, and how is of interest.
+  if (!ended_) kill(process, SIGKILL);
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace raycone

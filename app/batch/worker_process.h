@@ -1,0 +1,44 @@
+// The supervisor's end of a worker.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/batch/job.h"
+#include "app/batch/message.h"
+
+namespace raycone {
+
+// A worker that runs; killed, with nothing left of it, at the end of its life, and when this process dies, however it
+// does. To be used by the thread that started it, the only one of its process.
+class WorkerProcess {
+ public:
+  // Starts this executable with `words`. Throws LimitError.
+  explicit WorkerProcess(const std::vector<std::string>& words);
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  // Readable when an answer arrives, or at the worker's end.
+  [[nodiscard]] int descriptor() const { return socket_; }
+
+  // Of a worker that has ended nothing is heard: see ended().
+  void send(const Job& job);
+  // Takes what has arrived: the answer, once it is complete. Nothing to be understood ends the worker.
+  [[nodiscard]] std::optional<JobResult> receive();
+  [[nodiscard]] bool ended() const { return ended_; }
+
+  // Ends it, if need be, and returns how it ended, as wait(2) tells.
+  int end();
+
+ private:
+  pid_t process_ = -1;
+  int socket_ = -1;
+  bool ended_ = false;
+  MessageReader reader_;
+};
+
+}  // namespace raycone

@@ -1,0 +1,169 @@
+// Batches that are killed, as a whole or in part. Black box, real signals.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "tests/app/batch/batch_fixture.h"
+
+namespace raycone::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+std::vector<pid_t> children_of(pid_t process) {
+  const std::string id = std::to_string(process);
+  std::ifstream list("/proc/" + id + "/task/" + id + "/children");
+  std::vector<pid_t> children;
+  for (pid_t child = 0; list >> child;) children.push_back(child);
+  return children;
+}
+
+// Zombies do not run.
+bool runs(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string stat;
+  std::getline(file, stat);
+  const std::size_t state = stat.rfind(") ");
+  return state != std::string::npos && stat[state + 2] != 'Z' && stat[state + 2] != 'X';
+}
+
+bool becomes_true(const std::function<bool()>& condition) {
+  for (int i = 0; i < 1000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  return condition();
+}
+
+class BatchInterruption : public Batch {
+ protected:
+  // Meshes that take some milliseconds each, one of which is broken.
+  void put_many() const {
+    for (int i = 0; i < 30; ++i) put(std::to_string(i) + ".obj", triangle_soup(20 + 7 * i));
+    put("sub/bad.obj", "broken");
+  }
+
+  // Two meshes whose evaluation takes minutes.
+  void put_long() const {
+    put("a.obj", triangle_soup(2000));
+    put("b.obj", triangle_soup(2001));
+  }
+  [[nodiscard]] std::vector<std::string> long_run() const {
+    return raycone_command(arguments({"--resolution", "300", "--threads", "2"}));
+  }
+
+  // Waits until two workers have opened their temporary files.
+  [[nodiscard]] std::vector<pid_t> wait_for_workers(const Command& command) const {
+    EXPECT_TRUE(becomes_true([this] { return fs::exists(out_) && temporaries() == 2; }));
+    return children_of(command.process());
+  }
+
+  [[nodiscard]] std::size_t temporaries() const {
+    std::size_t count = 0;
+    for (const auto& [name, text] : outputs_in(out_)) count += name.find(".raycone-") != std::string::npos ? 1 : 0;
+    return count;
+  }
+
+  static void expect_all_to_end(const std::vector<pid_t>& processes) {
+    for (const pid_t process : processes) EXPECT_TRUE(becomes_true([process] { return !runs(process); }));
+  }
+};
+
+TEST_F(BatchInterruption, KilledAtAnyMomentTheLastRunEqualsAnUndisturbedOne) {
+  put_many();
+  const std::vector<std::string> options{"--resolution", "24", "--threads", "2"};
+  const std::string undisturbed = dir_ / "undisturbed";
+  ASSERT_EQ(run_raycone(arguments_into(undisturbed, options)).status, 5);
+  std::mt19937 random(1);
+  std::size_t interrupted = 0;
+  for (int i = 0; i < 12; ++i) {
+    Command command(raycone_command(arguments(options)));
+    std::this_thread::sleep_for(milliseconds(20 + random() % 60));
+    const std::vector<pid_t> workers = children_of(command.process());
+    command.send_signal(SIGKILL);
+    interrupted += command.wait().signal == SIGKILL ? 1 : 0;
+    expect_all_to_end(workers);
+  }
+  EXPECT_GT(interrupted, 1U) << "the batch is too short for this test";
+  EXPECT_EQ(run(options).status, 5);
+  EXPECT_EQ(lasting(rows()), lasting(rows_in(undisturbed + "/results.csv")));
+  EXPECT_EQ(outputs_in(out_), outputs_in(undisturbed)) << "also: no temporary file is left";
+}
+
+TEST_F(BatchInterruption, BySignalCleansUpAndDiesOfIt) {
+  put_long();
+  put("c.obj");  // done by the time of the signal
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    fs::remove_all(out_);
+    Command command(long_run());
+    const std::vector<pid_t> workers = wait_for_workers(command);
+    EXPECT_EQ(workers.size(), 2U);
+    command.send_signal(signal);
+    const CommandResult result = command.wait();
+    EXPECT_EQ(result.signal, signal);
+    expect_all_to_end(workers);
+    EXPECT_EQ(temporaries(), 0U);
+    for (const auto& [mesh, row] : rows()) EXPECT_EQ(mesh, "c.obj") << "an interrupted mesh has no row";
+  }
+}
+
+TEST_F(BatchInterruption, ATerminalsSignalToAllIsTheSupervisors) {
+  put_long();
+  Command command(long_run());
+  const std::vector<pid_t> workers = wait_for_workers(command);
+  for (const pid_t worker : workers) kill(worker, SIGINT);
+  command.send_signal(SIGINT);
+  EXPECT_EQ(command.wait().signal, SIGINT);
+  expect_all_to_end(workers);
+  EXPECT_TRUE(rows().empty());
+}
+
+TEST_F(BatchInterruption, AWorkerThatCrashesCostsItsRowAndIsReplaced) {
+  put_long();
+  Command command(long_run());
+  const std::vector<pid_t> workers = wait_for_workers(command);
+  ASSERT_EQ(workers.size(), 2U);
+  kill(workers[0], SIGSEGV);
+  kill(workers[1], SIGKILL);
+  const CommandResult result = command.wait();
+  EXPECT_EQ(result.status, 5);
+  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "crashed"}, {"b.obj", "crashed"}}));
+  EXPECT_EQ(rows().at("a.obj").exit + rows().at("b.obj").exit, 128 + SIGSEGV + 128 + SIGKILL);
+  EXPECT_EQ(temporaries(), 0U);
+  EXPECT_NE(run({"--resolution", "300", "--dry-run"}).out.find("a.obj\tcrashed before"), std::string::npos);
+}
+
+TEST_F(BatchInterruption, FourBatchesInOneDirectoryDisturbNoOther) {
+  put_many();
+  const std::vector<std::string> options{"--resolution", "16", "--threads", "1"};
+  const std::string alone = dir_ / "alone";
+  ASSERT_EQ(run_raycone(arguments_into(alone, options)).status, 5);
+  std::vector<std::unique_ptr<Command>> commands;
+  for (int i = 0; i < 4; ++i) commands.push_back(std::make_unique<Command>(raycone_command(arguments(options))));
+  for (const std::unique_ptr<Command>& command : commands) EXPECT_EQ(command->wait().status, 5);
+  EXPECT_EQ(lasting(rows()), lasting(rows_in(alone + "/results.csv")));
+  EXPECT_EQ(outputs_in(out_), outputs_in(alone));
+}
+
+TEST_F(BatchInterruption, CleansUpBehindKilledRunsButNotBehindOthers) {
+  put_long();
+  Command killed(long_run());
+  expect_all_to_end({});
+  const std::vector<pid_t> workers = wait_for_workers(killed);
+  killed.send_signal(SIGKILL);
+  (void)killed.wait();
+  expect_all_to_end(workers);
+  EXPECT_EQ(temporaries(), 2U) << "nobody was left to remove them";
+  Command alive(long_run());
+  EXPECT_TRUE(becomes_true([&] { return children_of(alive.process()).size() == 2 && temporaries() == 2; }));
+  put("c.obj");
+  EXPECT_EQ(run_raycone({"batch", meshes_ + "/c.obj", "--out-dir", out_, "--resolution", "8"}).status, 0);
+  EXPECT_EQ(temporaries(), 2U) << "of the batch that runs";
+}
+
+}  // namespace
+}  // namespace raycone::test

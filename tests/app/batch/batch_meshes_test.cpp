@@ -1,0 +1,129 @@
+#include "app/batch/batch_meshes.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "app/usage_error.h"
+#include "io/file_error.h"
+#include "tests/app/meshes.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BatchMeshes : public testing::Test {
+ protected:
+  std::string put(const std::string& name) const {
+    const fs::path path = dir_.path() / name;
+    fs::create_directories(path.parent_path());
+    write_text(path, kTriangle);
+    return path.string();
+  }
+
+  [[nodiscard]] static std::vector<BatchMesh> find(const std::vector<std::string>& operands, bool full_names = false,
+                                                   bool nul = false) {
+    return find_meshes({operands, nul, full_names, "vdb"});
+  }
+
+  [[nodiscard]] static std::vector<std::string> names(const std::vector<BatchMesh>& meshes) {
+    std::vector<std::string> result;
+    for (const BatchMesh& mesh : meshes) result.push_back(mesh.name);
+    return result;
+  }
+
+  // What the UsageError of the search says.
+  [[nodiscard]] static std::string error_of(const std::vector<std::string>& operands) {
+    try {
+      (void)find(operands);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  TemporaryDirectory dir_;
+  std::string root_ = dir_.path().string();
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(BatchMeshes, OfADirectoryAreFoundRecursivelyInByteOrder) {
+  for (const char* const name : {"b.stl", "a/x.obj", "a-b.ply", "A.OFF", "a/y/z.GLB", "10.stl", "9.stl", "notes.txt",
+                                 "\xC3\xA4 b.gltf", "stl", "a.stl.gz", "q.ObJ"}) {
+    put(name);
+  }
+  const std::vector<BatchMesh> found = find({root_});
+  EXPECT_EQ(names(found), (Names{"10.stl", "9.stl", "A.OFF", "a-b.ply", "a/x.obj", "a/y/z.GLB", "b.stl", "q.ObJ",
+                                 "\xC3\xA4 b.gltf"}));
+  EXPECT_EQ(found[4].path, root_ + "/a/x.obj");
+  EXPECT_EQ(found[4].output, "a/x.vdb");
+  EXPECT_EQ(found[4].stamp, stamp_of(root_ + "/a/x.obj"));
+  EXPECT_EQ(names(find({root_ + "/"})), names(found));
+}
+
+TEST_F(BatchMeshes, GivenByNameMayHaveAnyExtension) {
+  const std::vector<BatchMesh> found = find({put("sub/mesh.dat"), put("sub/1234"), root_ + "/absent.stl"});
+  EXPECT_EQ(names(found), (Names{"1234", "absent.stl", "mesh.dat"}));
+  EXPECT_EQ(found[0].output, "1234.vdb");
+  EXPECT_EQ(found[1].stamp, FileStamp{});
+  EXPECT_EQ(found[2].output, "mesh.vdb");
+}
+
+TEST_F(BatchMeshes, OfListsAreOnePathALine) {
+  const std::string a = put("sub/a b.stl");
+  const std::string b = put("b\nc.stl");
+  put("tree/d.obj");
+  write_text(dir_ / "list", a + "\r\n\n" + root_ + "/tree\n");
+  EXPECT_EQ(names(find({"@" + dir_ / "list"})), (Names{"a b.stl", "d.obj"}));
+  write_text(dir_ / "nul", a + '\0' + b);
+  EXPECT_EQ(names(find({"@" + dir_ / "nul"}, false, true)), (Names{"a b.stl", "b\nc.stl"}));
+  EXPECT_THROW((void)find({"@" + dir_ / "absent"}), InputError);
+}
+
+TEST_F(BatchMeshes, WithOneOutputAreRefusedByBothNames) {
+  const std::string stl = put("x/a.stl");
+  const std::string obj = put("x/a.obj");
+  const std::string other = put("y/a.stl");
+  EXPECT_NE(error_of({root_ + "/x"}).find(obj + " and " + stl), std::string::npos) << error_of({root_ + "/x"});
+  EXPECT_NE(error_of({stl, other}).find(stl + " and " + other), std::string::npos) << error_of({stl, other});
+  const std::vector<BatchMesh> full = find({root_ + "/x"}, true);
+  EXPECT_EQ(full[0].output, "a.obj.vdb");
+  EXPECT_EQ(full[1].output, "a.stl.vdb");
+  EXPECT_EQ(find({root_}, true).size(), 3U);
+}
+
+TEST_F(BatchMeshes, GivenTwiceAreThereOnce) {
+  const std::string a = put("a.stl");
+  EXPECT_EQ(find({a, root_, root_ + "/./a.stl"}).size(), 1U);
+}
+
+TEST_F(BatchMeshes, LinksAreFollowedButNotInCircles) {
+  put("a/b/mesh.stl");
+  fs::create_directory_symlink(root_ + "/a", dir_ / "a/b/up");
+  fs::create_directory_symlink(root_ + "/a/b", dir_ / "link");
+  fs::create_symlink("nowhere.stl", dir_ / "dangling.stl");
+  EXPECT_EQ(names(find({root_})), (Names{"a/b/mesh.stl", "dangling.stl", "link/mesh.stl"}));
+}
+
+TEST_F(BatchMeshes, PipesInDirectoriesArePassedOver) {
+  ASSERT_EQ(mkfifo((dir_ / "pipe.stl").c_str(), 0600), 0);
+  put("a.stl");
+  EXPECT_EQ(names(find({root_})), (Names{"a.stl"}));
+}
+
+TEST_F(BatchMeshes, ADirectoryThatCannotBeReadStandsForWhatItHolds) {
+  if (geteuid() == 0) GTEST_SKIP() << "nothing is forbidden to root";
+  put("a.stl");
+  put("closed/b.stl");
+  fs::permissions(dir_ / "closed", fs::perms::none);
+  EXPECT_EQ(names(find({root_})), (Names{"a.stl", "closed/"}));
+  fs::permissions(dir_ / "closed", fs::perms::owner_all);
+}
+
+}  // namespace
+}  // namespace raycone::test

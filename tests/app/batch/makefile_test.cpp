@@ -1,0 +1,74 @@
+// The example Makefile under GNU Make. Black box.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "tests/app/batch/batch_fixture.h"
+
+namespace raycone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Makefile : public Batch {
+ protected:
+  [[nodiscard]] std::vector<std::string> make(const std::string& resolution,
+                                              const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"/usr/bin/make",
+                                   "-j2",
+                                   "-f",
+                                   RAYCONE_DATA "/../app/make/Makefile",
+                                   "MESHES=" + meshes_,
+                                   "FIELDS=" + out_,
+                                   "OPTIONS=--resolution " + resolution,
+                                   std::string("RAYCONE=") + RAYCONE_EXECUTABLE};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  void SetUp() override {
+    if (!fs::exists("/usr/bin/make")) GTEST_SKIP() << "no GNU Make";
+  }
+};
+
+TEST_F(Makefile, BuildsWhatIsMissingAndNothingElse) {
+  put("a.obj");
+  put("sub/b.OBJ");
+  EXPECT_EQ(Command(make("8")).wait().status, 0);
+  EXPECT_EQ(outputs_in(out_).size(), 2U);
+  EXPECT_TRUE(fs::exists(out_ + "/sub/b.OBJ.vdb"));
+  EXPECT_EQ(Command(make("8", {"--question"})).wait().status, 0) << "nothing to be done";
+  const auto later = fs::last_write_time(out_ + "/a.obj.vdb") + std::chrono::seconds(1);
+  fs::last_write_time(put("a.obj", kTriangle), later);
+  EXPECT_EQ(Command(make("8", {"--question"})).wait().status, 1);
+}
+
+TEST_F(Makefile, AFailureCostsItsTargetOnly) {
+  put("a.obj");
+  put("b.obj", "broken");
+  put("c.obj");
+  EXPECT_EQ(Command(make("8", {"-k"})).wait().status, 2);
+  EXPECT_EQ(outputs_in(out_).size(), 2U);
+  EXPECT_FALSE(fs::exists(out_ + "/b.obj.vdb"));
+  EXPECT_EQ(Command(make("8")).wait().status, 2);
+}
+
+TEST_F(Makefile, AnInterruptLeavesNoPartialFile) {
+  put("a.obj", triangle_soup(2000));
+  put("b.obj", triangle_soup(2000));
+  Command command(make("300"));
+  for (int i = 0; i < 500 && (!fs::exists(out_) || outputs_in(out_).size() < 2); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_EQ(outputs_in(out_).size(), 2U) << "two temporary files";
+  command.send_signal(SIGTERM);
+  EXPECT_NE(command.wait().status, 0);
+  for (int i = 0; i < 500 && !outputs_in(out_).empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(outputs_in(out_).empty());
+}
+
+}  // namespace
+}  // namespace raycone::test

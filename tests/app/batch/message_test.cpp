@@ -1,0 +1,63 @@
+#include "app/batch/message.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "app/batch/job.h"
+
+namespace raycone::test {
+namespace {
+
+TEST(Message, ArrivesWholeHoweverItsBytesCome) {
+  const std::vector<Message> messages{{"a", "", std::string("\0\n", 2)}, {}, {std::string(100000, 'x')}};
+  std::string bytes;
+  for (const Message& message : messages) bytes += to_frame(message);
+  for (const std::size_t step : {std::size_t{1}, std::size_t{7}, bytes.size()}) {
+    MessageReader reader;
+    std::vector<Message> arrived;
+    for (std::size_t at = 0; at < bytes.size(); at += step) {
+      reader.add(std::string_view(bytes).substr(at, step));
+      while (std::optional<Message> message = reader.next()) arrived.push_back(*message);
+    }
+    EXPECT_EQ(arrived, messages);
+  }
+}
+
+TEST(Message, OfADamagedWorkerIsRefused) {
+  MessageReader huge;
+  huge.add(std::string(8, '\xFF'));
+  EXPECT_THROW((void)huge.next(), std::runtime_error);
+  std::string frame = to_frame({"abc"});
+  frame[8] = 4;  // the string's length: one more than there is
+  MessageReader longer;
+  longer.add(frame);
+  EXPECT_THROW((void)longer.next(), std::runtime_error);
+  EXPECT_THROW((void)job_from({"a", "b", "c", "d"}), std::runtime_error);
+  EXPECT_THROW((void)result_from({"a"}), std::runtime_error);
+}
+
+TEST(Message, CarriesJobsAndResults) {
+  const Job job = job_from(to_message(Job{"a b.stl", "o.vdb", 3, 1'000'000'000'000}));
+  EXPECT_EQ(job.mesh, "a b.stl");
+  EXPECT_EQ(job.output, "o.vdb");
+  EXPECT_EQ(job.threads, 3);
+  EXPECT_EQ(job.memory_limit, 1'000'000'000'000U);
+
+  JobResult sent;
+  sent.row.figures = MeshFigures{.faces = 12, .evaluate_s = 0.25};
+  sent.row.sha256 = "0123";
+  sent.warnings = {"one", "two"};
+  sent.companions = {{"x.bin", {5, -7}}};
+  sent.thumbnail = "iVBO";
+  const JobResult received = result_from(to_message(sent));
+  EXPECT_EQ(received.row.figures->faces, 12U);
+  EXPECT_EQ(received.row.figures->evaluate_s, 0.25);
+  EXPECT_EQ(received.row.sha256, "0123");
+  EXPECT_EQ(received.warnings, sent.warnings);
+  EXPECT_EQ(received.companions, sent.companions);
+  EXPECT_EQ(received.thumbnail, "iVBO");
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -1,0 +1,146 @@
+#include "app/batch/results_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "io/file_error.h"
+#include "tests/app/meshes.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+BatchRecord record(const std::string& mesh, std::uint64_t faces = 1, std::int64_t finished = 1) {
+  BatchRecord result;
+  result.row.mesh = mesh;
+  result.row.figures = MeshFigures{.faces = faces, .read_s = 0.5};
+  result.row.output = mesh + ".vdb";
+  result.row.message = "a \"quoted\", message";
+  result.origin = RowOrigin{.stamp = {7, 8},
+                            .companions = {{"a,b.bin", {1, 2}}},
+                            .version = "1",
+                            .options = "--a\n--b",
+                            .finished = finished};
+  return result;
+}
+
+class ResultsFilesTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::string results() const { return read_text(dir_ / "results.csv"); }
+
+  TemporaryDirectory dir_;
+  ResultsFiles files_{dir_.path().string(), Shard{}};
+};
+
+std::vector<std::string> meshes_of(const BatchRecords& records) {
+  std::vector<std::string> meshes;
+  for (const auto& [mesh, one] : records) meshes.push_back(mesh);
+  return meshes;
+}
+
+using Names = std::vector<std::string>;
+
+TEST_F(ResultsFilesTest, KeepRowsAndWhatTheyWereMadeFrom) {
+  EXPECT_TRUE(files_.read().empty());
+  files_.append(record("b", 2));
+  files_.append(record("a", 1));
+  const BatchRecords read = files_.read();
+  ASSERT_EQ(meshes_of(read), (Names{"a", "b"}));
+  const BatchRecord& b = read.at("b");
+  EXPECT_EQ(to_record(b.row), to_record(record("b", 2).row));
+  ASSERT_TRUE(b.origin);
+  EXPECT_EQ(b.origin->stamp, (FileStamp{7, 8}));
+  EXPECT_EQ(b.origin->companions, record("b").origin->companions);
+  EXPECT_EQ(b.origin->options, "--a\n--b");
+  EXPECT_LT(results().find("\nb,"), results().find("\na,")) << "as they come";
+  files_.merge({});
+  EXPECT_GT(results().find("\nb,"), results().find("\na,")) << "sorted";
+}
+
+TEST_F(ResultsFilesTest, SurviveWritersKilledAtAnyByte) {
+  files_.append(record("a"));
+  files_.append(record("b"));
+  const std::map<std::string, std::string> whole{{"results.csv", results()},
+                                                 {"batch-state.csv", read_text(dir_ / "batch-state.csv")}};
+  for (const auto& [cut, text] : whole) {
+    for (std::size_t size = 0; size <= text.size(); ++size) {
+      for (const auto& [name, all] : whole) write_text(dir_ / name, name == cut ? all.substr(0, size) : all);
+      files_.append(record("c"));
+      const BatchRecords read = files_.read();
+      ASSERT_TRUE(read.contains("c")) << cut << ' ' << size;
+      EXPECT_TRUE(read.at("c").origin) << cut << ' ' << size;
+      for (const auto& [mesh, one] : read) EXPECT_EQ(to_record(one.row), to_record(record(mesh).row)) << size;
+    }
+  }
+}
+
+TEST_F(ResultsFilesTest, DoNotTrustAnOriginOfAnotherRow) {
+  files_.append(record("a", 1));
+  const std::string old_row = results();
+  files_.append(record("a", 2));
+  write_text(dir_ / "results.csv", old_row);  // the new row was never written
+  EXPECT_FALSE(files_.read().at("a").origin);
+}
+
+TEST_F(ResultsFilesTest, ForgetAndMerge) {
+  for (const char* const mesh : {"a", "b", "c"}) files_.append(record(mesh, 1, 5));
+  files_.forget({"b"});
+  EXPECT_EQ(meshes_of(files_.read()), (Names{"a", "c"}));
+  files_.merge({{"a", record("a", 7, 4)}, {"c", record("c", 7, 6)}, {"d", record("d", 7)}});
+  const BatchRecords read = files_.read();
+  EXPECT_EQ(meshes_of(read), (Names{"a", "c", "d"}));
+  EXPECT_EQ(read.at("a").row.figures->faces, 1U) << "what is there is newer";
+  EXPECT_EQ(read.at("c").row.figures->faces, 7U);
+}
+
+TEST_F(ResultsFilesTest, OfShardsAreReadTogether) {
+  const std::string directory = dir_.path().string();
+  files_.append(record("a", 1, 1));
+  ResultsFiles(directory, {1, 2}).append(record("a", 2, 2));
+  ResultsFiles(directory, {2, 2}).append(record("b", 3));
+  write_text(dir_ / "results-of-mine.csv", "not a file of ours");
+  const BatchRecords all = read_all_results(directory);
+  EXPECT_EQ(meshes_of(all), (Names{"a", "b"}));
+  EXPECT_EQ(all.at("a").row.figures->faces, 2U) << "the latest counts";
+}
+
+TEST_F(ResultsFilesTest, RefuseTablesOfOthers) {
+  write_text(dir_ / "results.csv", "name,value\nx,1\n");
+  EXPECT_THROW((void)files_.read(), InputError);
+}
+
+TEST_F(ResultsFilesTest, MayBeWrittenBySeveralAtOnce) {
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i) {
+    writers.emplace_back([this, i] {
+      const ResultsFiles mine(dir_.path().string(), Shard{});
+      BatchRecords records;
+      for (int j = 0; j < 20; ++j) {
+        const BatchRecord one = record(std::to_string(i) + "-" + std::to_string(j));
+        mine.append(one);
+        records.emplace(one.row.mesh, one);
+      }
+      mine.merge(records);
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  const BatchRecords all = files_.read();
+  EXPECT_EQ(all.size(), 80U);
+  for (const auto& [mesh, one] : all) EXPECT_TRUE(one.origin) << mesh;
+}
+
+TEST_F(ResultsFilesTest, NamesAreReserved) {
+  for (const char* const name : {"results.csv", "batch-state.csv", "results-1-of-3.csv", "batch-state-10-of-12.csv"}) {
+    EXPECT_TRUE(is_results_file(name)) << name;
+  }
+  for (const char* const name : {"results.vdb", "sub/results.csv", "results-a.csv", "results-1-of-.csv"}) {
+    EXPECT_FALSE(is_results_file(name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace raycone::test

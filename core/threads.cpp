@@ -5,6 +5,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <string_view>
 
 #include "core/floating_point.h"
 
@@ -24,10 +27,16 @@ void prime_threads() {
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
-  tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
-    const DefaultFloatingPoint guard;
-    body(range.begin(), range.end());
-  });
+  try {
+    tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
+      const DefaultFloatingPoint guard;
+      body(range.begin(), range.end());
+    });
+  } catch (const std::runtime_error& error) {
+    // What TBB throws where there is no memory left for the stack of a thread.
+    if (std::string_view(error.what()).starts_with("pthread_create")) throw std::bad_alloc();
+    throw;
+  }
 }
 
 }  // namespace raycone

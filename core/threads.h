@@ -27,7 +27,7 @@ void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
 // floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
-// where count allows. Exceptions of body propagate.
+// where count allows. Exceptions of body propagate; std::bad_alloc where a thread cannot be started.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
 }  // namespace raycone

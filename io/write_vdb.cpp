@@ -100,6 +100,7 @@ class LeafLayer {
       counts_[a] = (lattice.index_max(static_cast<int>(a)) >> kLeafLog2) - first_[a] + 1;
     }
     values_.assign(leaf_count() * kLeafVoxels, background_);
+    is_uniform_.assign(leaf_count(), 0);
   }
 
   // Takes the planes z_begin <= z < z_end, all in this layer, from a slab of the lattice; store(number) is what is kept
@@ -107,10 +108,9 @@ class LeafLayer {
   template <typename Number, typename Store>
   void gather(const LatticeBlock& slab, std::span<const Number> numbers, std::int64_t z_begin, std::int64_t z_end,
               const Store& store) {
+    const Planes<Number> planes{slab, numbers, z_begin, z_end};
     parallel_for(static_cast<std::size_t>(counts_[1]), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) {
-        for (std::int64_t z = z_begin; z < z_end; ++z) gather_row(slab, numbers, row, z, store);
-      }
+      for (std::size_t row = begin; row < end; ++row) gather_row(planes, row, store);
     });
   }
 
@@ -129,12 +129,20 @@ class LeafLayer {
         accessor.addTile(1, origin(n, leaf_z), static_cast<Value>(value), is_active(value));
       }
     }
-    std::fill(values_.begin(), values_.end(), background_);
+    parallel_for(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) clear(n);
+    });
   }
 
  private:
   [[nodiscard]] bool is_active(Stored value) const {
     return value != background_ && !(level_set_ && value == -background_);
+  }
+
+  void clear(std::size_t n) {
+    const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(n * kLeafVoxels);
+    std::fill_n(begin, is_uniform_[n] ? 1 : kLeafVoxels, background_);
+    is_uniform_[n] = 0;
   }
 
   [[nodiscard]] std::size_t leaf_count() const { return static_cast<std::size_t>(counts_[0] * counts_[1]); }
@@ -145,29 +153,89 @@ class LeafLayer {
     return to_coord(leaf_x * kLeafSize, leaf_y * kLeafSize, leaf_z * kLeafSize);
   }
 
-  // The samples at height z of one row of leaf blocks along x.
+  // Planes of a slab.
+  template <typename Number>
+  struct Planes {
+    const LatticeBlock& slab;
+    std::span<const Number> numbers;
+    std::int64_t z_begin;
+    std::int64_t z_end;
+
+    // From the slab's first sample along x.
+    const Number* line(std::int64_t y, std::int64_t z) const {
+      const std::int64_t lines = (z - slab.first[2]) * slab.counts[1] + (y - slab.first[1]);
+      return &numbers[static_cast<std::size_t>(lines * slab.counts[0])];
+    }
+  };
+
+  struct Range {
+    std::int64_t begin;
+    std::int64_t end;
+  };
+  // The samples along an axis that slab and leaf block have in common.
+  static Range common(const LatticeBlock& slab, std::size_t axis, std::int64_t leaf) {
+    return {std::max(leaf * kLeafSize, slab.first[axis]),
+            std::min((leaf + 1) * kLeafSize, slab.first[axis] + slab.counts[axis])};
+  }
+
+  // A row of leaf blocks along x. Those whose numbers are all equal, as they mostly are, are not filled.
   template <typename Number, typename Store>
-  void gather_row(const LatticeBlock& slab, std::span<const Number> numbers, std::size_t row, std::int64_t z,
-                  const Store& store) {
-    const std::int64_t leaf_y = first_[1] + static_cast<std::int64_t>(row);
-    const std::int64_t y_begin = std::max(leaf_y * kLeafSize, slab.first[1]);
-    const std::int64_t y_end = std::min((leaf_y + 1) * kLeafSize, slab.first[1] + slab.counts[1]);
-    const std::int64_t x_begin = slab.first[0] - first_[0] * kLeafSize;  // counted from the first leaf
-    Stored* const leaves = &values_[row * static_cast<std::size_t>(counts_[0]) * kLeafVoxels];
-    for (std::int64_t y = y_begin; y < y_end; ++y) {
-      const std::int64_t line = (z - slab.first[2]) * slab.counts[1] + (y - slab.first[1]);
-      const Number* source = &numbers[static_cast<std::size_t>(line * slab.counts[0])];
-      const auto yz = static_cast<std::size_t>((y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1)));
-      for (std::int64_t x = x_begin; x < x_begin + slab.counts[0]; ++x) {
-        const auto leaf = static_cast<std::size_t>(x >> kLeafLog2);
-        const auto plane = static_cast<std::size_t>(x & (kLeafSize - 1));
-        leaves[leaf * kLeafVoxels + plane * kLeafSize * kLeafSize + yz] = store(*source++);
+  void gather_row(const Planes<Number>& planes, std::size_t row, const Store& store) {
+    const Range y = common(planes.slab, 1, first_[1] + static_cast<std::int64_t>(row));
+    find_uniform(planes, row, y);
+    for (std::int64_t i = 0; i < counts_[0]; ++i) {
+      const std::size_t n = row * static_cast<std::size_t>(counts_[0]) + static_cast<std::size_t>(i);
+      const Range x = common(planes.slab, 0, first_[0] + i);
+      if (is_uniform_[n]) {
+        values_[n * kLeafVoxels] = store(planes.line(y.begin, planes.z_begin)[x.begin - planes.slab.first[0]]);
+      } else {
+        gather_leaf(planes, n, x, y, store);
+      }
+    }
+  }
+
+  // Line by line, in the order of memory, for all leaf blocks of a row at once.
+  template <typename Number>
+  void find_uniform(const Planes<Number>& planes, std::size_t row, const Range& y) {
+    std::uint8_t* const uniform = &is_uniform_[row * static_cast<std::size_t>(counts_[0])];
+    const bool is_whole = y.end - y.begin == kLeafSize && planes.z_end - planes.z_begin == kLeafSize;
+    const std::int64_t offset = first_[0] * kLeafSize - planes.slab.first[0];  // of the first leaf in the line
+    const std::int64_t begin = offset < 0 ? 1 : 0;
+    const std::int64_t end = (planes.slab.counts[0] - offset) / kLeafSize;
+    std::fill_n(uniform, counts_[0], std::uint8_t{0});
+    if (!is_whole || begin >= end) return;
+    std::fill(uniform + begin, uniform + end, std::uint8_t{1});
+    const Number* const first = planes.line(y.begin, planes.z_begin);
+    for (std::int64_t z = planes.z_begin; z < planes.z_end; ++z) {
+      for (std::int64_t line_y = y.begin; line_y < y.end; ++line_y) {
+        const Number* const line = planes.line(line_y, z);
+        for (std::int64_t i = begin; i < end; ++i) {
+          const std::int64_t start = offset + i * kLeafSize;
+          bool differs = false;
+          for (std::int64_t x = start; x < start + kLeafSize; ++x) differs |= line[x] != first[start];
+          uniform[i] &= static_cast<std::uint8_t>(!differs);
+        }
+      }
+    }
+  }
+
+  template <typename Number, typename Store>
+  void gather_leaf(const Planes<Number>& planes, std::size_t n, const Range& x, const Range& y, const Store& store) {
+    Stored* const leaf = &values_[n * kLeafVoxels];
+    for (std::int64_t z = planes.z_begin; z < planes.z_end; ++z) {
+      for (std::int64_t leaf_y = y.begin; leaf_y < y.end; ++leaf_y) {
+        const Number* const line = planes.line(leaf_y, z);
+        Stored* const column = leaf + (leaf_y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1));
+        for (std::int64_t leaf_x = x.begin; leaf_x < x.end; ++leaf_x) {
+          column[(leaf_x & (kLeafSize - 1)) * kLeafSize * kLeafSize] = store(line[leaf_x - planes.slab.first[0]]);
+        }
       }
     }
   }
 
   // Nothing where all values are equal.
   [[nodiscard]] std::unique_ptr<Leaf> make_leaf(std::size_t n, const openvdb::Coord& leaf_origin) const {
+    if (is_uniform_[n]) return nullptr;
     const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(n * kLeafVoxels);
     const auto end = begin + kLeafVoxels;
     if (std::all_of(begin + 1, end, [&](Stored value) { return value == *begin; })) return nullptr;
@@ -191,6 +259,7 @@ class LeafLayer {
   std::array<std::int64_t, 2> first_{};   // leaf coordinates along x and y
   std::array<std::int64_t, 2> counts_{};  // leaf blocks along x and y
   std::vector<Stored> values_;            // leaf by leaf, x fastest; in each leaf OpenVDB's order: z fastest
+  std::vector<std::uint8_t> is_uniform_;  // per leaf: all of its voxels have its first value, the others are not set
 };
 
 // --- The grids

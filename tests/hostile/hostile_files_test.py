@@ -1,0 +1,100 @@
+"""Walks the table of hostile_files.py: python3 hostile_files_test.py RAYCONE MESH
+
+Each file gets its status, and on failure one line that names it and says what the table says, and no output. Files that
+never end and those that links and URIs point to follow behind the table.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+
+from hostile_files import OFF, TABLE, put
+
+RAYCONE, MESH = sys.argv[1:]
+failures = []
+
+
+def expect(name, arguments, status, fragment, output=None, **options):
+    result = subprocess.run([RAYCONE, *arguments], capture_output=True, timeout=120, **options)
+    message = result.stderr.decode()
+    wrong = []
+    if result.returncode != status:
+        wrong.append("status %d, expected %d" % (result.returncode, status))
+    if fragment not in message:
+        wrong.append("no %r" % fragment)
+    if status != 0 and (message.count("\n") != 1 or not message.startswith("raycone: " + arguments[-1 if output is None else -3])):
+        wrong.append("not one line about the file")
+    if output is not None and status != 0 and os.path.exists(output):
+        wrong.append("output in spite of the error")
+    if wrong:
+        failures.append("%s: %s: %s" % (name, ", ".join(wrong), message[:300].strip()))
+
+
+def expect_mesh(path, status, fragment, **options):
+    expect(path, ["info", path], status, fragment, **options)
+
+
+def walk_table():
+    assert len({name for name, *_ in TABLE}) == len(TABLE) >= 150
+    for name, content, status, fragment in TABLE:
+        with open(name, "wb") as file:
+            file.write(content)
+        if name.endswith(".vdb"):
+            expect(name, ["lattice", MESH, "--like", name, "-o", "out.csv"], status, fragment, output="out.csv")
+        elif name.endswith((".csv", ".txt", ".npy")):
+            expect(name, ["points", MESH, name], status, fragment)
+        else:
+            expect_mesh(name, status, fragment)
+
+
+# What never ends is read until the limit, and no further.
+def walk_devices():
+    limit = ["--memory-limit", "100M"]
+    expect("/dev/zero as a mesh", ["info", *limit, "/dev/zero"], 4, "memory")
+    expect("/dev/zero as points", ["points", *limit, MESH, "/dev/zero"], 2, "line of more than")
+    endless = "yes 'v 0 0 0' | exec %s info %s --mesh-format obj -" % (RAYCONE, " ".join(limit))
+    result = subprocess.run(["sh", "-c", endless], capture_output=True, timeout=120)
+    if result.returncode != 4 or result.stderr.count(b"\n") != 1:
+        failures.append("endless pipe: status %d: %s" % (result.returncode, result.stderr[:200]))
+    expect_mesh("/dev/null", 2, "the file is empty")
+    expect_mesh(".", 2, "is a directory")
+    expect_mesh("absent.obj", 2, "No such file or directory")
+
+
+# Links are followed, also those that lie beside a glTF, as git-annex and others make them; what they lead to must be a
+# file.
+def walk_links():
+    os.mkdir("inside")
+    with open("outside.bin", "wb") as file:
+        file.write(bytes(72))
+    os.symlink("../outside.bin", "inside/link.bin")
+    os.symlink("loop.obj", "loop.obj")
+    os.symlink("mesh.off", "link.off")
+    with open("mesh.off", "w") as file:
+        file.write(OFF)
+    with open("inside/link.gltf", "w") as file:
+        file.write(put("buffers", 0, {"byteLength": 72, "uri": "link.bin"}))
+    os.symlink("/dev/zero", "inside/zero")
+    with open("inside/device.gltf", "w") as file:
+        file.write(put("buffers", 0, {"byteLength": 72, "uri": "zero"}))
+    with open("fifo.gltf", "w") as file:
+        file.write(put("buffers", 0, {"byteLength": 72, "uri": "fifo"}))
+    os.mkfifo("fifo")
+    expect_mesh("link.off", 0, "")
+    expect_mesh("loop.obj", 2, "Too many levels of symbolic links")
+    expect_mesh("inside/link.gltf", 0, "")
+    expect_mesh("inside/device.gltf", 2, "zero")
+    expect_mesh("fifo.gltf", 2, "fifo")
+
+
+with tempfile.TemporaryDirectory() as directory:
+    os.chdir(directory)
+    walk_table()
+    walk_devices()
+    walk_links()
+    os.chdir("/")
+for failure in failures:
+    print(failure)
+print("%d files, %d wrong" % (len(TABLE), len(failures)))
+sys.exit(1 if failures else 0)

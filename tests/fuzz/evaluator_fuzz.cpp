@@ -38,8 +38,9 @@ class Choices {
       case 2:
         return next<std::int16_t>() / 1024.0 + next<std::int8_t>() * 0x1p-40;
       default:
-        // All digits, and magnitudes that a step of the definition's, taken for values on the surface, is small beside.
-        return std::ldexp(static_cast<double>(next<std::int64_t>()), -63 - 40 + static_cast<int>(below(81)));
+        // Magnitudes that the step by which the definition moves queries off the surface is small beside, also beside
+        // their products: an edge may pass a query that much closer than any vertex.
+        return std::ldexp(next<std::int32_t>(), -31 - 10 + static_cast<int>(below(21)));
     }
   }
   Vec3 point() {

@@ -29,7 +29,7 @@ struct RowOrigin {
   bool default_memory_limit = false;
   double timeout = 0.0;       // seconds
   std::int64_t finished = 0;  // nanoseconds since 1970: of two rows of a mesh the later one counts
-  std::string thumbnail{};    // PNG in base64; empty where there is none
+  std::string thumbnail{};    // BMP in base64; empty where there is none
 };
 
 struct BatchRecord {

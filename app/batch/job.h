@@ -23,7 +23,7 @@ struct JobResult {
   ResultRow row;                        // its `mesh` and `output` are left empty
   std::vector<std::string> warnings;    // about the mesh
   std::vector<StampedFile> companions;  // further files that were read
-  std::string thumbnail;                // PNG in base64; empty where there is none
+  std::string thumbnail;                // BMP in base64; empty where there is none
 };
 
 [[nodiscard]] Message to_message(const Job& job);

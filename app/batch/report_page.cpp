@@ -35,7 +35,7 @@ h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; }
 .tile { background: var(--panel); border-radius: 6px; padding: .6rem 1rem; min-width: 6.5rem; }
 .tile b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
 .bad, .bad b { color: var(--bad); }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(360px, 1fr)); gap: 1rem; }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(290px, 1fr)); gap: 1rem; }
 figure { margin: 0; }
 svg { display: block; width: 100%; background: var(--panel); border-radius: 6px; }
 svg text { font-size: 11px; fill: var(--quiet); }
@@ -49,9 +49,9 @@ th, td { padding: .3rem .6rem; border-bottom: 1px solid var(--line); text-align:
 th { position: sticky; top: 0; background: var(--paper); white-space: nowrap; }
 th.sort { cursor: pointer; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.name { overflow-wrap: anywhere; min-width: 14rem; }
+td.name { overflow-wrap: anywhere; min-width: 18rem; }
 td.message { overflow-wrap: anywhere; }
-td img { display: block; width: 48px; height: 48px; object-fit: contain; background: var(--panel); }
+td img { display: block; width: 48px; height: 48px; object-fit: contain; image-rendering: pixelated; }
 )";
 
 // Sorts by the column whose heading is clicked, downwards first for numbers.
@@ -167,7 +167,7 @@ std::string figure_cells(const MeshFigures& f) {
 std::string thumbnail_cell(const BatchRecord& record) {
   const std::string image = record.origin ? record.origin->thumbnail : "";
   if (image.empty()) return "<td></td>";
-  return "<td><img alt=\"\" loading=\"lazy\" src=\"data:image/png;base64," + html_text(image) + "\"></td>";
+  return "<td><img alt=\"\" loading=\"lazy\" src=\"data:image/bmp;base64," + html_text(image) + "\"></td>";
 }
 
 std::string failures(const BatchRecords& records) {
@@ -201,12 +201,12 @@ std::string evaluated(const BatchRecords& records) {
 }
 
 std::string page(const std::string& directory, const BatchRecords& records) {
-  const std::string title = html_text("raycone batch " + directory);
+  const std::string title = html_text("raycone batch: " + directory);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
          title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
-         "</h1>\n<div class=\"quiet\">raycone " + kVersion + "</div>\n" + tiles(records) + failures(records) +
-         plots(records) + evaluated(records) + "<script>" + kScript + "</script>\n</body>\n</html>\n";
+         "</h1>\n<div class=\"quiet\">raycone " + kVersion + "</div>\n" + tiles(records) + plots(records) +
+         failures(records) + evaluated(records) + "<script>" + kScript + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace

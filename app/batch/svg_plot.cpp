@@ -15,7 +15,7 @@ namespace {
 constexpr double kWidth = 420.0;
 constexpr double kHeight = 300.0;
 constexpr double kLeft = 64.0;
-constexpr double kRight = 12.0;
+constexpr double kRight = 24.0;
 constexpr double kTop = 12.0;
 constexpr double kBottom = 46.0;
 

@@ -10,15 +10,18 @@
 #include <exception>
 #include <fstream>
 #include <new>
+#include <span>
 #include <utility>
 
 #include "app/batch/job.h"
+#include "app/batch/thumbnail.h"
 #include "app/batch_options.h"
 #include "app/limits.h"
 #include "app/options.h"
 #include "app/report.h"
 #include "app/run_lattice.h"
 #include "app/run_steps.h"
+#include "io/base64.h"
 
 namespace raycone {
 namespace {
@@ -104,12 +107,13 @@ std::string joined(const std::vector<std::string>& warnings) {
   return text;
 }
 
-JobResult result_of(const RunReport& report) {
+JobResult result_of(const RunReport& report, const Thumbnail& thumbnail) {
   JobResult result;
   result.row.figures = figures_of(report);
   result.row.sha256 = report.sha256;
   result.row.message = joined(report.warnings);
   result.warnings = report.warnings;
+  result.thumbnail = to_base64(thumbnail.bmp());
   for (const std::string& file : report.files_read) {
     if (file != report.mesh) result.companions.push_back({file, stamp_of(file)});
   }
@@ -154,7 +158,13 @@ JobResult perform(const LatticeCommand& command) {
   try {
     const RunLimits limits(command.run, command.mesh.path);
     refuse_to_replace_input(command.output, {command.mesh.path});
-    return result_of(run_lattice(command, limits));
+    Thumbnail thumbnail;
+    const RunReport report =
+        run_lattice(command, limits,
+                    [&thumbnail](const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
+                      thumbnail.add(lattice, block, values);
+                    });
+    return result_of(report, thumbnail);
   } catch (const std::bad_alloc&) {
     return result_of(Failure{ExitCode::kLimit, out_of_memory(command.mesh.path, command.run)});
   } catch (...) {

@@ -1,0 +1,40 @@
+// raycone report. Black box.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/app/batch/batch_fixture.h"
+
+namespace raycone::test {
+namespace {
+
+class Report : public Batch {};
+
+TEST_F(Report, ShowsAllMeshesOfAllShardsOnASelfContainedPage) {
+  put("a&b.obj");
+  put("c.obj", triangle_soup(3));
+  put("bad.obj", "v 1 <2> 3\n");
+  for (const char* const shard : {"1/2", "2/2"}) (void)run({"--shard", shard, "--quiet"});
+  ASSERT_EQ(run_raycone({"report", out_}).status, 0);
+  const std::string page = read_text(out_ + "/report.html");
+  for (const char* const expected : {"a&amp;b.obj", "c.obj", "bad.obj", "&lt;2&gt;", "<svg", "exterior edges",
+                                     "data:image/bmp;base64,Qk", "<td class=\"bad\">invalid</td>"}) {
+    EXPECT_NE(page.find(expected), std::string::npos) << expected;
+  }
+  for (const char* const reference : {"http", "src=\"/", "href", "url("}) {
+    EXPECT_EQ(page.find(reference), std::string::npos) << "refers to another file: " << reference;
+  }
+  const CommandResult printed = run_raycone({"report", out_, "-o", "-"});
+  EXPECT_EQ(printed.status, 0);
+  EXPECT_EQ(printed.out, page);
+}
+
+TEST_F(Report, OfWhatIsNoBatchIsAnInputError) {
+  EXPECT_EQ(run_raycone({"report", dir_ / "absent"}).status, 2);
+  EXPECT_EQ(run_raycone({"report", dir_.path().string()}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "report.html"));
+  EXPECT_EQ(run_raycone({"report"}).status, 1);
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -140,6 +140,10 @@ class BatchRun {
       directories.insert(fs::path(path_of_output(planned.mesh)).parent_path().string());
     }
     for (const std::string& directory : directories) remove_abandoned_files(directory);
+    for (const auto& [name, record] : results_.read()) {
+      const bool was_unreadable_directory = name.ends_with('/');
+      if (was_unreadable_directory && !plan_.kept.contains(name)) names.insert(name);
+    }
     results_.forget(names);
   }
 

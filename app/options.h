@@ -74,8 +74,8 @@ struct InfoCommand {
 // What is done to each mesh of a batch, how, and where results go.
 struct BatchCommand {
   MeshSearch search;
-  std::string directory;  // of outputs and results
-  Shard shard;
+  std::string directory;                     // of outputs and results
+  std::optional<Shard> shard;                // else the whole
   std::string format;                        // of outputs; "none": none
   std::vector<std::string> lattice_options;  // "--name=value", by name: for lattice_command_of()
   RunOptions run;

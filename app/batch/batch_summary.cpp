@@ -36,7 +36,8 @@ std::string evaluated_line(const BatchOutcome& outcome) {
   }
   char time[64];
   std::snprintf(time, sizeof time, " in %.2f s", outcome.seconds);
-  std::string line = std::to_string(outcome.evaluated.size() - failed) + " meshes done, " + std::to_string(failed) +
+  const std::size_t done = outcome.evaluated.size() - failed;
+  std::string line = std::to_string(done) + (done == 1 ? " mesh" : " meshes") + " done, " + std::to_string(failed) +
                      " failed" + failures_by_cause(outcome.evaluated) + time;
   if (outcome.seconds > 0.0) line += ", " + readable_count(samples / outcome.seconds) + "samples/s";
   return line;

@@ -44,16 +44,20 @@ class DirectoryLock {
   throw OutputError(path + ": cannot write: " + std::generic_category().message(error));
 }
 
-// "" or "-3-of-8": the names of a shard's files end so.
-std::string suffix_of(const Shard& shard) {
-  if (shard.count == 1) return "";
-  return "-" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
+// The names of a shard's files end so: "-3-of-8"; those of the whole batch have nothing there.
+std::string suffix_of(const std::optional<Shard>& shard) {
+  return shard ? "-" + std::to_string(shard->index) + "-of-" + std::to_string(shard->count) : "";
 }
 
-// The shard whose rows are kept in a file of this name.
-std::optional<Shard> shard_of_results(const std::string& name) {
-  if (name == "results.csv") return Shard{};
-  static const std::regex pattern("results-([0-9]{1,18})-of-([0-9]{1,18})\\.csv");
+// Whether rows are kept in a file of this name.
+bool holds_rows(const std::string& name) {
+  static const std::regex pattern("results(-[0-9]{1,18}-of-[0-9]{1,18})?\\.csv");
+  return std::regex_match(name, pattern);
+}
+
+// Whose rows those are.
+std::optional<Shard> shard_of(const std::string& name) {
+  static const std::regex pattern("results-([0-9]+)-of-([0-9]+)\\.csv");
   std::smatch match;
   if (!std::regex_match(name, match, pattern)) return std::nullopt;
   return Shard{std::stoull(match[1]), std::stoull(match[2])};
@@ -117,10 +121,10 @@ void CsvLog::replace(const std::vector<std::string>& lines) const {
   file.commit();
 }
 
-ResultsFiles::ResultsFiles(std::string directory, const Shard& shard)
-    : directory_(std::move(directory)),
-      rows_(directory_ + "/results" + suffix_of(shard) + ".csv", result_columns()),
-      origins_(directory_ + "/batch-state" + suffix_of(shard) + ".csv", origin_columns()) {}
+ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
+    : directory_(directory),
+      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns()),
+      origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const {
   std::unordered_map<std::string, CsvRecord> origins;  // of each mesh the last one
@@ -175,16 +179,16 @@ BatchRecords read_all_results(const std::string& directory) {
   BatchRecords all;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    const std::optional<Shard> shard = shard_of_results(entry.path().filename().string());
-    if (!shard) continue;
-    for (auto& [mesh, record] : ResultsFiles(directory, *shard).read()) keep_latest(std::move(record), all);
+    const std::string name = entry.path().filename().string();
+    if (!holds_rows(name)) continue;
+    for (auto& [mesh, record] : ResultsFiles(directory, shard_of(name)).read()) keep_latest(std::move(record), all);
   }
   return all;
 }
 
 bool is_results_file(const std::string& name) {
   const std::string state = "batch-state";
-  return shard_of_results(name) || (name.starts_with(state) && shard_of_results("results" + name.substr(state.size())));
+  return holds_rows(name) || (name.starts_with(state) && holds_rows("results" + name.substr(state.size())));
 }
 
 }  // namespace raycone

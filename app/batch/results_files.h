@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -37,8 +38,8 @@ class CsvLog {
 
 class ResultsFiles {
  public:
-  // Those of `shard`, in `directory`; of the whole batch where it is the only one.
-  ResultsFiles(std::string directory, const Shard& shard);
+  // Those of a shard, or of the whole batch, in `directory`.
+  ResultsFiles(const std::string& directory, const std::optional<Shard>& shard);
 
   [[nodiscard]] BatchRecords read() const;
   // Forgets the rows of `meshes`, and what a killed writer left incomplete.

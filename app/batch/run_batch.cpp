@@ -41,10 +41,11 @@ std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
     if (command.format == "none" || !is_results_file(mesh.output)) continue;
     throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
   }
+  if (!command.shard) return all;
   std::vector<SizedName> names;
   for (const BatchMesh& mesh : all) names.push_back({mesh.name, mesh.stamp.size});
   std::vector<BatchMesh> part;
-  for (const std::size_t i : part_of(names, command.shard)) part.push_back(std::move(all[i]));
+  for (const std::size_t i : part_of(names, *command.shard)) part.push_back(std::move(all[i]));
   return part;
 }
 

@@ -6,7 +6,11 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "tests/app/batch/batch_fixture.h"
@@ -25,17 +29,39 @@ std::vector<pid_t> children_of(pid_t process) {
   return children;
 }
 
-// Zombies do not run.
-bool runs(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+// The fields of a stat file of /proc behind the name, from the state on; none where there is no such process or thread.
+std::vector<std::string> stat_fields(const std::string& path) {
+  std::ifstream file(path);
   std::string stat;
   std::getline(file, stat);
-  const std::size_t state = stat.rfind(") ");
-  return state != std::string::npos && stat[state + 2] != 'Z' && stat[state + 2] != 'X';
+  const std::size_t end_of_name = stat.rfind(')');
+  if (end_of_name == std::string::npos) return {};
+  std::istringstream words(stat.substr(end_of_name + 1));
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+// Zombies do not run.
+bool runs(pid_t process) {
+  const std::vector<std::string> fields = stat_fields("/proc/" + std::to_string(process) + "/stat");
+  return !fields.empty() && fields[0] != "Z" && fields[0] != "X";
+}
+
+// CPU time, in clock ticks, of each thread that has had any.
+std::map<std::string, int> thread_times(const std::vector<pid_t>& processes) {
+  std::map<std::string, int> times;
+  for (const pid_t process : processes) {
+    std::error_code error;
+    for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process) + "/task", error)) {
+      const std::vector<std::string> fields = stat_fields(thread.path().string() + "/stat");
+      if (fields.size() > 12) times[thread.path().string()] = std::stoi(fields[11]) + std::stoi(fields[12]);
+    }
+  }
+  std::erase_if(times, [](const auto& time) { return time.second == 0; });
+  return times;
 }
 
 bool becomes_true(const std::function<bool()>& condition) {
-  for (int i = 0; i < 1000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  for (int i = 0; i < 3000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(10));
   return condition();
 }
 
@@ -163,6 +189,20 @@ TEST_F(BatchInterruption, CleansUpBehindKilledRunsButNotBehindOthers) {
   put("c.obj");
   EXPECT_EQ(run_raycone({"batch", meshes_ + "/c.obj", "--out-dir", out_, "--resolution", "8"}).status, 0);
   EXPECT_EQ(temporaries(), 2U) << "of the batch that runs";
+}
+
+TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {
+  put_long();
+  for (const std::size_t threads : {2U, 3U, 5U}) {
+    fs::remove_all(out_);
+    Command command(raycone_command(arguments({"--resolution", "300", "--threads", std::to_string(threads)})));
+    const std::vector<pid_t> workers = wait_for_workers(command);
+    std::this_thread::sleep_for(milliseconds(700));
+    EXPECT_LE(thread_times(workers).size(), threads);
+    EXPECT_GE(thread_times(workers).size(), 2U) << "two workers";
+    const std::map<std::string, int> supervisor = thread_times({command.process()});
+    for (const auto& [thread, ticks] : supervisor) EXPECT_LT(ticks, 10) << "it mostly sleeps";
+  }
 }
 
 }  // namespace

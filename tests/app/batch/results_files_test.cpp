@@ -33,7 +33,7 @@ class ResultsFilesTest : public testing::Test {
   [[nodiscard]] std::string results() const { return read_text(dir_ / "results.csv"); }
 
   TemporaryDirectory dir_;
-  ResultsFiles files_{dir_.path().string(), Shard{}};
+  ResultsFiles files_{dir_.path().string(), std::nullopt};
 };
 
 std::vector<std::string> meshes_of(const BatchRecords& records) {
@@ -100,8 +100,8 @@ TEST_F(ResultsFilesTest, ForgetAndMerge) {
 TEST_F(ResultsFilesTest, OfShardsAreReadTogether) {
   const std::string directory = dir_.path().string();
   files_.append(record("a", 1, 1));
-  ResultsFiles(directory, {1, 2}).append(record("a", 2, 2));
-  ResultsFiles(directory, {2, 2}).append(record("b", 3));
+  ResultsFiles(directory, Shard{1, 2}).append(record("a", 2, 2));
+  ResultsFiles(directory, Shard{2, 2}).append(record("b", 3));
   write_text(dir_ / "results-of-mine.csv", "not a file of ours");
   const BatchRecords all = read_all_results(directory);
   EXPECT_EQ(meshes_of(all), (Names{"a", "b"}));
@@ -117,7 +117,7 @@ TEST_F(ResultsFilesTest, MayBeWrittenBySeveralAtOnce) {
   std::vector<std::thread> writers;
   for (int i = 0; i < 4; ++i) {
     writers.emplace_back([this, i] {
-      const ResultsFiles mine(dir_.path().string(), Shard{});
+      const ResultsFiles mine(dir_.path().string(), std::nullopt);
       BatchRecords records;
       for (int j = 0; j < 20; ++j) {
         const BatchRecord one = record(std::to_string(i) + "-" + std::to_string(j));

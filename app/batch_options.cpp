@@ -15,10 +15,11 @@ namespace {
 const std::set<std::string> kOfOneFile{"--output", "--report", "--depfile"};
 const std::set<std::string> kOfBatches{"--format", "--threads", "--memory-limit", "--timeout", "--progress", "--quiet"};
 
-OptionGroup batch_group() {
+// `formats`: those of lattices.
+OptionGroup batch_group(const std::string& formats) {
   return {"Batch",
           {{"--out-dir", "DIR", "Where outputs and results.csv go"},
-           {"--format", "vdb|csv|npy|none", "Format of outputs (default: vdb); none: measure only"},
+           {"--format", formats + "|none", "Format of outputs (default: vdb); none: measure only"},
            {"--full-names", "", "Keep the extension of the mesh: a.stl.vdb"},
            {"-0,--null", "", "Lists are separated by NUL, not by line feeds"},
            {"--jobs", "J", "Meshes at a time (default: as --threads allows)"},
@@ -64,14 +65,16 @@ CommandSpec batch_spec() {
   spec.description = "Lattices of many meshes: resumable, each mesh on its own";
   spec.operands = {{"MESH|DIR|@LIST", "Mesh, directory to search, or list of them; @- for a list on standard input",
                     OperandCount::kMany}};
+  std::string formats;
   for (OptionGroup& group : spec.groups) {
     if (group.heading == "Run") group = batch_run_group();
-    std::erase_if(group.options, [](const OptionSpec& option) {
+    std::erase_if(group.options, [&formats](const OptionSpec& option) {
       const std::string name = names_of(option).back();
+      if (name == "--format") formats = option.value;
       return kOfOneFile.contains(name) || name == "--format";
     });
   }
-  spec.groups.insert(spec.groups.begin(), batch_group());
+  spec.groups.insert(spec.groups.begin(), batch_group(formats));
   spec.examples = {"raycone batch meshes --out-dir fields --resolution 128",
                    "raycone batch meshes --out-dir fields --resolution 128    again: what is missing or out of date",
                    "raycone batch meshes --out-dir measured --format none --resolution 50,50,50",

@@ -75,7 +75,7 @@ void BatchProgress::add(bool failed, double part) {
   show();
 }
 
-void BatchProgress::show() const {
+void BatchProgress::show() {
   if (!shown_) return;
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   std::string line = std::to_string(done_) + '/' + std::to_string(meshes_) + " meshes";
@@ -84,10 +84,11 @@ void BatchProgress::show() const {
   if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";
   std::fprintf(stderr, "\r\033[K%s", line.c_str());
   std::fflush(stderr);
+  drawn_ = true;
 }
 
-void BatchProgress::erase() const {
-  if (shown_) std::fputs("\r\033[K", stderr);
+void BatchProgress::erase() {
+  if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
 }
 
 bool BatchOutcome::any_failed() const { return count_failed(evaluated) + count_failed(kept) > 0; }

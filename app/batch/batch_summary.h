@@ -21,14 +21,15 @@ class BatchProgress {
 
   // `part` of the work is done, 0 to 1.
   void add(bool failed, double part);
-  void show() const;
+  void show();
   // To be called before anything else is printed.
-  void erase() const;
+  void erase();
 
  private:
   using Clock = std::chrono::steady_clock;
 
   bool shown_;
+  bool drawn_ = false;  // there is something to erase
   std::size_t meshes_;
   std::size_t done_ = 0;
   std::size_t failed_ = 0;

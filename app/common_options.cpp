@@ -22,14 +22,14 @@ Weld parse_weld(const Values& values) {
 }
 
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
+  if (formats.only) return *formats.only;
   const bool named = values.given("--format");
   if (!named && output == "-") return FieldFormat::kCsv;
   const std::string extension = std::filesystem::path(output).extension().string();
-  std::string name = named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
+  const std::string name =
+      named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return c < 128 ? std::tolower(c) : c; });
-  if (name == formats.later) not_available(named ? "--format " + name : output);
   if (named) invalid("--format", values.text("--format"), formats.listed);
   throw UsageError(output + ": its extension names no format, expected " + formats.listed + ", or --format");
 }
@@ -66,7 +66,8 @@ OptionGroup output_group(const std::string& formats) {
           {{"-o,--output", "OUT", "File to write; - for standard output"},
            {"--format", formats, "Format of OUT (default: by its extension, csv for -)"},
            {"--no-clobber", "", "Never replace an existing file"},
-           {"--report", "FILE.json", "Write what was done, for machines"}}};
+           {"--report", "FILE.json", "Write what was done, for machines"},
+           {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
 }
 
 OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
@@ -75,6 +76,8 @@ OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
   output.format = parse_format(values, output.path, formats);
   output.no_clobber = values.given("--no-clobber");
   if (values.given("--report")) output.report = values.text("--report");
+  if (values.given("--depfile")) output.depfile = values.text("--depfile");
+  if (output.depfile == output.path) throw UsageError("--depfile " + output.path + ": is the output too");
   if (output.report == output.path) throw UsageError("--report " + output.path + ": is the output too");
   return output;
 }

@@ -1,6 +1,7 @@
 // The options that commands share, with their conversion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,11 @@ namespace raycone {
 // `formats` stands for the value of --format in the help.
 [[nodiscard]] OptionGroup output_group(const std::string& formats);
 
-// The formats that a command writes, and the one that it will.
+// The formats that a command writes.
 struct OutputFormats {
   std::vector<FieldFormat> written;
-  std::string listed;  // for messages
-  std::string later;
+  std::string listed;                    // for messages
+  std::optional<FieldFormat> only = {};  // whatever the output is called
 };
 [[nodiscard]] OutputOptions parse_output(const Values& values, const OutputFormats& formats);
 

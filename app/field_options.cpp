@@ -59,8 +59,6 @@ OptionGroup field_group() {
 // Exact is all there is: 0, the default, is accepted for scripts that state it.
 OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
 
-OptionNames later_field_options() { return {{"--depfile"}, {}}; }
-
 FieldOptions parse_field(const Values& values) {
   if (values.given("--tolerance")) {
     const std::optional<double> tolerance = number_from(values.text("--tolerance"));

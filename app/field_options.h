@@ -9,7 +9,6 @@ namespace raycone {
 
 [[nodiscard]] OptionGroup field_group();
 [[nodiscard]] OptionGroup unlisted_field_group();
-[[nodiscard]] OptionNames later_field_options();
 [[nodiscard]] FieldOptions parse_field(const Values& values);
 
 }  // namespace raycone

@@ -73,15 +73,22 @@ std::string name_of(const Rule& rule) {
   return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
 }
 
-std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
+std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options) {
   std::vector<FieldDescription> descriptions;
-  for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
   if (!options.diagnostics) return descriptions;
   for (const auto& [name, kind] :
        {std::pair("crossings", FieldKind::kCount), std::pair("degenerate", FieldKind::kCount),
         std::pair("on_surface", FieldKind::kFlag), std::pair("error_bound", FieldKind::kBound)}) {
     descriptions.push_back({name, name, name, kind, 0.0, ""});
   }
+  return descriptions;
+}
+
+std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
+  std::vector<FieldDescription> descriptions;
+  for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
+  const std::vector<FieldDescription> diagnostics = describe_diagnostics(options);
+  descriptions.insert(descriptions.end(), diagnostics.begin(), diagnostics.end());
   return descriptions;
 }
 

@@ -47,6 +47,9 @@ struct FieldOptions {
 // where diagnostics are wanted. `band_width`: where distances are cut off, in world units.
 [[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width);
 
+// The latter part of that list alone.
+[[nodiscard]] std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options);
+
 // Room for all numbers of a slab or batch of samples.
 class FieldSamples {
  public:

@@ -41,16 +41,6 @@ Vec3 sides_of(const Box& box) { return box.upper - box.lower; }
 
 double longest(const Vec3& sides) { return std::max({sides.x, sides.y, sides.z}); }
 
-Box widened(Box box, double width) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] -= width;
-    box.upper[axis] += width;
-    if (box.lower[axis] > box.upper[axis])
-      throw UsageError("--padding " + printed(width) + ": leaves nothing of the box");
-  }
-  return box;
-}
-
 Lattice sample(const Box& box, const LongestSide& request, bool centers) {
   const Vec3 sides = sides_of(box);
   const double length = longest(sides);
@@ -153,6 +143,16 @@ void check_positive(const Vec3& spacing) {
 }
 
 }  // namespace
+
+Box widened(Box box, double width) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] -= width;
+    box.upper[axis] += width;
+    if (box.lower[axis] > box.upper[axis])
+      throw UsageError("--padding " + printed(width) + ": leaves nothing of the box");
+  }
+  return box;
+}
 
 Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<std::string>& warnings) {
   Box box = request.bounds.value_or(mesh_box);

@@ -45,6 +45,9 @@ struct LatticeRequest {
 [[nodiscard]] Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request,
                                      std::vector<std::string>& warnings);
 
+// Throws UsageError where a negative width leaves nothing.
+[[nodiscard]] Box widened(Box box, double width);
+
 // Number of samples. Throws LimitError, with the number, where it exceeds 64 bits.
 [[nodiscard]] std::uint64_t sample_count(const Lattice& lattice);
 

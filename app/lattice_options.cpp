@@ -14,27 +14,6 @@
 namespace raycone {
 namespace {
 
-Box parse_bounds(const std::string& text) {
-  const std::optional<std::vector<double>> numbers = numbers_from(text);
-  if (!numbers || numbers->size() != 6) invalid("--bounds", text, "six numbers X0,Y0,Z0,X1,Y1,Z1");
-  const std::vector<double>& n = *numbers;
-  const Box box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (box.lower[axis] > box.upper[axis]) invalid("--bounds", text, "X0 <= X1, Y0 <= Y1, Z0 <= Z1");
-  }
-  return box;
-}
-
-std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text) {
-  if (text.ends_with('v')) {
-    const std::optional<std::int64_t> samples = integer_from(std::string_view(text).substr(0, text.size() - 1));
-    if (samples) return VoxelPadding{*samples};
-  } else if (const std::optional<double> width = number_from(text)) {
-    return WorldPadding{*width};
-  }
-  invalid("--padding", text, "a distance, or an integer number of voxels such as 3v");
-}
-
 std::variant<LongestSide, SampleCounts> parse_resolution(const std::string& text) {
   constexpr std::int64_t kMaxCount = std::int64_t{1} << 53;
   const std::vector<std::int64_t> counts = integers_from(text).value_or(std::vector<std::int64_t>());
@@ -62,7 +41,7 @@ GridReference parse_like(const std::string& text) {
 // An array of a lattice has one axis per axis of the lattice.
 void check_npy(const LatticeCommand& command) {
   if (command.output.format != FieldFormat::kNpy) return;
-  constexpr const char* kReason = "npy holds one number per sample, expected vdb or csv";
+  constexpr const char* kReason = "npy holds one number per sample, expected vdb, csv or vti";
   if (command.field.diagnostics) throw UsageError(std::string("--diagnostics: ") + kReason);
   if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
 }
@@ -76,11 +55,25 @@ void make_room_for_band(const Values& values, LatticeCommand& command) {
   std::get<LatticeRequest>(command.lattice).padding = VoxelPadding{samples};
 }
 
-OptionNames later_options() {
-  OptionNames names = later_field_options();
-  names.with_value.insert("--grid-name");
-  names.flags.insert("--half");
-  return names;
+// What only grids of OpenVDB have.
+void parse_grid_options(const Values& values, LatticeCommand& command) {
+  OutputOptions& output = command.output;
+  values.exclude("--half", {"--double"});
+  for (const char* const name : {"--half", "--grid-name"}) {
+    if (values.given(name) && output.format != FieldFormat::kVdb) {
+      throw UsageError(std::string(name) + ": is for grids, expected the format vdb");
+    }
+  }
+  output.half_precision = values.given("--half");
+  if (!values.given("--grid-name")) return;
+  output.grid_name = values.text("--grid-name");
+  if (command.field.fields.size() > 1) {
+    throw UsageError("--grid-name " + *output.grid_name + ": names a single grid, expected one field");
+  }
+  for (const FieldDescription& other : describe_diagnostics(command.field)) {
+    if (other.grid == *output.grid_name)
+      invalid("--grid-name", *output.grid_name, "another name than the diagnostics'");
+  }
 }
 
 }  // namespace
@@ -93,6 +86,27 @@ OptionGroup lattice_group() {
            {"--voxel-size", "H|HX,HY,HZ", "Samples at the multiples of H"},
            {"--like", "GRID.vdb[:NAME]", "Transform and extent of an existing grid"},
            {"--centers", "", "Samples at the centres of cells instead of their corners"}}};
+}
+
+Box parse_bounds(const std::string& text) {
+  const std::optional<std::vector<double>> numbers = numbers_from(text);
+  if (!numbers || numbers->size() != 6) invalid("--bounds", text, "six numbers X0,Y0,Z0,X1,Y1,Z1");
+  const std::vector<double>& n = *numbers;
+  const Box box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.lower[axis] > box.upper[axis]) invalid("--bounds", text, "X0 <= X1, Y0 <= Y1, Z0 <= Z1");
+  }
+  return box;
+}
+
+std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text) {
+  if (text.ends_with('v')) {
+    const std::optional<std::int64_t> samples = integer_from(std::string_view(text).substr(0, text.size() - 1));
+    if (samples) return VoxelPadding{*samples};
+  } else if (const std::optional<double> width = number_from(text)) {
+    return WorldPadding{*width};
+  }
+  invalid("--padding", text, "a distance, or an integer number of voxels such as 3v");
 }
 
 std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values) {
@@ -112,8 +126,10 @@ std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& 
 }
 
 CommandSpec lattice_spec() {
-  OptionGroup output = output_group("vdb|csv|npy");
-  output.options.push_back({"--double", "", "64-bit values in VDB and NPY (default: 32-bit)"});
+  OptionGroup output = output_group("vdb|csv|npy|vti");
+  output.options.push_back({"--double", "", "64-bit values in VDB, NPY and VTI (default: 32-bit)"});
+  output.options.push_back({"--half", "", "16-bit values in VDB"});
+  output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
   return {.name = "lattice",
           .description = "Values on a regular lattice",
           .operands = {mesh_operand()},
@@ -122,8 +138,7 @@ CommandSpec lattice_spec() {
                        "raycone lattice bunny.obj -o bunny.npy --resolution 50,50,50",
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
                        "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
-                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"},
-          .later = later_options()};
+                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"}};
 }
 
 Command parse_lattice(const Values& values) {
@@ -134,9 +149,10 @@ Command parse_lattice(const Values& values) {
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
   if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
-  command.output =
-      parse_output(values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy}, "vdb, csv or npy", "vti"});
+  command.output = parse_output(
+      values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti}, "vdb, csv, npy or vti"});
   command.output.double_precision = values.given("--double");
+  parse_grid_options(values, command);
   check_npy(command);
   return command;
 }

@@ -15,5 +15,7 @@ namespace raycone {
 
 [[nodiscard]] OptionGroup lattice_group();
 [[nodiscard]] std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values);
+[[nodiscard]] Box parse_bounds(const std::string& text);
+[[nodiscard]] std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text);
 
 }  // namespace raycone

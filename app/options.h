@@ -12,6 +12,7 @@
 #include "app/fields.h"
 #include "app/lattice_choice.h"
 #include "app/progress.h"
+#include "app/sampled_points.h"
 #include "core/weld.h"
 #include "io/field_writer.h"
 #include "io/read_mesh.h"
@@ -38,8 +39,11 @@ struct OutputOptions {
   std::string path;  // "-": standard output
   FieldFormat format = FieldFormat::kCsv;
   bool double_precision = false;
+  bool half_precision = false;
+  std::optional<std::string> grid_name;  // of the only field's grid
   bool no_clobber = false;
   std::optional<std::string> report;
+  std::optional<std::string> depfile;
 };
 
 // A grid of an OpenVDB file; an empty name is its only or first one.
@@ -61,8 +65,9 @@ struct PointsCommand {
   RunOptions run;
   FieldOptions field;
   OutputOptions output;
-  std::string points;  // "-": standard input
+  std::string points;  // "-": standard input; empty where they are drawn
   ReadPointsOptions reading;
+  std::optional<SampleRequest> sample;
 };
 
 struct InfoCommand {

@@ -24,7 +24,7 @@ struct Seconds {
 
 struct RunReport {
   std::string mesh;                     // files as named on the command line
-  std::vector<std::string> files_read;  // the mesh and what it refers to
+  std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
   std::string sha256;
   std::string output;
   std::uint64_t vertices = 0;  // as read, before welding

@@ -32,16 +32,16 @@ void print(const std::string& text) {
 ExitCode run(const LatticeCommand& command) {
   const RunLimits limits(command.run, command.mesh.path);
   refuse_to_replace_input(command.output, {command.mesh.path});
-  const std::unique_ptr<OutputFile> report_file = open_report(command.output);
-  publish(run_lattice(command, limits), command.run, report_file.get());
+  const SideFiles side_files = open_side_files(command.output);
+  publish(run_lattice(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
 ExitCode run(const PointsCommand& command) {
   const RunLimits limits(command.run, command.mesh.path);
   refuse_to_replace_input(command.output, {command.mesh.path, command.points});
-  const std::unique_ptr<OutputFile> report_file = open_report(command.output);
-  publish(run_points(command, limits), command.run, report_file.get());
+  const SideFiles side_files = open_side_files(command.output);
+  publish(run_points(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 

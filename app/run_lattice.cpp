@@ -95,6 +95,7 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
       timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
   report.warnings = std::move(file.parsed.warnings);
   report.lattice = lattice_for(command, mesh, report.warnings);
+  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(*report.lattice);
   warn(report.warnings, command.run, command.mesh.path);
 

@@ -11,6 +11,7 @@
 #include "app/fields.h"
 #include "app/limits.h"
 #include "app/progress.h"
+#include "app/sampled_points.h"
 #include "app/stopwatch.h"
 #include "app/verify.h"
 #include "core/weld.h"
@@ -39,21 +40,29 @@ void evaluate_points(const FieldEvaluator& evaluator, PointReader& reader, Point
   }
 }
 
+// Null where points are to be drawn, which takes the mesh.
+std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
+  return command.sample ? nullptr : open_points(command.points, command.reading);
+}
+
 }  // namespace
 
 RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   RunReport report = report_on(command.mesh, command.output, limits);
   auto total = std::make_optional<Stopwatch>(report.seconds.total);
   OutputFile output(command.output.path, command.output.no_clobber);
-  const std::unique_ptr<PointReader> reader =
-      timed(report.seconds.read, [&] { return open_points(command.points, command.reading); });
+  std::unique_ptr<PointReader> reader = timed(report.seconds.read, [&] { return open_given_points(command); });
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
+  if (!command.sample) report.files_read.push_back(command.points);
   report.warnings = std::move(file.parsed.warnings);
   warn(report.warnings, command.run, command.mesh.path);
   TriangleMesh mesh =
       timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
+  if (command.sample) {
+    reader = timed(report.seconds.prepare, [&] { return draw_points(report.mesh, mesh, *command.sample); });
+  }
 
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <utility>
 
+#include "app/depfile.h"
 #include "app/json.h"
 #include "app/limits.h"
 #include "app/signals.h"
@@ -29,18 +31,28 @@ RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
 }
 
 void refuse_to_replace_input(const OutputOptions& output, const std::vector<std::string>& inputs) {
-  for (const std::string& input : inputs) {
-    if (are_one_regular_file(output.path, input)) throw UsageError(output.path + ": is input and output");
-    if (!output.report) continue;
-    if (are_one_regular_file(*output.report, input)) throw UsageError(*output.report + ": is input and report");
-  }
-  if (output.report && are_one_regular_file(*output.report, output.path)) {
-    throw UsageError(output.path + ": is output and report");
+  std::vector<std::pair<std::string, std::string>> written{{output.path, "output"}};
+  if (output.report) written.emplace_back(*output.report, "report");
+  if (output.depfile) written.emplace_back(*output.depfile, "depfile");
+  for (std::size_t n = 0; n < written.size(); ++n) {
+    const auto& [path, role] = written[n];
+    for (const std::string& input : inputs) {
+      if (are_one_regular_file(path, input)) throw UsageError(path + ": is input and " + role);
+    }
+    for (std::size_t before = 0; before < n; ++before) {
+      const auto& [other, other_role] = written[before];
+      if (path == other || are_one_regular_file(path, other)) {
+        throw UsageError(path + ": is " + other_role + " and " + role);
+      }
+    }
   }
 }
 
-std::unique_ptr<OutputFile> open_report(const OutputOptions& output) {
-  return output.report ? std::make_unique<OutputFile>(*output.report, output.no_clobber) : nullptr;
+SideFiles open_side_files(const OutputOptions& output) {
+  SideFiles files;
+  if (output.report) files.report = std::make_unique<OutputFile>(*output.report, output.no_clobber);
+  if (output.depfile) files.depfile = std::make_unique<OutputFile>(*output.depfile, output.no_clobber);
+  return files;
 }
 
 MeshFile read(const MeshOptions& mesh, const RunLimits& limits) {
@@ -60,7 +72,7 @@ RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const 
 
 void describe(const MeshFile& file, RunReport& report) {
   report.sha256 = file.sha256;
-  report.files_read = file.files_read;
+  report.files_read.insert(report.files_read.end(), file.files_read.begin(), file.files_read.end());
   report.vertices = file.parsed.mesh.vertices.size();
   report.faces = file.parsed.mesh.triangles.size();
 }
@@ -68,11 +80,13 @@ void describe(const MeshFile& file, RunReport& report) {
 OutputDescription description_of(const RunReport& report, const FieldOptions& field, const OutputOptions& output) {
   OutputDescription description;
   description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->spacing.x : 0.0);
+  if (output.grid_name) description.fields.front().grid = *output.grid_name;
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;
   description.faces = report.faces;
   description.exterior_edges = report.exterior_edges;
   description.double_precision = output.double_precision;
+  description.half_precision = output.half_precision;
   return description;
 }
 
@@ -92,12 +106,13 @@ std::string out_of_memory(const std::string& mesh, const RunOptions& options) {
   return mesh + ": out of memory" + (limit ? ", the limit is " + readable_bytes(static_cast<double>(*limit)) : "");
 }
 
-void publish(const RunReport& report, const RunOptions& options, OutputFile* report_file) {
-  if (report_file) {
-    const std::string document = to_json(report);
-    report_file->write(document.data(), document.size());
-    report_file->commit();
-  }
+void publish(const RunReport& report, const RunOptions& options, const SideFiles& files) {
+  const auto write = [](OutputFile& file, const std::string& text) {
+    file.write(text.data(), text.size());
+    file.commit();
+  };
+  if (files.report) write(*files.report, to_json(report));
+  if (files.depfile) write(*files.depfile, depfile_text(report.output, report.files_read));
   if (!options.quiet) print_message(summary_line(report));
 }
 

@@ -30,12 +30,16 @@ class RunLimits {
   ThreadLimit thread_limit_;
 };
 
-// Throws UsageError where output or report would replace one of `inputs` or each other: a slip of the keyboard must not
-// cost the user an input.
+// Throws UsageError where what is written would replace one of `inputs` or another output: a slip of the keyboard must
+// not cost the user an input.
 void refuse_to_replace_input(const OutputOptions& output, const std::vector<std::string>& inputs);
 
-// Null where no report is asked for. Throws OutputError.
-[[nodiscard]] std::unique_ptr<OutputFile> open_report(const OutputOptions& output);
+// What is written beside the results; null where not asked for.
+struct SideFiles {
+  std::unique_ptr<OutputFile> report, depfile;
+};
+// Throws OutputError.
+[[nodiscard]] SideFiles open_side_files(const OutputOptions& output);
 
 // Throws InputError, LimitError where the file alone is too large for the memory.
 [[nodiscard]] MeshFile read(const MeshOptions& mesh, const RunLimits& limits);
@@ -57,7 +61,7 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 // What to tell the user where an allocation failed.
 [[nodiscard]] std::string out_of_memory(const std::string& mesh, const RunOptions& options);
 
-// Writes `report` to `report_file`, if there is one, and prints its summary. Throws OutputError.
-void publish(const RunReport& report, const RunOptions& options, OutputFile* report_file);
+// Writes the `files` about the run, and prints its summary. Throws OutputError.
+void publish(const RunReport& report, const RunOptions& options, const SideFiles& files);
 
 }  // namespace raycone

@@ -27,6 +27,8 @@ std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   if (lower == "csv") return FieldFormat::kCsv;
   if (lower == "npy") return FieldFormat::kNpy;
   if (lower == "none") return FieldFormat::kNone;
+  if (lower == "vti") return FieldFormat::kVti;
+  if (lower == "npz") return FieldFormat::kNpz;
   return std::nullopt;
 }
 
@@ -41,8 +43,14 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
       return make_npy_lattice_writer(output, lattice, description);
     case FieldFormat::kNone:
       return std::make_unique<NoWriter>();
+    case FieldFormat::kVti:
+      return make_vti_lattice_writer(output, lattice, description);
+    case FieldFormat::kNpz:
+    case FieldFormat::kRawDouble:
+    case FieldFormat::kRawFloat:
+      break;  // for points only; options are checked before anything is opened
   }
-  throw std::logic_error("unknown field format");
+  throw std::logic_error("no lattice writer for this format");
 }
 
 std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
@@ -53,7 +61,14 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
       return make_csv_point_writer(output, description);
     case FieldFormat::kNpy:
       return make_npy_point_writer(output, size, description);
+    case FieldFormat::kNpz:
+      return make_npz_point_writer(output, size.value(), description);
+    case FieldFormat::kRawDouble:
+      return make_raw_point_writer(output, RawPrecision::kDouble);
+    case FieldFormat::kRawFloat:
+      return make_raw_point_writer(output, RawPrecision::kFloat);
     case FieldFormat::kVdb:
+    case FieldFormat::kVti:
     case FieldFormat::kNone:
       break;  // lattices only; options are checked before anything is opened
   }

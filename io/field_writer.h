@@ -1,4 +1,4 @@
-// Writers of fields: on lattices VDB, CSV and NPY; at points CSV and NPY.
+// Writers of fields: on lattices VDB, CSV, NPY and VTI; at points CSV, NPY, NPZ and raw numbers.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,18 @@
 namespace raycone {
 
 // kNone: nothing is written, for measurements.
-enum class FieldFormat { kVdb, kCsv, kNpy, kNone };
+enum class FieldFormat {
+  kVdb,
+  kCsv,
+  kNpy,
+  kVti,
+  kNpz,
+  kRawDouble,  // nothing but numbers, little-endian; has no name
+  kRawFloat,
+  kNone,
+};
 
-// "vdb", "csv", "npy" or "none", in any case.
+// "vdb", "csv", "npy", "vti", "npz" or "none", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
 
 // What the numbers of a field are; formats choose how they store them.
@@ -50,6 +59,7 @@ struct OutputDescription {
   std::uint64_t faces = 0;
   std::uint64_t exterior_edges = 0;
   bool double_precision = false;  // DoubleGrid / float64 instead of float32
+  bool half_precision = false;    // 16 bits a value in VDB, not together with double_precision
 };
 
 // Numbers of one field: integers for kCount, bytes for kFlag, else doubles.
@@ -77,13 +87,15 @@ class LatticeWriter {
 };
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
-// below 3e-15, indices beyond 32 bits). NPY holds one field.
+// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY holds
+// one field.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const Lattice& lattice,
                                                                  const OutputDescription& description);
 
 // Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
-// float64, shape (n,), with several fields (n, fields).
+// float64, shape (n,), with several fields (n, fields); NPZ: an array of the points and one per field; raw: the numbers
+// of the first point, those of the second, and so on.
 class PointWriter {
  public:
   virtual ~PointWriter() = default;
@@ -94,7 +106,7 @@ class PointWriter {
   virtual void finish() = 0;
 };
 
-// format: kCsv or kNpy. `size`, where known, lets NPY be streamed to a pipe.
+// `size`, where known, lets NPY be streamed to a pipe; NPZ needs it.
 [[nodiscard]] std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
                                                              std::optional<std::uint64_t> size,
                                                              const OutputDescription& description);

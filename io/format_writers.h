@@ -8,6 +8,7 @@
 #include "core/lattice.h"
 #include "io/field_writer.h"
 #include "io/output_file.h"
+#include "io/raw_precision.h"
 
 namespace raycone {
 
@@ -17,10 +18,16 @@ namespace raycone {
                                                                      const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                      const OutputDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                     const OutputDescription& description);
 
 [[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output,
                                                                  const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
                                                                  const OutputDescription& description);
+
+[[nodiscard]] std::unique_ptr<PointWriter> make_npz_point_writer(OutputFile& output, std::uint64_t size,
+                                                                 const OutputDescription& description);
+[[nodiscard]] std::unique_ptr<PointWriter> make_raw_point_writer(OutputFile& output, RawPrecision precision);
 
 }  // namespace raycone

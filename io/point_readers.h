@@ -14,6 +14,7 @@ inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 // Each takes over an input of which nothing has been consumed. Throw InputError.
 [[nodiscard]] std::unique_ptr<PointReader> read_text_points(std::unique_ptr<InputBuffer> input,
                                                             const ReadPointsOptions& options);
+[[nodiscard]] std::unique_ptr<PointReader> read_raw_points(std::unique_ptr<InputBuffer> input, RawPrecision precision);
 [[nodiscard]] std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input);
 [[nodiscard]] std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input);
 

@@ -47,6 +47,7 @@ std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input)
 
 std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options) {
   auto input = std::make_unique<InputBuffer>(path);
+  if (options.raw) return read_raw_points(std::move(input), *options.raw);
   // Nothing may wait on standard input before the first point is asked for.
   if (path != "-") {
     if (begins_with(*input, kNpyMagic)) return read_npy_points(std::move(input));

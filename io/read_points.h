@@ -1,4 +1,4 @@
-// Reading of query points: text (CSV, TSV, blanks), NPY, PLY vertices.
+// Reading of query points: text (CSV, TSV, blanks), NPY, PLY vertices, raw coordinates.
 #pragma once
 
 #include <array>
@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "core/vec3.h"
+#include "io/raw_precision.h"
 
 namespace raycone {
 
 struct ReadPointsOptions {
   std::optional<std::array<int, 3>> columns;  // one-based columns of x, y, z in text
+  std::optional<RawPrecision> raw;            // no format: coordinates, one after the other
 };
 
 // A stream of points: memory does not grow with their number for text.

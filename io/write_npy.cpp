@@ -8,6 +8,8 @@
 
 #include "core/threads.h"
 #include "io/format_writers.h"
+#include "io/interleaved.h"
+#include "io/npy_header.h"
 #include "io/spool_file.h"
 
 namespace raycone {
@@ -23,19 +25,6 @@ template <>
 constexpr const char* kDescriptor<double> = "<f8";
 template <>
 constexpr const char* kDescriptor<std::uint8_t> = "|b1";  // flags: NumPy's bool is a byte
-
-// `shape` as Python writes a tuple. For one axis the header has the same length whatever the count.
-std::string npy_header(const std::string& descriptor, const std::string& shape) {
-  constexpr std::size_t kAlignment = 64;
-  constexpr std::size_t kPreamble = 10;  // magic, version, length
-  std::string text = "{'descr': '" + descriptor + "', 'fortran_order': False, 'shape': " + shape + ", }";
-  const std::size_t total = (kPreamble + text.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
-  text.append(total - kPreamble - text.size() - 1, ' ');
-  text += '\n';
-  const auto low = static_cast<char>(text.size() & 0xFF);
-  const auto high = static_cast<char>(text.size() >> 8);
-  return std::string("\x93NUMPY\x01") + '\0' + low + high + text;
-}
 
 // The elements of an x-fastest block with z fastest instead, -0 as 0.
 template <typename Element, typename Number>
@@ -89,18 +78,6 @@ class NpyLatticeWriter final : public LatticeWriter {
   OutputFile& output_;
 };
 
-// A row per sample: the number of each field.
-std::vector<double> interleaved(std::span<const FieldValues> fields, std::size_t samples) {
-  std::vector<double> elements(fields.size() * samples);
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto store = [&](const auto& numbers) {
-      for (std::size_t n = 0; n < samples; ++n) elements[n * fields.size() + f] = static_cast<double>(numbers[n]);
-    };
-    std::visit(store, fields[f]);
-  }
-  return elements;
-}
-
 // Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.
 class NpyPointWriter final : public PointWriter {
  public:
@@ -117,7 +94,7 @@ class NpyPointWriter final : public PointWriter {
     count_ += points.size();
     const auto* const reals = std::get_if<std::span<const double>>(&fields.front());
     if (fields.size() == 1 && reals) return append(*reals);
-    append(interleaved(fields, points.size()));
+    append(interleaved<double>(fields, points.size()));
   }
 
   void flush() override { output_.flush(); }

@@ -2,6 +2,7 @@
 // background, in level sets from -background too. Blocks of 8^3 samples become leaves, or tiles where all samples are
 // stored alike.
 #include <openvdb/io/Archive.h>
+#include <openvdb/io/Compression.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
@@ -20,7 +21,7 @@
 #include "core/threads.h"
 #include "io/file_error.h"
 #include "io/read_file.h"
-#include "io/spool_file.h"
+#include "io/seekable_output.h"
 #include "io/vdb_module.h"
 
 namespace raycone {
@@ -54,6 +55,22 @@ void check_voxel_volume(const Vec3& spacing, const std::string& name) {
                 ": voxel volume %.2g is below 3e-15, which OpenVDB cannot represent; scale the mesh (--scale 1e%.0f)",
                 volume, -std::floor(mean_exponent));
   throw OutputError(name + message);
+}
+
+// Halves range from 2^-14, below which they lose digits, to 65504.
+void check_half(const OutputDescription& description, const Lattice& lattice, const std::string& name) {
+  if (!description.half_precision) return;
+  for (const FieldDescription& field : description.fields) {
+    if (field.kind != FieldKind::kDistance) continue;
+    if (lattice.spacing.x >= 0x1p-14 && field.background <= 65504) continue;
+    char message[160];
+    std::snprintf(
+        message, sizeof message,
+        ": distances from one voxel, %.2g, to the band's %.2g are not in the range 6.2e-5 to 65504 of --half; "
+        "scale the mesh (--scale)",
+        lattice.spacing.x, field.background);
+    throw OutputError(name + message);
+  }
 }
 
 openvdb::math::MapBase::Ptr map_of(const Lattice& lattice) {
@@ -298,6 +315,11 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   insert(grid, "raycone_exterior_edges", description.exterior_edges);
 }
 
+// Fields other than diagnostics: their precision is for the user to choose.
+bool is_value(FieldKind kind) {
+  return kind == FieldKind::kReal || kind == FieldKind::kDensity || kind == FieldKind::kDistance;
+}
+
 // A bound as a float that still is one.
 float rounded_up(double bound) {
   const float nearest = static_cast<float>(bound);
@@ -305,20 +327,29 @@ float rounded_up(double bound) {
                                               : nearest;
 }
 
+// The value of 16 bits that OpenVDB stores for `value`, within their range.
+float as_half(float value) {
+  const float largest = std::numeric_limits<openvdb::math::half>::max();
+  return openvdb::io::truncateRealToHalf(std::clamp(value, -largest, largest));
+}
+
 // The least value that is no narrower than the band, also as checkLevelSet measures it: in voxels.
 template <typename Value>
-Value level_set_background(double band_width, double voxel) {
+Value level_set_background(double band_width, double voxel, bool half) {
   auto background = static_cast<Value>(band_width);
-  while (static_cast<double>(background) / voxel < band_width / voxel) {
-    background = std::nextafter(background, std::numeric_limits<Value>::infinity());
+  const auto stored = [&] { return half ? static_cast<Value>(as_half(static_cast<float>(background))) : background; };
+  while (static_cast<double>(stored()) / voxel < band_width / voxel) {
+    background = std::nextafter(std::max(background, stored()), std::numeric_limits<Value>::infinity());
   }
-  return background;
+  return stored();
 }
 
 template <typename Value>
-Value background_of(const FieldDescription& field, const Lattice& lattice) {
+Value background_of(const FieldDescription& field, const Lattice& lattice, bool half) {
   if constexpr (!std::is_same_v<Value, bool>) {
-    if (field.kind == FieldKind::kDistance) return level_set_background<Value>(field.background, lattice.spacing.x);
+    if (field.kind == FieldKind::kDistance) {
+      return level_set_background<Value>(field.background, lattice.spacing.x, half);
+    }
     return static_cast<Value>(field.background);
   } else {
     return field.background != 0.0;
@@ -351,10 +382,12 @@ class TypedGridBuilder final : public GridBuilder {
   TypedGridBuilder(const FieldDescription& field, const Lattice& lattice, const OutputDescription& description)
       : field_(field),
         lattice_(lattice),
-        background_(background_of<Value>(field, lattice)),
+        half_(description.half_precision && is_value(field.kind)),
+        background_(background_of<Value>(field, lattice, half_)),
         layer_(lattice, background_, field.kind == FieldKind::kDistance),
         grid_(Grid::create(background_)) {
     describe(*grid_, lattice, field, description);
+    if (half_) grid_->setSaveFloatAsHalf(true);
   }
 
   void add(const LatticeBlock& slab, const FieldValues& values) override {
@@ -381,7 +414,10 @@ class TypedGridBuilder final : public GridBuilder {
       });
     } else {
       // Adding 0 turns -0 into 0.
-      gather(slab, numbers, [](Number number) { return static_cast<Value>(number) + Value{0}; });
+      gather(slab, numbers, [this](Number number) {
+        const Value value = static_cast<Value>(number) + Value{0};
+        return half_ ? static_cast<Value>(as_half(static_cast<float>(value))) : value;
+      });
     }
   }
 
@@ -400,6 +436,7 @@ class TypedGridBuilder final : public GridBuilder {
 
   FieldDescription field_;
   Lattice lattice_;
+  bool half_;  // 16 bits in the file
   Value background_;
   LeafLayer<typename Grid::TreeType> layer_;
   typename Grid::Ptr grid_;
@@ -506,18 +543,12 @@ class VdbWriter final : public LatticeWriter {
   void finish(const FieldTotals& totals) override {
     openvdb::GridCPtrVec grids;
     for (const std::unique_ptr<GridBuilder>& builder : builders_) grids.push_back(builder->finish(totals));
-    if (output_.seekable()) {
-      write_archive(output_.stream(), grids);
-    } else {
-      SpoolFile spool(output_.name());
-      write_archive(spool.stream(), grids);
-      spool.copy_to(output_);
-    }
+    write_archive(output_.stream(), grids);
     output_.commit();
   }
 
  private:
-  OutputFile& output_;
+  SeekableOutput output_;
   std::vector<std::unique_ptr<GridBuilder>> builders_;  // of each field
 };
 
@@ -527,6 +558,7 @@ std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, cons
                                                         const OutputDescription& description) {
   check_indices(lattice, output.name());
   check_voxel_volume(lattice.spacing, output.name());
+  check_half(description, lattice, output.name());
   openvdb::initialize();
   return std::make_unique<VdbWriter>(output, lattice, description);
 }

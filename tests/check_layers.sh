@@ -37,5 +37,6 @@ only_in Highway '[<"]hwy' 'core/cone_kernel\.cpp'
 only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'
 only_in nlohmann-json '[<"]nlohmann' 'io/gltf_document\.cpp|app/json\.cpp'
 only_in nettle '[<"]nettle' 'io/(base64|read_file)\.cpp'
+only_in zlib '[<"]zlib' 'io/zip_writer\.cpp'
 only_in CLI11 '[<"]CLI/' 'app/options\.cpp'
 exit "$status"

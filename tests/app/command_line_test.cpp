@@ -69,7 +69,7 @@ TEST_F(CommandLine, UnknownOptionIsUsageErrorOfEachCommand) {
   expect_error(lattice({"--foo"}), 1, "unknown option --foo");
   expect_error(lattice({"-x"}), 1, "unknown option -x");
   expect_error(lattice({"--res", "5"}), 1, "unknown option --res");
-  expect_error(run_raycone({"points", mesh_, "p.csv", "--bounds", "0,0,0,1,1,1"}), 1, "unknown option --bounds");
+  expect_error(run_raycone({"points", mesh_, "p.csv", "--resolution", "5"}), 1, "unknown option --resolution");
   expect_error(run_raycone({"info", mesh_, "--output", "x"}), 1, "unknown option --output");
 }
 
@@ -181,7 +181,7 @@ TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {
 
 TEST_F(CommandLine, UnknownWordsListWhatExists) {
   expect_error(lattice({"--field", "foo"}), 1, "--field foo: expected one or more of winding, inside, density, sdf");
-  expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv or npy");
+  expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv, npy or vti");
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
   expect_error(lattice({"--progress", "maybe"}), 1, "expected always, never or auto");
@@ -190,7 +190,7 @@ TEST_F(CommandLine, UnknownWordsListWhatExists) {
 
 TEST_F(CommandLine, UnknownOutputFormatFailsBeforeTheMeshIsRead) {
   for (const char* const output : {"out.png", "out", ".vdb", "/dev/null"}) {
-    expect_error(run_raycone({"lattice", dir_ / "absent.obj", "-o", output}), 1, "expected vdb, csv or npy");
+    expect_error(run_raycone({"lattice", dir_ / "absent.obj", "-o", output}), 1, "expected vdb, csv, npy or vti");
   }
   expect_error(run_raycone({"points", mesh_, "p.csv", "-o", "out.vdb"}), 1, "expected csv or npy");
 }
@@ -206,22 +206,8 @@ TEST_F(CommandLine, CommandsNotAvailableYetSaySo) {
 }
 
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  for (const char* const option : {"--depfile", "--grid-name"}) {
-    expect_not_available(lattice({option, "1"}), option);
-  }
-  expect_not_available(lattice({"--half"}), "--half");
-  for (const char* const option : {"--sample", "--seed", "--raw"}) {
-    expect_not_available(run_raycone({"points", mesh_, option, "1", "-o", "x.csv"}), option);
-  }
   expect_not_available(lattice({"--tolerance", "1e-3"}), "--tolerance 1e-3");
   EXPECT_EQ(lattice({"--tolerance", "0"}).status, 0);
-}
-
-TEST_F(CommandLine, FieldsAndFormatsNotAvailableYetSaySo) {
-  expect_not_available(lattice({"--format", "vti"}), "--format vti");
-  expect_not_available(run_raycone({"lattice", mesh_, "-o", "x.VTI"}), "x.VTI");
-  expect_not_available(run_raycone({"points", mesh_, "p.csv", "-o", "x.npz"}), "x.npz");
-  EXPECT_EQ(lattice({"--field", "winding"}).status, 0);
 }
 
 TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
@@ -232,7 +218,7 @@ TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
     EXPECT_EQ(result.err, "");
     EXPECT_NE(result.out.find("Usage: raycone"), std::string::npos);
     EXPECT_NE(result.out.find("Examples:\n  raycone "), std::string::npos);
-    for (const char* const later : {"slice", "vti", "npz", "--sample", "--half", "--tolerance", "--raw"}) {
+    for (const char* const later : {"slice", "--tolerance"}) {
       EXPECT_EQ(result.out.find(later), std::string::npos) << later;
     }
   }

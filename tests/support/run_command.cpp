@@ -104,6 +104,17 @@ void Command::read_available(int& descriptor, std::string& text) const {
   }
 }
 
+std::optional<std::string> Command::read_bytes(std::size_t count, std::chrono::milliseconds patience) {
+  while (out_.size() < count) {
+    pollfd ready{output_, POLLIN, 0};
+    if (output_ < 0 || poll(&ready, 1, static_cast<int>(patience.count())) <= 0) return std::nullopt;
+    read_available(output_, out_);
+  }
+  std::string bytes = out_.substr(0, count);
+  out_.erase(0, count);
+  return bytes;
+}
+
 std::optional<std::string> Command::read_line(std::chrono::milliseconds patience) {
   std::size_t end;
   while ((end = out_.find('\n')) == std::string::npos) {

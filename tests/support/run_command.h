@@ -41,6 +41,8 @@ class Command {
   void close_input();
   // The next line of standard output without its line feed; nothing if none comes in time or ever.
   [[nodiscard]] std::optional<std::string> read_line(std::chrono::milliseconds patience);
+  // The next `count` bytes of standard output; nothing if they do not come in time or ever.
+  [[nodiscard]] std::optional<std::string> read_bytes(std::size_t count, std::chrono::milliseconds patience);
   void send_signal(int signal) const;
   [[nodiscard]] pid_t process() const { return process_; }
   // Reads both outputs to their ends.

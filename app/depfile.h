@@ -1,0 +1,12 @@
+// What Make is told about a run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace raycone {
+
+// A rule without commands: `output` depends on `inputs`. Standard input and output are left out.
+[[nodiscard]] std::string depfile_text(const std::string& output, const std::vector<std::string>& inputs);
+
+}  // namespace raycone

@@ -1,0 +1,30 @@
+// Points that the tool draws, in place of a file of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/lattice_choice.h"
+#include "core/point_sampler.h"
+#include "core/triangle_mesh.h"
+#include "io/read_points.h"
+
+namespace raycone {
+
+struct SampleRequest {
+  std::vector<SampleGroup> groups;
+  std::uint64_t seed = 1;
+  std::optional<Box> bounds;  // in place of the mesh's box
+  WorldPadding padding;
+};
+
+// `name`: the file that `mesh` is from. Throws UsageError where the padding leaves nothing of the box, InputError where
+// points near the surface are asked for and there is none.
+[[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
+                                                       const SampleRequest& request);
+
+}  // namespace raycone

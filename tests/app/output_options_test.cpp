@@ -1,0 +1,129 @@
+// `--half`, `--grid-name`, `--format vti` and `--depfile`. Black box: the real executable.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Diagnostics.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/depfile.h"
+#include "tests/app/meshes.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+class GridOptions : public testing::Test {
+ protected:
+  GridOptions() { write_text(mesh_, triangle_soup(20)); }
+
+  CommandResult lattice(const std::string& output, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"lattice", mesh_, "-o", output, "--quiet", "--resolution", "16"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_raycone(arguments);
+  }
+  openvdb::FloatGrid::Ptr written(const std::string& name, const std::vector<std::string>& options) const {
+    const CommandResult result = lattice(dir_ / "out.vdb", options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    openvdb::initialize();
+    openvdb::io::File file(dir_ / "out.vdb");
+    file.open(false);
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
+  }
+
+  TemporaryDirectory dir_;
+  std::string mesh_ = dir_ / "mesh.obj";
+};
+
+using Depfile = GridOptions;
+
+TEST_F(GridOptions, HalfStoresValuesIn16Bits) {
+  const auto half = written("winding", {"--half", "--diagnostics"});
+  EXPECT_TRUE(half->saveFloatAsHalf());
+  const auto full = written("winding", {});
+  const auto bound = written("error_bound", {"--half", "--diagnostics"});
+  EXPECT_FALSE(bound->saveFloatAsHalf()) << "rounded to 16 bits it would be no bound, but 0";
+  int differ = 0;
+  for (auto value = full->cbeginValueOn(); value; ++value) {
+    const float stored = half->tree().getValue(value.getCoord());
+    // Half a unit in the last of 11 places; below 2^-14, of the smallest number.
+    EXPECT_NEAR(stored, *value, std::max(std::abs(*value) * 0x1p-11F, 0x1p-25F));
+    differ += stored != *value;
+    EXPECT_EQ(half->tree().isValueOn(value.getCoord()), stored != 0);
+  }
+  EXPECT_GT(differ, 100);
+}
+
+TEST_F(GridOptions, LevelSetsInHalfArePerfectToo) {
+  for (const char* const scale : {"1", "0.77", "3.3", "1000"}) {  // the band rounds up or down to 11 bits
+    const auto grid = written("surface", {"--half", "--field", "sdf", "--scale", scale});
+    EXPECT_EQ(openvdb::tools::checkLevelSet(*grid, 8), "") << scale;
+  }
+  const CommandResult small = lattice(dir_ / "out.vdb", {"--half", "--field", "sdf", "--scale", "5e-4"});
+  EXPECT_EQ(small.status, 3);
+  EXPECT_NE(small.err.find("are not in the range 6.2e-5 to 65504 of --half; scale the mesh"), std::string::npos)
+      << small.err;
+}
+
+TEST_F(GridOptions, GridNameRenamesTheOnlyField) {
+  const auto grid = written("density of pig", {"--grid-name", "density of pig", "--diagnostics"});
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->metaValue<std::string>("raycone_field"), "winding");
+  EXPECT_TRUE(written("crossings", {"--grid-name", "x", "--diagnostics"}));
+}
+
+TEST_F(GridOptions, RefuseWhatHasNoGridsOrSeveral) {
+  EXPECT_EQ(lattice("-", {"--half"}).err, "raycone: --half: is for grids, expected the format vdb\n");
+  EXPECT_EQ(lattice("x.npy", {"--grid-name", "a"}).err,
+            "raycone: --grid-name: is for grids, expected the format vdb\n");
+  EXPECT_EQ(lattice("x.vdb", {"--half", "--double"}).err, "raycone: --half: cannot be combined with --double\n");
+  EXPECT_EQ(lattice("x.vdb", {"--grid-name", "a", "--field", "winding,inside"}).err,
+            "raycone: --grid-name a: names a single grid, expected one field\n");
+  EXPECT_EQ(lattice("x.vdb", {"--grid-name", "crossings", "--diagnostics"}).err,
+            "raycone: --grid-name crossings: expected another name than the diagnostics'\n");
+}
+
+TEST_F(GridOptions, VtiIsTheSameWhereverItGoes) {
+  const std::vector<std::string> options{"--field", "winding,inside,sdf", "--diagnostics"};
+  ASSERT_EQ(lattice(dir_ / "out.VTI", options).status, 0);
+  std::vector<std::string> to_pipe = options;
+  to_pipe.insert(to_pipe.end(), {"--format", "vti", "--threads", "3"});
+  EXPECT_EQ(lattice("-", to_pipe).out, contents(dir_ / "out.VTI"));
+}
+
+TEST_F(Depfile, ListsEveryFileThatWasRead) {
+  const std::string depfile = dir_ / "out.d";
+  EXPECT_EQ(lattice(dir_ / "out.vdb", {"--depfile", depfile}).status, 0);
+  EXPECT_EQ(read_text(depfile), dir_ / "out.vdb" + ": \\\n  " + mesh_ + "\n");
+  ASSERT_EQ(
+      run_raycone({"lattice", mesh_, "-o", dir_ / "b.csv", "--like", dir_ / "out.vdb", "--depfile", depfile}).status,
+      0);
+  EXPECT_EQ(read_text(depfile), dir_ / "b.csv" + ": \\\n  " + mesh_ + " \\\n  " + (dir_ / "out.vdb") + "\n");
+  write_text(dir_ / "points.txt", "0 0 0\n");
+  ASSERT_EQ(run_raycone({"points", mesh_, dir_ / "points.txt", "-o", dir_ / "c.csv", "--depfile", depfile}).status, 0);
+  EXPECT_EQ(read_text(depfile), dir_ / "c.csv" + ": \\\n  " + mesh_ + " \\\n  " + (dir_ / "points.txt") + "\n");
+}
+
+TEST_F(Depfile, FailsWithoutATrace) {
+  EXPECT_EQ(lattice(dir_ / "out.vdb", {"--depfile", dir_ / "out.vdb"}).status, 1);
+  EXPECT_EQ(lattice(dir_ / "out.csv", {"--depfile", mesh_}).status, 1) << "an input";
+  EXPECT_EQ(run_raycone({"lattice", dir_ / "absent.obj", "-o", dir_ / "x.csv", "--depfile", dir_ / "x.d"}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "x.d"));
+}
+
+TEST(DepfileText, EscapesWhatMakeWouldMisread) {
+  EXPECT_EQ(depfile_text("a b.vdb", {"$x.obj", "c#d.bin", "e\\ f", "g\\h"}),
+            "a\\ b.vdb: \\\n  $$x.obj \\\n  c\\#d.bin \\\n  e\\\\\\ f \\\n  g\\h\n");
+}
+
+TEST(DepfileText, LeavesOutStandardInputAndRepetitions) {
+  EXPECT_EQ(depfile_text("out", {"-", "mesh", "mesh"}), "out: \\\n  mesh\n");
+  EXPECT_EQ(depfile_text("-", {"mesh"}), "");
+}
+
+}  // namespace
+}  // namespace raycone::test

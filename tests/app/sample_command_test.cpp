@@ -1,0 +1,126 @@
+// `raycone points --sample`. Black box: the real executable.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/app/meshes.h"
+#include "tests/support/output_checks.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+class SampleOption : public testing::Test {
+ protected:
+  SampleOption() { write_text(mesh_, kCube); }
+
+  CommandResult sample(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"points", mesh_, "--quiet", "--sample"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_raycone(arguments);
+  }
+  std::string npz(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"uniform=500,near=500:0.01", "-o", dir_ / "out.npz"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(sample(arguments).status, 0);
+    return contents(dir_ / "out.npz");
+  }
+
+  TemporaryDirectory dir_;
+  std::string mesh_ = dir_ / "mesh.obj";
+};
+
+TEST_F(SampleOption, WritesWhatNetworksAreTrainedOn) {
+  if (!python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
+  npz({});
+  EXPECT_EQ(
+      run_python("import numpy, sys\n"
+                 "z = numpy.load(sys.argv[1])\n"
+                 "assert sorted(z.files) == ['inside', 'points', 'sdf', 'w'], z.files\n"
+                 "p, w, inside, sdf = (z[name] for name in ('points', 'w', 'inside', 'sdf'))\n"
+                 "assert p.shape == (1000, 3) and p.dtype == w.dtype == sdf.dtype == float and inside.dtype == bool\n"
+                 "assert (inside == (w >= 0.5)).all() and ((sdf < 0) == inside).all()\n"
+                 "q = abs(p - 0.5) - 0.5\n"
+                 "box = numpy.linalg.norm(q.clip(0), axis=1) + q.max(axis=1).clip(max=0)\n"
+                 "assert abs(sdf - box).max() < 1e-15\n"
+                 "assert (p[:500] >= 0).all() and (p[:500] < 1).all() and inside[:500].all()\n"
+                 "assert 0.005 < abs(sdf[500:]).mean() < 0.03 and 150 < inside[500:].sum() < 350\n",
+                 {dir_ / "out.npz"}),
+      "");
+}
+
+TEST_F(SampleOption, SameSeedSameBytes) {
+  const std::string bytes = npz({});
+  EXPECT_EQ(npz({"--threads", "1"}), bytes);
+  EXPECT_EQ(npz({"--threads", "5", "--seed", "1"}), bytes);
+  EXPECT_NE(npz({"--seed", "2"}), bytes);
+}
+
+TEST_F(SampleOption, FieldsAndDiagnosticsAreForTheAsking) {
+  const CommandResult result = sample({"uniform=2", "--field", "density", "--diagnostics"});
+  EXPECT_EQ(result.out.substr(0, result.out.find('\n')), "x,y,z,density,crossings,degenerate,on_surface,error_bound");
+  EXPECT_EQ(std::ranges::count(result.out, '\n'), 3);
+}
+
+// The points of a CSV are those that the same command reads.
+TEST_F(SampleOption, ValuesAreThoseOfThePoints) {
+  const CommandResult drawn = sample({"near=300:0.05,uniform=300", "--padding", "0.5"});
+  write_text(dir_ / "points.csv", drawn.out);
+  EXPECT_EQ(run_raycone({"points", mesh_, dir_ / "points.csv", "--field", "winding,inside,sdf", "--quiet"}).out,
+            drawn.out);
+}
+
+TEST_F(SampleOption, TheBoxIsPaddedOrAnother) {
+  const auto lies_in = [&](const std::vector<std::string>& more, double lower, double upper) {
+    std::vector<std::string> arguments{"uniform=3000", "--field", "winding"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::istringstream lines(sample(arguments).out);
+    std::string line;
+    std::getline(lines, line);
+    double least = 1e9, most = -1e9;
+    while (std::getline(lines, line)) {
+      const double x = std::stod(line);
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+    const double side = upper - lower;  // within a hundredth of the ends, but for one case in 1e13
+    return lower <= least && least < lower + side / 100 && upper - side / 100 < most && most <= upper;
+  };
+  EXPECT_TRUE(lies_in({}, 0, 1));
+  EXPECT_TRUE(lies_in({"--padding", "2"}, -2, 3));
+  EXPECT_TRUE(lies_in({"--bounds", "5,0,0,6,1,1"}, 5, 6));
+}
+
+TEST_F(SampleOption, VerifiesAndReports) {
+  const CommandResult result = run_raycone({"points", mesh_, "--sample", "uniform=50", "--verify", "10"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find(" 50 samples in "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("verified 10 samples"), std::string::npos) << result.err;
+}
+
+TEST_F(SampleOption, RefusesWhatMakesNoSense) {
+  for (const char* const spec : {"uniform", "uniform=0", "uniform=1.5", "near=5", "near=5:", "near=5:-1", "far=3",
+                                 "uniform=1,,near=1:1", "near=1:nan"}) {
+    const CommandResult result = sample({spec});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.err.rfind(std::string("raycone: --sample ") + spec + ": expected uniform=N, near=N:SIGMA", 0), 0U)
+        << result.err;
+  }
+  EXPECT_EQ(sample({"uniform=5", "-o", dir_ / "out.npy"}).status, 1);
+  EXPECT_EQ(sample({"uniform=5", "--padding", "3v"}).status, 1);
+  EXPECT_EQ(sample({"uniform=5", dir_ / "points.csv"}).status, 1);
+  EXPECT_EQ(sample({"uniform=5", "--raw", "f64"}).status, 1);
+  EXPECT_EQ(run_raycone({"points", mesh_, dir_ / "points.csv", "--seed", "2"}).status, 1);
+  EXPECT_EQ(run_raycone({"points", mesh_, dir_ / "points.csv", "-o", dir_ / "out.npz"}).status, 1);
+  write_text(dir_ / "flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 1\n");
+  const CommandResult flat = run_raycone({"points", dir_ / "flat.obj", "--sample", "near=5:0.1"});
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_NE(flat.err.find("flat.obj: no triangle has an area"), std::string::npos) << flat.err;
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -67,7 +67,7 @@ TEST_F(Batch, PoisonIsContained) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // a reader without end
   put("z.obj");
   const CommandResult result = run_raycone(
-      {"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1", "--timeout", "2", "--memory-limit", "8G"});
+      {"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1", "--timeout", "5", "--memory-limit", "8G"});
   EXPECT_EQ(result.status, 5);
   EXPECT_EQ(
       statuses(rows()),
@@ -118,15 +118,15 @@ TEST_F(Batch, FailuresAreTriedAgainWhereTheirCauseMayBeGone) {
     words.insert(words.end(), more.begin(), more.end());
     return run_raycone(words).out;
   };
-  const std::vector<std::string> limits{"--timeout", "1", "--memory-limit", "8G"};
+  const std::vector<std::string> limits{"--timeout", "4", "--memory-limit", "8G"};
   batch(limits);
-  EXPECT_EQ(count_lines(batch({"--timeout", "1", "--memory-limit", "8G", "--dry-run"})), 0U);
-  EXPECT_EQ(batch({"--timeout", "1.5", "--memory-limit", "8G", "--dry-run"}), pipe + "\ttime limit changed\n");
-  EXPECT_EQ(batch({"--timeout", "1", "--memory-limit", "9G", "--dry-run"}),
+  EXPECT_EQ(count_lines(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run"})), 0U);
+  EXPECT_EQ(batch({"--timeout", "6", "--memory-limit", "8G", "--dry-run"}), pipe + "\ttime limit changed\n");
+  EXPECT_EQ(batch({"--timeout", "4", "--memory-limit", "9G", "--dry-run"}),
             meshes_ + "/big.obj\tmemory limit changed\n");
-  EXPECT_EQ(count_lines(batch({"--timeout", "1", "--memory-limit", "8G", "--dry-run", "--retry-failed"})), 3U);
+  EXPECT_EQ(count_lines(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run", "--retry-failed"})), 3U);
   put("bad.obj");
-  EXPECT_EQ(batch({"--timeout", "1", "--memory-limit", "8G", "--dry-run"}), meshes_ + "/bad.obj\tmesh changed\n");
+  EXPECT_EQ(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run"}), meshes_ + "/bad.obj\tmesh changed\n");
 }
 
 TEST_F(Batch, UnwritableOutputsAreTriedAgain) {

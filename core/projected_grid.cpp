@@ -138,10 +138,6 @@ class ProjectedGrid::Builder {
   // What is added to cells and triangles on all sides, in cells: rounding is far below.
   static constexpr double kMargin = 0x1p-16;
 
-  [[nodiscard]] Corners corners(std::uint32_t triangle) const {
-    const Triangle& t = mesh_.triangles[triangle];
-    return {corners_[t[0]], corners_[t[1]], corners_[t[2]]};
-  }
   [[nodiscard]] std::array<Edge, 3> edges(std::uint32_t triangle) const;
   [[nodiscard]] std::vector<Entry> all_entries() const;
   [[nodiscard]] Grid choose(const Rectangle& box, std::span<const Entry> entries, double entries_per_triangle) const;
@@ -157,21 +153,25 @@ class ProjectedGrid::Builder {
 
   const TriangleMesh& mesh_;
   ProjectedGrid& result_;
-  std::vector<Corner> corners_;  // the mesh's vertices
+  std::vector<Corners> corners_;  // of result_.triangles_
 };
 
 ProjectedGrid::Builder::Builder(const TriangleMesh& mesh, ProjectedGrid& result) : mesh_(mesh), result_(result) {
-  corners_.reserve(mesh.vertices.size());
-  for (const Vec3& v : mesh.vertices) {
-    const Local p = result.local(v);
-    corners_.push_back({p.y, p.z});
+  corners_.reserve(result.triangles_.size());
+  for (const std::uint32_t triangle : result.triangles_) {
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Local p = result.local(mesh.vertices[mesh.triangles[triangle][i]]);
+      corners[i] = {p.y, p.z};
+    }
+    corners_.push_back(corners);
   }
 }
 
 // The slopes from the differences of the mesh's own coordinates, which short edges need.
 std::array<Edge, 3> ProjectedGrid::Builder::edges(std::uint32_t triangle) const {
-  const Triangle& t = mesh_.triangles[triangle];
-  const Corners at = corners(triangle);
+  const Triangle& t = mesh_.triangles[result_.triangles_[triangle]];
+  const Corners& at = corners_[triangle];
   std::array<Edge, 3> edges;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
@@ -214,11 +214,12 @@ void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, c
 
 template <class Visit>
 void ProjectedGrid::Builder::visit_cells(const Grid& grid, std::uint32_t triangle, const Visit& visit) const {
-  const Rectangle box = box_of(corners(triangle));
+  const Rectangle box = box_of(corners_[triangle]);
   const double margin_y = kMargin / grid.columns_per_unit, margin_z = kMargin / grid.rows_per_unit;
   const std::uint32_t first_row = grid.row(box.z.lower - margin_z), last_row = grid.row(box.z.upper + margin_z);
   const std::uint32_t first = grid.column(box.y.lower - margin_y), last = grid.column(box.y.upper + margin_y);
-  if (last - first <= 1 && last_row - first_row <= 1) {
+  constexpr std::uint64_t kFew = 6;  // not worth the rows
+  if (std::uint64_t{last - first + 1} * (last_row - first_row + 1) <= kFew) {
     for (std::uint32_t row = first_row; row <= last_row; ++row) {
       for (std::uint32_t column = first; column <= last; ++column) visit(row * grid.columns + column);
     }
@@ -239,7 +240,7 @@ ProjectedGrid::Grid ProjectedGrid::Builder::choose(const Rectangle& box, std::sp
   const double width = box.y.upper - box.y.lower, height = box.z.upper - box.z.lower;
   double widths = 0.0, heights = 0.0, areas = 0.0;
   for (const Entry& entry : entries) {
-    const Corners t = corners(entry.triangle);
+    const Corners& t = corners_[entry.triangle];
     const Rectangle its_box = box_of(t);
     const Interval y = intersection(its_box.y, box.y), z = intersection(its_box.z, box.z);
     const double w = std::max(y.upper - y.lower, 0.0), h = std::max(z.upper - z.lower, 0.0);
@@ -274,7 +275,7 @@ void ProjectedGrid::Builder::add(std::uint32_t grid_number, std::span<const Entr
   for (std::size_t i = 1; i <= cells; ++i) ends[i] += ends[i - 1];
   std::vector<Entry> list(places.size());
   std::vector<std::uint64_t> next(ends.begin(), ends.end() - 1);
-  for (const Place& place : places) list[next[place.cell]++] = entries[place.entry];  // still by upper_x
+  for (const Place& place : places) list[next[place.cell]++] = entries[place.entry];
   result_.grids_[grid_number].first_cell = result_.cells_.size();
   const std::uint64_t first = result_.cells_.size();
   result_.cells_.resize(first + cells);
@@ -304,25 +305,17 @@ void ProjectedGrid::Builder::finish(std::uint64_t cell, const Rectangle& box, st
   result_.cells_[cell].first_entry = result_.entries_.size();
   result_.cells_[cell].entries = static_cast<std::uint32_t>(entries.size());
   result_.entries_.insert(result_.entries_.end(), entries.begin(), entries.end());
+  std::sort(result_.entries_.end() - static_cast<std::ptrdiff_t>(entries.size()), result_.entries_.end(),
+            [](const Entry& a, const Entry& b) { return a.upper_x > b.upper_x; });
 }
 
-// By falling upper_x, rounded up to one of a few thousand places (a counting sort).
 std::vector<ProjectedGrid::Entry> ProjectedGrid::Builder::all_entries() const {
-  constexpr std::uint32_t kPlacesPerUnit = 1U << 12;
-  const auto place = [&](std::uint32_t triangle) {
-    const Triangle& t = mesh_.triangles[triangle];
+  std::vector<Entry> entries;
+  entries.reserve(corners_.size());
+  for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    const Triangle& t = mesh_.triangles[result_.triangles_[i]];
     const double upper = std::max({mesh_.vertices[t[0]].x, mesh_.vertices[t[1]].x, mesh_.vertices[t[2]].x});
-    return static_cast<std::uint32_t>((1.0 - std::min(result_.local({upper, 0, 0}).x, 1.0)) * kPlacesPerUnit);
-  };
-  const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-  std::vector<std::size_t> next(2 * kPlacesPerUnit + 2, 0);
-  for (std::uint32_t i = 0; i < count; ++i) ++next[place(i) + 1];
-  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
-  std::vector<Entry> entries(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t at = place(i);
-    constexpr double kRounding = 0x1p-50;  // far above that of 1 - x in place()
-    entries[next[at]++] = {rounded_up(1.0 - static_cast<double>(at) / kPlacesPerUnit + kRounding), i};
+    entries.push_back({rounded_up(result_.local({upper, 0, 0}).x), i});
   }
   return entries;
 }
@@ -356,20 +349,32 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   unit_ = unit_of(box);
   lower_ = local(box.lower);
   upper_ = local(box.upper);
-  filters_.resize(mesh.triangles.size());
+  triangles_ = along_curve(mesh);
+  filters_.resize(triangles_.size());
   constexpr std::size_t kTrianglesPerTask = 4096;
   parallel_for(filters_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& t = mesh.triangles[i];
+      const Triangle& t = mesh.triangles[triangles_[i]];
       filters_[i] = filter_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
     }
   });
   Builder(mesh, *this).build();
 }
 
+// A counting sort by the place of one corner.
+std::vector<std::uint32_t> ProjectedGrid::along_curve(const TriangleMesh& mesh) const {
+  std::vector<std::uint32_t> order(mesh.triangles.size());
+  std::vector<std::uint32_t> next(kPlaces + 1, 0);
+  const auto place_of = [&](const Triangle& t) { return place(mesh.vertices[t[0]]); };
+  for (const Triangle& t : mesh.triangles) ++next[place_of(t) + 1];
+  for (std::size_t i = 1; i <= kPlaces; ++i) next[i] += next[i - 1];
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[next[place_of(mesh.triangles[i])]++] = i;
+  return order;
+}
+
 // A Z-curve.
 std::size_t ProjectedGrid::place(const Vec3& q) const {
-  constexpr double kSide = 128;  // places along each axis
+  constexpr double kSide = 256;  // places along each axis
   const Local p = local(q);
   const auto quantized = [&](double x, double lower, double upper) {
     const double at = (x - lower) / (upper - lower) * kSide;

@@ -29,7 +29,7 @@ class ProjectedGrid {
 
   // Where a ray lies along a curve that fills the projection, in [0, kPlaces): rays of neighbouring places share
   // triangles.
-  static constexpr std::size_t kPlaces = std::size_t{1} << 14;
+  static constexpr std::size_t kPlaces = std::size_t{1} << 16;
   [[nodiscard]] std::size_t place(const Vec3& q) const;
 
  private:
@@ -49,8 +49,8 @@ class ProjectedGrid {
     unsigned positive, negative;
   };
   struct Entry {
-    float upper_x;  // of the triangle, rounded up: rays from farther along miss it
-    std::uint32_t triangle;
+    float upper_x;           // of the triangle, rounded up: rays from farther along miss it
+    std::uint32_t triangle;  // its place in triangles_
   };
   // Its entries by falling upper_x, or the grid within it.
   struct Cell {
@@ -75,6 +75,7 @@ class ProjectedGrid {
   [[nodiscard]] Local local(const Vec3& p) const {
     return {unit_(p.x - centre_.x), unit_(p.y - centre_.y), unit_(p.z - centre_.z)};
   }
+  [[nodiscard]] std::vector<std::uint32_t> along_curve(const TriangleMesh& mesh) const;
   [[nodiscard]] Filter filter_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
   [[nodiscard]] const Cell& cell_at(double y, double z) const;
 
@@ -84,7 +85,9 @@ class ProjectedGrid {
   std::vector<Grid> grids_;
   std::vector<Cell> cells_;
   std::vector<Entry> entries_;
-  std::vector<Filter> filters_;  // of each triangle
+  // The mesh's triangles along the curve, so that neighbours lie together in memory, and their filters.
+  std::vector<std::uint32_t> triangles_;
+  std::vector<Filter> filters_;
 };
 
 inline const ProjectedGrid::Cell& ProjectedGrid::cell_at(double y, double z) const {
@@ -119,7 +122,7 @@ int ProjectedGrid::crossings(const Vec3& q, const Doubtful& doubtful) const {
     const int left = (positive & kEdges) == kEdges, right = (negative & kEdges) == kEdges;
     const unsigned needed = kEdges | (left + right != 0 ? kAhead : 0);
     if (((positive | negative) & needed) != needed) {
-      doubtful(entry.triangle);
+      doubtful(triangles_[entry.triangle]);
     } else {
       sum += (positive & kAhead) != 0 ? left - right : 0;
     }

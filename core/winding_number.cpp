@@ -297,20 +297,22 @@ Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const Lattice
   return total.sum();
 }
 
-// The indices [begin, end) in an order in which neighbouring points share triangles (a counting sort by place).
-std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points, std::size_t begin,
-                                        std::size_t end) {
-  std::vector<std::size_t> order(end - begin);
-  std::iota(order.begin(), order.end(), begin);
+// The indices of the points in an order in which neighbours share triangles (a counting sort by place).
+std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   if (engine.engine() != RayEngine::kScan) return order;
-  std::vector<std::uint32_t> places(order.size());
+  std::vector<std::uint32_t> places(points.size());
+  constexpr std::size_t kPointsPerTask = 4096;
+  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      places[i] = static_cast<std::uint32_t>(engine.grid().place(engine.to_scale(points[i])));
+    }
+  });
   std::vector<std::size_t> next(ProjectedGrid::kPlaces + 1, 0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i] = static_cast<std::uint32_t>(engine.grid().place(engine.to_scale(points[begin + i])));
-    ++next[places[i] + 1];
-  }
+  for (const std::uint32_t place : places) ++next[place + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t i = 0; i < places.size(); ++i) order[next[places[i]]++] = begin + i;
+  for (std::size_t i = 0; i < places.size(); ++i) order[next[places[i]]++] = i;
   return order;
 }
 
@@ -425,11 +427,13 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
   const DefaultFloatingPoint guard;
+  const std::vector<std::size_t> order = coherent_order(implementation_->scaled, points);
   TallySum total;
   parallel_for(points.size(), 4 * kTile, [&](std::size_t begin, std::size_t end) {
     PointTile tile;
     Tally tally;
-    for (const std::size_t index : coherent_order(implementation_->scaled, points, begin, end)) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t index = order[i];
       const bool exact = implementation_->scaled.can_take(points[index]);
       if (!exact) tally += tile.evaluate(implementation_->scaled, values, diagnostics);
       const Engine& engine = implementation_->engine_for(exact);

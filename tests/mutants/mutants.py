@@ -62,7 +62,8 @@ MUTANTS = [
         ("core/projected_grid.cpp", "    if (intersection(slab, edge.z).empty()) continue;\n",
          "    if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
     Mutant("grid_cuts_too_early", "rays from behind a triangle alone miss it", [
-        ("core/projected_grid.cpp", "kPlacesPerUnit + kRounding)", "kPlacesPerUnit)")]),
+        ("core/projected_grid.cpp", "rounded_up(result_.local({upper, 0, 0}).x)",
+         "static_cast<float>(result_.local({upper, 0, 0}).x - 0x1p-30)")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [

@@ -74,7 +74,7 @@ TEST_F(Batch, PoisonIsContained) {
       (Statuses{
           {"a.obj", "ok"}, {"big.obj", "memory"}, {"far.obj", "memory"}, {"pipe.obj", "timeout"}, {"z.obj", "ok"}}));
   for (const char* const mesh : {"big.obj", "far.obj", "pipe.obj"}) EXPECT_EQ(rows().at(mesh).exit, 4) << mesh;
-  EXPECT_NE(result.err.find(pipe + ": not finished within 2 seconds"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(pipe + ": not finished within 5 seconds"), std::string::npos) << result.err;
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
 }
 

@@ -5,15 +5,14 @@
 #include "app/lattice_options.h"
 #include "app/points_options.h"
 #include "app/report_options.h"
+#include "app/slice_options.h"
 
 namespace raycone {
 
 const std::vector<CommandEntry>& commands() {
-  static const std::vector<CommandEntry> all{{lattice_spec(), parse_lattice},
-                                             {points_spec(), parse_points},
-                                             {info_spec(), parse_info},
-                                             {batch_spec(), parse_batch},
-                                             {report_spec(), parse_report}};
+  static const std::vector<CommandEntry> all{{lattice_spec(), parse_lattice}, {points_spec(), parse_points},
+                                             {slice_spec(), parse_slice},     {info_spec(), parse_info},
+                                             {batch_spec(), parse_batch},     {report_spec(), parse_report}};
   return all;
 }
 
@@ -31,11 +30,6 @@ const CommandSpec& program_spec() {
           "Each command has its own help: raycone lattice --help\n"
           "Exit status: 0 done, 1 usage, 2 input, 3 output, 4 limit, 5 some meshes of a batch, 6 internal error"};
   return spec;
-}
-
-const std::set<std::string>& later_commands() {
-  static const std::set<std::string> names{"slice"};
-  return names;
 }
 
 }  // namespace raycone

@@ -1,7 +1,6 @@
 // All commands: what each accepts and how its values become a Command.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -21,8 +20,5 @@ struct CommandEntry {
 
 // raycone itself: the options that need no command.
 [[nodiscard]] const CommandSpec& program_spec();
-
-// Commands that are promised but do not exist yet: recognised, listed nowhere.
-[[nodiscard]] const std::set<std::string>& later_commands();
 
 }  // namespace raycone

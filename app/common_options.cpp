@@ -70,15 +70,21 @@ OptionGroup output_group(const std::string& formats) {
            {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
 }
 
-OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
-  OutputOptions output;
+OutputFiles parse_output_files(const Values& values) {
+  OutputFiles output;
   output.path = values.given("--output") ? values.text("--output") : "-";
-  output.format = parse_format(values, output.path, formats);
   output.no_clobber = values.given("--no-clobber");
   if (values.given("--report")) output.report = values.text("--report");
   if (values.given("--depfile")) output.depfile = values.text("--depfile");
   if (output.depfile == output.path) throw UsageError("--depfile " + output.path + ": is the output too");
   if (output.report == output.path) throw UsageError("--report " + output.path + ": is the output too");
+  return output;
+}
+
+OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
+  OutputOptions output;
+  static_cast<OutputFiles&>(output) = parse_output_files(values);
+  output.format = parse_format(values, output.path, formats);
   return output;
 }
 

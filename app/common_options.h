@@ -18,6 +18,8 @@ namespace raycone {
 // `formats` stands for the value of --format in the help.
 [[nodiscard]] OptionGroup output_group(const std::string& formats);
 
+[[nodiscard]] OutputFiles parse_output_files(const Values& values);
+
 // The formats that a command writes.
 struct OutputFormats {
   std::vector<FieldFormat> written;

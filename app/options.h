@@ -13,6 +13,7 @@
 #include "app/lattice_choice.h"
 #include "app/progress.h"
 #include "app/sampled_points.h"
+#include "app/slice_choice.h"
 #include "core/weld.h"
 #include "io/field_writer.h"
 #include "io/read_mesh.h"
@@ -35,15 +36,18 @@ struct RunOptions {
   bool strict = false;
 };
 
-struct OutputOptions {
+struct OutputFiles {
   std::string path;  // "-": standard output
+  bool no_clobber = false;
+  std::optional<std::string> report;
+  std::optional<std::string> depfile;
+};
+
+struct OutputOptions : OutputFiles {
   FieldFormat format = FieldFormat::kCsv;
   bool double_precision = false;
   bool half_precision = false;
   std::optional<std::string> grid_name;  // of the only field's grid
-  bool no_clobber = false;
-  std::optional<std::string> report;
-  std::optional<std::string> depfile;
 };
 
 // A grid of an OpenVDB file; an empty name is its only or first one.
@@ -95,12 +99,22 @@ struct ReportCommand {
   std::string output;     // "-": standard output
 };
 
+struct SliceCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  OutputFiles output;
+  SliceRequest slice;
+  bool legend = true;
+  std::optional<std::string> values;  // file for the numbers
+};
+
 // --help and --version: their text is a result.
 struct PrintCommand {
   std::string text;
 };
 
-using Command = std::variant<LatticeCommand, PointsCommand, InfoCommand, BatchCommand, ReportCommand, PrintCommand>;
+using Command =
+    std::variant<LatticeCommand, PointsCommand, SliceCommand, InfoCommand, BatchCommand, ReportCommand, PrintCommand>;
 
 // `arguments` without the program's name. Throws UsageError.
 [[nodiscard]] Command parse_command_line(const std::vector<std::string>& arguments);

@@ -14,6 +14,7 @@
 #include "app/limits.h"
 #include "app/run_lattice.h"
 #include "app/run_points.h"
+#include "app/run_slice.h"
 #include "app/run_steps.h"
 #include "core/mesh_statistics.h"
 #include "core/weld.h"
@@ -42,6 +43,19 @@ ExitCode run(const PointsCommand& command) {
   refuse_to_replace_input(command.output, {command.mesh.path, command.points});
   const SideFiles side_files = open_side_files(command.output);
   publish(run_points(command, limits), command.run, side_files);
+  return ExitCode::kDone;
+}
+
+ExitCode run(const SliceCommand& command) {
+  const RunLimits limits(command.run, command.mesh.path);
+  refuse_to_replace_input(command.output, {command.mesh.path});
+  if (command.values) {
+    const std::vector<std::string> others{command.mesh.path, command.output.path, command.output.report.value_or("-"),
+                                          command.output.depfile.value_or("-")};
+    refuse_to_replace_input({.path = *command.values, .report = std::nullopt, .depfile = std::nullopt}, others);
+  }
+  const SideFiles side_files = open_side_files(command.output);
+  publish(run_slice(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 

@@ -30,7 +30,7 @@ RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
   if (options.memory_limit) cap_memory(memory_, threads_);
 }
 
-void refuse_to_replace_input(const OutputOptions& output, const std::vector<std::string>& inputs) {
+void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::string>& inputs) {
   std::vector<std::pair<std::string, std::string>> written{{output.path, "output"}};
   if (output.report) written.emplace_back(*output.report, "report");
   if (output.depfile) written.emplace_back(*output.depfile, "depfile");
@@ -48,7 +48,7 @@ void refuse_to_replace_input(const OutputOptions& output, const std::vector<std:
   }
 }
 
-SideFiles open_side_files(const OutputOptions& output) {
+SideFiles open_side_files(const OutputFiles& output) {
   SideFiles files;
   if (output.report) files.report = std::make_unique<OutputFile>(*output.report, output.no_clobber);
   if (output.depfile) files.depfile = std::make_unique<OutputFile>(*output.depfile, output.no_clobber);
@@ -62,7 +62,7 @@ MeshFile read(const MeshOptions& mesh, const RunLimits& limits) {
   return read_mesh(mesh.path, mesh.reading);
 }
 
-RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const RunLimits& limits) {
+RunReport report_on(const MeshOptions& mesh, const OutputFiles& output, const RunLimits& limits) {
   RunReport report;
   report.mesh = mesh.path;
   report.output = output.path;

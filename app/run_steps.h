@@ -32,20 +32,20 @@ class RunLimits {
 
 // Throws UsageError where what is written would replace one of `inputs` or another output: a slip of the keyboard must
 // not cost the user an input.
-void refuse_to_replace_input(const OutputOptions& output, const std::vector<std::string>& inputs);
+void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::string>& inputs);
 
 // What is written beside the results; null where not asked for.
 struct SideFiles {
   std::unique_ptr<OutputFile> report, depfile;
 };
 // Throws OutputError.
-[[nodiscard]] SideFiles open_side_files(const OutputOptions& output);
+[[nodiscard]] SideFiles open_side_files(const OutputFiles& output);
 
 // Throws InputError, LimitError where the file alone is too large for the memory.
 [[nodiscard]] MeshFile read(const MeshOptions& mesh, const RunLimits& limits);
 
 // A report that says what was asked for; what comes out of it is yet to be filled in.
-[[nodiscard]] RunReport report_on(const MeshOptions& mesh, const OutputOptions& output, const RunLimits& limits);
+[[nodiscard]] RunReport report_on(const MeshOptions& mesh, const OutputFiles& output, const RunLimits& limits);
 void describe(const MeshFile& file, RunReport& report);
 
 // What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.

@@ -17,6 +17,13 @@ std::vector<std::string> Values::texts(const std::string& name) const {
   return found == given_.end() ? std::vector<std::string>() : found->second;
 }
 
+Values Values::with(const std::string& name, const std::vector<std::string>& texts) const {
+  Values result = *this;
+  result.given_.erase(name);
+  if (!texts.empty()) result.given_[name] = texts;
+  return result;
+}
+
 double Values::positive(const std::string& name) const {
   const std::optional<double> number = number_from(text(name));
   if (!number || !(*number > 0.0)) invalid(name, text(name), "a positive number");

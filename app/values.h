@@ -21,6 +21,9 @@ class Values {
   [[nodiscard]] std::string text(const std::string& name) const;                // empty if not given
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;  // of operands that may be many
 
+  // The same, but `texts` given by `name`; not given if empty.
+  [[nodiscard]] Values with(const std::string& name, const std::vector<std::string>& texts) const;
+
   // Throw UsageError for any other value.
   [[nodiscard]] double positive(const std::string& name) const;
   [[nodiscard]] std::int64_t integer(const std::string& name, std::int64_t least, std::int64_t most) const;

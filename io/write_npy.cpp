@@ -11,6 +11,7 @@
 #include "io/interleaved.h"
 #include "io/npy_header.h"
 #include "io/spool_file.h"
+#include "io/write_npy.h"
 
 namespace raycone {
 namespace {
@@ -145,6 +146,14 @@ std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const
   }
   if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice);
   return std::make_unique<NpyLatticeWriter<float>>(output, lattice);
+}
+
+void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values) {
+  const std::string shape = '(' + std::to_string(rows) + ", " + std::to_string(columns) + ')';
+  const std::string header = npy_header(kDescriptor<double>, shape);
+  output.write(header.data(), header.size());
+  output.write(values.data(), values.size_bytes());
+  output.commit();
 }
 
 std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,

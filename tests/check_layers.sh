@@ -38,5 +38,6 @@ only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'
 only_in nlohmann-json '[<"]nlohmann' 'io/gltf_document\.cpp|app/json\.cpp'
 only_in nettle '[<"]nettle' 'io/(base64|read_file)\.cpp'
 only_in zlib '[<"]zlib' 'io/zip_writer\.cpp'
+only_in libpng '[<"]png\.h' 'io/write_png\.cpp'
 only_in CLI11 '[<"]CLI/' 'app/options\.cpp'
 exit "$status"

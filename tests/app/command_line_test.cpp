@@ -61,7 +61,7 @@ TEST_F(CommandLine, WithoutCommandIsUsageError) { expect_error(run_raycone({}), 
 
 TEST_F(CommandLine, UnknownCommandListsThoseThatExist) {
   expect_error(run_raycone({"voxelise"}), 1,
-               "unknown command voxelise, expected lattice, points, info, batch or report");
+               "unknown command voxelise, expected lattice, points, slice, info, batch or report");
 }
 
 TEST_F(CommandLine, UnknownOptionIsUsageErrorOfEachCommand) {
@@ -201,10 +201,6 @@ TEST_F(CommandLine, ExtensionsAreRecognisedInAnyCase) {
   EXPECT_EQ(first_lines(read_text(upper), 1), "i,j,k,x,y,z,w");
 }
 
-TEST_F(CommandLine, CommandsNotAvailableYetSaySo) {
-  expect_not_available(run_raycone({"slice", mesh_, "-o", "x.png", "--axis", "z", "--at", "50%"}), "slice");
-}
-
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
   expect_not_available(lattice({"--tolerance", "1e-3"}), "--tolerance 1e-3");
   EXPECT_EQ(lattice({"--tolerance", "0"}).status, 0);
@@ -218,7 +214,7 @@ TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {
     EXPECT_EQ(result.err, "");
     EXPECT_NE(result.out.find("Usage: raycone"), std::string::npos);
     EXPECT_NE(result.out.find("Examples:\n  raycone "), std::string::npos);
-    for (const char* const later : {"slice", "--tolerance"}) {
+    for (const char* const later : {"--tolerance"}) {
       EXPECT_EQ(result.out.find(later), std::string::npos) << later;
     }
   }

@@ -1,0 +1,24 @@
+// Contour lines of sampled values.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "app/picture/image.h"
+
+namespace raycone {
+
+// Squares between the centres of four neighbouring pixels, 1 where `curve` passes: (width - 1) x (height - 1), at least
+// 1 x 1.
+[[nodiscard]] Raster<std::uint8_t> squares_on(std::span<const PictureSegment> curve, std::int64_t width,
+                                              std::int64_t height);
+
+// The lines where the values (row by row from the top, at pixel centres) are an integer and a half. Values jump at the
+// surface: the squares `cut` by it have no contour. `line` is called with each piece and its level.
+void trace_contours(std::span<const double> values, std::int64_t width, std::int64_t height,
+                    const Raster<std::uint8_t>& cut,
+                    const std::function<void(const PictureSegment& piece, double level)>& line);
+
+}  // namespace raycone

@@ -1,0 +1,135 @@
+// `raycone slice` from mesh to picture and numbers. Black box: the real executable.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/app/meshes.h"
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
+
+namespace raycone::test {
+namespace {
+
+// What the header of a PNG says; nothing else is decoded here.
+struct PictureSize {
+  std::uint32_t width = 0, height = 0;
+};
+
+PictureSize size_of_png(const std::string& bytes) {
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  if (bytes.size() < 24) return {};
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+class Slice : public testing::Test {
+ protected:
+  Slice() { write_text(cube_, kCube); }
+
+  CommandResult slice(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"slice", cube_, "-o", picture_});
+    return run_raycone(more);
+  }
+
+  // The numbers of a slice of `rows` by `columns` pixels.
+  std::vector<double> values(std::size_t rows, std::size_t columns) const {
+    const std::string bytes = read_text(values_);
+    const std::string shape = "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")";
+    EXPECT_NE(bytes.find(shape), std::string::npos) << bytes.substr(0, 128);
+    EXPECT_NE(bytes.find("<f8"), std::string::npos);
+    std::vector<double> numbers(rows * columns);
+    if (bytes.size() < numbers.size() * sizeof(double)) return {};
+    std::memcpy(numbers.data(), bytes.data() + bytes.size() - numbers.size() * sizeof(double),
+                numbers.size() * sizeof(double));
+    return numbers;
+  }
+
+  TemporaryDirectory dir_;
+  std::string cube_ = dir_ / "cube.obj", picture_ = dir_ / "out.png", values_ = dir_ / "out.npy";
+};
+
+TEST_F(Slice, HasRowZeroAtTheTop) {
+  // The cube fills the lower left quarter as seen from above: x to the right, y upwards.
+  const CommandResult result = slice({"--bounds", "0,0,0,2,2,1", "--size", "8", "--values", values_});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const PictureSize size = size_of_png(read_text(picture_));
+  EXPECT_EQ(size.width, 8U);
+  EXPECT_EQ(size.height, 8U);
+  const std::vector<double> w = values(8, 8);
+  ASSERT_EQ(w.size(), 64U);
+  for (std::size_t row = 0; row < 8; ++row) {
+    for (std::size_t column = 0; column < 8; ++column) {
+      EXPECT_EQ(w[8 * row + column], row >= 4 && column < 4 ? 1.0 : 0.0) << row << ' ' << column;
+    }
+  }
+}
+
+TEST_F(Slice, LiesWhereItIsAskedFor) {
+  for (const auto& [at, inside] : {std::pair{"50%", 1.0}, {"0.25", 1.0}, {"-0.5", 0.0}, {"125%", 0.0}}) {
+    const CommandResult result = slice({"--axis", "y", "--at", at, "--size", "4", "--values", values_});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(values(4, 4), std::vector<double>(16, inside)) << at;
+  }
+}
+
+TEST_F(Slice, AlongAnObliquePlaneIsThatAlongTheAxisIfTheyAreTheSame) {
+  const std::vector<std::string> common{"--bounds", "0,0,0,2,1,1", "--size", "16", "--values", values_};
+  std::vector<std::string> axis = common, oblique = common;
+  oblique.insert(oblique.end(), {"--normal", "0,0,1", "--up", "0,1,0"});
+  ASSERT_EQ(slice(axis).status, 0);
+  const std::vector<double> expected = values(8, 16);
+  const CommandResult result = slice(oblique);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(values(8, 16), expected);
+}
+
+TEST_F(Slice, IsTheSameForAnyNumberOfThreads) {
+  const std::string teapot = RAYCONE_DATA "/meshes/teapot.obj";
+  const std::vector<std::string> words{"slice", teapot, "-o", "-", "--size", "90", "--normal", "1,2,3", "--quiet"};
+  std::vector<std::string> one = words, two = words;
+  one.insert(one.end(), {"--threads", "1"});
+  two.insert(two.end(), {"--threads", "2"});
+  const CommandResult first = run_raycone(one);
+  EXPECT_EQ(size_of_png(first.out).width, 90U);
+  EXPECT_TRUE(first.out == run_raycone(two).out);
+}
+
+TEST_F(Slice, RefusesWhatItCannotDo) {
+  for (const std::vector<std::string>& wrong :
+       std::vector<std::vector<std::string>>{{"--axis", "w"},
+                                             {"--at", "half"},
+                                             {"--normal", "0,0,0"},
+                                             {"--origin", "0,0,0"},
+                                             {"--normal", "1,0,0", "--axis", "x"},
+                                             {"--size", "0"},
+                                             {"--format", "vdb"},
+                                             {"--values", picture_}}) {
+    const CommandResult result = slice(wrong);
+    EXPECT_EQ(result.status, 1) << wrong.front() << ' ' << wrong.back();
+    EXPECT_NE(result.err.find(wrong.front()), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(picture_));
+  }
+  EXPECT_EQ(run_raycone({"slice", cube_}).status, 1);
+  EXPECT_EQ(run_raycone({"slice", cube_, "-o", dir_ / "out.jpg"}).status, 1);
+}
+
+TEST_F(Slice, LeavesNothingBehindWhereItFails) {
+  const CommandResult large = slice({"--size", "1000000", "--memory-limit", "1G", "--values", values_});
+  EXPECT_EQ(large.status, 4) << large.err;
+  write_text(cube_, "v 0 0 0\nf 1 2 3\n");
+  const CommandResult broken = slice({"--values", values_});
+  EXPECT_EQ(broken.status, 2);
+  EXPECT_NE(broken.err.find(cube_ + ":2"), std::string::npos) << broken.err;
+  EXPECT_FALSE(std::filesystem::exists(picture_) || std::filesystem::exists(values_));
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -49,6 +49,10 @@ an error of the run. Points exactly on the surface, where the winding number jum
 largest difference of 1.46e-7 and a mean of the largest of 2.3e-11. Closed meshes (no exterior edges) give integers exactly; what is shown for them is
 the rounding of the oracle.
 
+Other checks, each one command: `build/dev/tests/raycone_bounds` (two million error bounds against 113-bit sums), `build/dev/tests/raycone_bounds --slice MESH`
+(the paper's Fig. 4: a mesh with scrambled vertices, a slice of 2000² samples by three ways), `build/dev/tests/raycone_stress` (generated meshes, every
+value by its definition), `sh tests/mutants/run.sh` (each exactness rule broken in turn).
+
 END
   status=0
   xargs -d '\n' "$tool" <"$list" || status=$?

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -224,9 +225,12 @@ TEST_F(CommandLine, VersionIsAResultAndNamesTheLibraries) {
   const CommandResult result = run_raycone({"--version"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  EXPECT_EQ(result.out.rfind("raycone ", 0), 0U);
-  for (const char* const library : {"OpenVDB 1", "Embree ", "CGAL ", "TBB "}) {
-    EXPECT_NE(result.out.find(library), std::string::npos) << library;
+  EXPECT_EQ(result.out.rfind("raycone " RAYCONE_VERSION " (", 0), 0U) << result.out;
+  EXPECT_NE(result.out.find("commit"), std::string::npos) << result.out;
+  for (const char* const library :
+       {"CGAL", "Embree", "Highway", "OpenVDB", "TBB", "CLI11", "nlohmann-json", "nettle", "libpng", "zlib"}) {
+    const std::regex with_version(std::string(library) + " [0-9]+\\.[0-9]");
+    EXPECT_TRUE(std::regex_search(result.out, with_version)) << library << " in " << result.out;
   }
 }
 

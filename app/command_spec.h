@@ -11,7 +11,7 @@ namespace raycone {
 
 struct OptionSpec {
   std::string names;        // "-o,--output", the long name last: Values knows the option by it
-  std::string value;        // what stands for its value in the help; empty: a flag
+  std::string value;        // what stands for its value in the help, see app/manual/value_candidates.h; empty: a flag
   std::string description;  // one line
 };
 
@@ -29,13 +29,18 @@ struct OperandSpec {
   OperandCount count = OperandCount::kOne;
 };
 
+struct NoteSpec {
+  std::string heading;
+  std::string text;  // no full stop
+};
+
 struct CommandSpec {
   std::string name;
   std::string description;  // one line
   std::vector<OperandSpec> operands;
   std::vector<OptionGroup> groups;
   std::vector<std::string> examples;  // a line each
-  std::string notes = {};             // below the examples
+  std::vector<NoteSpec> notes = {};   // below the examples
   OptionNames later = {};             // promised options that do not exist yet: recognised, listed nowhere
 };
 

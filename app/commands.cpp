@@ -26,9 +26,10 @@ const CommandSpec& program_spec() {
                    {"--version", "", "Print the versions of raycone and its libraries"}}}},
       .examples = {"raycone info bunny.obj", "raycone lattice bunny.obj -o bunny.vdb",
                    "raycone points bunny.obj points.csv > values.csv"},
-      .notes =
-          "Each command has its own help: raycone lattice --help\n"
-          "Exit status: 0 done, 1 usage, 2 input, 3 output, 4 limit, 5 some meshes of a batch, 6 internal error"};
+      .notes = {
+          {"Help of a command", "raycone lattice --help"},
+          {"Environment", "RAYCONE_THREADS: the number of threads where --threads is not given"},
+          {"Exit status", "0 done, 1 usage, 2 input, 3 output, 4 limit, 5 some meshes of a batch, 6 internal error"}}};
   return spec;
 }
 

@@ -40,7 +40,7 @@ OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB fi
 
 OptionGroup mesh_group() {
   return {"Mesh",
-          {{"--mesh-format", "FORMAT", "obj, ply, stl, off, gltf or glb, for standard input"},
+          {{"--mesh-format", "obj|ply|stl|off|gltf|glb", "Format of the mesh on standard input"},
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
            {"--scale", "S", "Multiply all coordinates by S"},
            {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"}}};

@@ -47,7 +47,8 @@ SimdLevel parse_simd(const std::string& text) {
 
 OptionGroup field_group() {
   return {"Field",
-          {{"--field", "F[,F...]", "Of winding (default), inside, density (w clamped to 0..1), sdf (signed distance)"},
+          {{"--field", "winding|inside|density|sdf[,...]",
+            "Winding number (default), inside or not, w clamped to 0..1, signed distance"},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--band", "B", "Voxels on either side of the surface where sdf is not cut off (default: 3)"},
            {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value"},

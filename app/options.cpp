@@ -25,7 +25,8 @@ namespace {
 void add_operand(CLI::App& app, const OperandSpec& spec) {
   CLI::Option* const operand = app.add_option(spec.name)->description(spec.description)->option_text(" ");
   operand->required(spec.count != OperandCount::kOptional);
-  if (spec.count == OperandCount::kMany) operand->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
+  if (spec.count == OperandCount::kMany)
+    operand->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
 }
 
 void add_option(CLI::App& app, const std::string& group, const OptionSpec& spec) {
@@ -39,7 +40,9 @@ void add_option(CLI::App& app, const std::string& group, const OptionSpec& spec)
 std::string footer(const CommandSpec& spec) {
   std::string text = "Examples:";
   for (const std::string& example : spec.examples) text += "\n  " + example;
-  return text + (spec.notes.empty() ? "" : "\n\n" + spec.notes);
+  if (!spec.notes.empty()) text += '\n';
+  for (const NoteSpec& note : spec.notes) text += '\n' + note.heading + ": " + note.text;
+  return text;
 }
 
 void declare(CLI::App& app, const CommandSpec& spec) {

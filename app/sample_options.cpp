@@ -44,7 +44,8 @@ WorldPadding parse_world_padding(const Values& values) {
 
 OptionGroup sample_group() {
   return {"Sampling",
-          {{"--sample", "uniform=N,near=N:SIGMA", "Draw points in the box, and off the surface by SIGMA box diagonals"},
+          {{"--sample", "uniform=N|near=N:SIGMA[,...]",
+            "Draw points in the box, and off the surface by SIGMA box diagonals"},
            {"--seed", "S", "Draw others (default: 1)"},
            {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to draw from (default: that of the mesh)"},
            {"--padding", "P", "Widen the box by P on every side"}}};

@@ -12,8 +12,8 @@ namespace raycone {
 [[nodiscard]] CommandSpec batch_spec();
 [[nodiscard]] Command parse_batch(const Values& values);
 
-// What a batch does to one mesh, whose files and limits are yet to be filled in. `format` and `options`: as in
-// BatchCommand. Throws UsageError.
-[[nodiscard]] LatticeCommand lattice_command_of(const std::string& format, const std::vector<std::string>& options);
+// What a batch does to one mesh, whose files and limits are yet to be filled in: a lattice, or with --sample among the
+// options the points that are drawn. `format` and `options`: as in BatchCommand. Throws UsageError.
+[[nodiscard]] MeshCommand mesh_command_of(const std::string& format, const std::vector<std::string>& options);
 
 }  // namespace raycone

@@ -74,6 +74,9 @@ struct PointsCommand {
   std::optional<SampleRequest> sample;
 };
 
+// What a batch does to a mesh.
+using MeshCommand = std::variant<LatticeCommand, PointsCommand>;
+
 struct InfoCommand {
   MeshOptions mesh;
   RunOptions run;
@@ -83,10 +86,10 @@ struct InfoCommand {
 // What is done to each mesh of a batch, how, and where results go.
 struct BatchCommand {
   MeshSearch search;
-  std::string directory;                     // of outputs and results
-  std::optional<Shard> shard;                // else the whole
-  std::string format;                        // of outputs; "none": none
-  std::vector<std::string> lattice_options;  // "--name=value", by name: for lattice_command_of()
+  std::string directory;                  // of outputs and results
+  std::optional<Shard> shard;             // else the whole
+  std::string format;                     // of outputs; "none": none
+  std::vector<std::string> mesh_options;  // "--name=value", by name: for mesh_command_of()
   RunOptions run;
   std::optional<int> jobs;  // meshes at a time; else as many as threads
   bool retry_failed = false;

@@ -9,12 +9,19 @@ namespace raycone {
 
 namespace {
 
-class NoWriter : public LatticeWriter {
+class NoLatticeWriter : public LatticeWriter {
  public:
   [[nodiscard]] int slab_axis() const override { return 2; }
   [[nodiscard]] std::int64_t slab_alignment() const override { return 1; }
   void write(const LatticeBlock& /*block*/, std::span<const FieldValues> /*fields*/) override {}
   void finish(const FieldTotals& /*totals*/) override {}
+};
+
+class NoPointWriter : public PointWriter {
+ public:
+  void write(std::span<const Vec3> /*points*/, std::span<const FieldValues> /*fields*/) override {}
+  void flush() override {}
+  void finish() override {}
 };
 
 }  // namespace
@@ -42,7 +49,7 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
     case FieldFormat::kNpy:
       return make_npy_lattice_writer(output, lattice, description);
     case FieldFormat::kNone:
-      return std::make_unique<NoWriter>();
+      return std::make_unique<NoLatticeWriter>();
     case FieldFormat::kVti:
       return make_vti_lattice_writer(output, lattice, description);
     case FieldFormat::kNpz:
@@ -67,9 +74,10 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
       return make_raw_point_writer(output, RawPrecision::kDouble);
     case FieldFormat::kRawFloat:
       return make_raw_point_writer(output, RawPrecision::kFloat);
+    case FieldFormat::kNone:
+      return std::make_unique<NoPointWriter>();
     case FieldFormat::kVdb:
     case FieldFormat::kVti:
-    case FieldFormat::kNone:
       break;  // lattices only; options are checked before anything is opened
   }
   throw std::logic_error("no point writer for this format");

@@ -53,11 +53,13 @@ std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
 std::string shaping_options(const BatchCommand& command) {
   const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
   std::string text = "--format=" + command.format;
-  for (const std::string& option : command.lattice_options) {
+  for (const std::string& option : command.mesh_options) {
     if (!without_effect.contains(option.substr(0, option.find('=')))) text += '\n' + option;
   }
-  const LatticeCommand lattice = lattice_command_of(command.format, command.lattice_options);
-  if (const auto* const grid = std::get_if<GridReference>(&lattice.lattice)) text += '\n' + sha256_of_file(grid->path);
+  const MeshCommand of_mesh = mesh_command_of(command.format, command.mesh_options);
+  const auto* const lattice = std::get_if<LatticeCommand>(&of_mesh);
+  const auto* const grid = lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
+  if (grid) text += '\n' + sha256_of_file(grid->path);
   return text;
 }
 
@@ -65,8 +67,7 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
   constexpr double kDefaultTimeout = 3600.0;  // seconds
   SupervisorOptions options;
   options.worker_words = {"raycone", kWorkerCommand, command.format};
-  options.worker_words.insert(options.worker_words.end(), command.lattice_options.begin(),
-                              command.lattice_options.end());
+  options.worker_words.insert(options.worker_words.end(), command.mesh_options.begin(), command.mesh_options.end());
   options.threads = command.run.threads ? *command.run.threads : default_threads();
   options.jobs = std::min(command.jobs.value_or(options.threads), options.threads);
   options.memory_limit = command.run.memory_limit ? *command.run.memory_limit

@@ -1,4 +1,4 @@
-// `raycone batch`: lattices of many meshes.
+// `raycone batch`: lattices or samples of many meshes.
 #pragma once
 
 #include "app/exit_code.h"

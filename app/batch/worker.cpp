@@ -12,6 +12,7 @@
 #include <new>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "app/batch/job.h"
 #include "app/batch/thumbnail.h"
@@ -20,6 +21,7 @@
 #include "app/options.h"
 #include "app/report.h"
 #include "app/run_lattice.h"
+#include "app/run_points.h"
 #include "app/run_steps.h"
 #include "io/base64.h"
 
@@ -107,13 +109,14 @@ std::string joined(const std::vector<std::string>& warnings) {
   return text;
 }
 
-JobResult result_of(const RunReport& report, const Thumbnail& thumbnail) {
+// `thumbnail`: BMP; empty where there is none.
+JobResult result_of(const RunReport& report, const std::string& thumbnail) {
   JobResult result;
   result.row.figures = figures_of(report);
   result.row.sha256 = report.sha256;
   result.row.message = joined(report.warnings);
   result.warnings = report.warnings;
-  result.thumbnail = to_base64(thumbnail.bmp());
+  result.thumbnail = to_base64(thumbnail);
   for (const std::string& file : report.files_read) {
     if (file != report.mesh) result.companions.push_back({file, stamp_of(file)});
   }
@@ -145,7 +148,8 @@ JobResult result_of(const Failure& failure) {
 }
 
 // `command` with the files and limits of `job`.
-LatticeCommand command_for(const Job& job, LatticeCommand command) {
+template <typename OneCommand>
+OneCommand command_for(const Job& job, OneCommand command) {
   command.mesh.path = job.mesh;
   command.output.path = job.output;
   command.run.threads = job.threads;
@@ -153,18 +157,27 @@ LatticeCommand command_for(const Job& job, LatticeCommand command) {
   return command;
 }
 
-JobResult perform(const LatticeCommand& command) {
+JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
+  Thumbnail thumbnail;
+  const RunReport report = run_lattice(
+      command, limits, [&thumbnail](const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
+        thumbnail.add(lattice, block, values);
+      });
+  return result_of(report, thumbnail.bmp());
+}
+
+// Points make no picture.
+JobResult evaluate(const PointsCommand& command, const RunLimits& limits) {
+  return result_of(run_points(command, limits), "");
+}
+
+template <typename OneCommand>
+JobResult perform(const OneCommand& command) {
   reset_peak_memory();
   try {
     const RunLimits limits(command.run, command.mesh.path);
     refuse_to_replace_input(command.output, {command.mesh.path});
-    Thumbnail thumbnail;
-    const RunReport report =
-        run_lattice(command, limits,
-                    [&thumbnail](const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
-                      thumbnail.add(lattice, block, values);
-                    });
-    return result_of(report, thumbnail);
+    return evaluate(command, limits);
   } catch (const std::bad_alloc&) {
     return result_of(Failure{ExitCode::kLimit, out_of_memory(command.mesh.path, command.run)});
   } catch (...) {
@@ -178,9 +191,10 @@ ExitCode run_worker(const std::vector<std::string>& words) {
   leave_signals_to_supervisor();
   std::set_terminate(end_without_memory);
   Connection supervisor(take_socket());
-  const LatticeCommand command = lattice_command_of(words.at(0), {words.begin() + 1, words.end()});
+  const MeshCommand command = mesh_command_of(words.at(0), {words.begin() + 1, words.end()});
   while (const std::optional<Message> message = supervisor.receive()) {
-    const JobResult result = perform(command_for(job_from(*message), command));
+    const Job job = job_from(*message);
+    const JobResult result = std::visit([&job](const auto& one) { return perform(command_for(job, one)); }, command);
     if (!supervisor.send(to_message(result))) break;
     return_unused_memory(peak_memory());
   }

@@ -50,7 +50,7 @@ double cpu_seconds(int who) {
 // CPU time depends on what else a machine does, but 1.5 has room: 0.9 to 1.0 was measured.
 TEST_F(BatchCost, IsLessThanHalfAgainThatOfOneProcess) {
   constexpr int kMeshes = 300;
-  LatticeCommand command = lattice_command_of("vdb", {"--resolution=32"});
+  auto command = std::get<LatticeCommand>(mesh_command_of("vdb", {"--resolution=32"}));
   command.run.threads = 1;
   std::vector<std::string> paths;
   for (int i = 0; i < kMeshes; ++i) paths.push_back(put(std::to_string(i) + ".obj", torus_with_holes(16 + i % 16)));

@@ -26,204 +26,340 @@ using Doubles = hn::CappedTag<double, 8>;
 using Lanes = hn::Vec<Doubles>;
 constexpr Doubles d;
 
-// |P|^2 outside these bounds may have lost bits to underflow, or overflow in products.
-constexpr double kSmallestSquare = 0x1p-800;
+constexpr std::size_t kEdgesPerBlock = 8;  // multiplied before anybody looks whether all went well
+// An edge is taken with care where |P|^2 of an end is beyond these bounds. Within them s_a s_b is at least 2^-100, so a
+// factor that is not near its edge is above 2^-108, and the product of a block cannot underflow.
+constexpr double kSmallestSquare = 0x1p-50;
 constexpr double kLargestSquare = 0x1p800;
-// Factors within these bounds can be multiplied kFactorsPerScaling times onto a number near 1.
+// Factors within these bounds can be multiplied kEdgesPerBlock times onto a number near 1.
 constexpr double kSmallestFactor = 0x1p-120;
 constexpr double kLargestFactor = 0x1p120;
-constexpr int kFactorsPerScaling = 8;
+constexpr double kLargestProduct = 0x1p1000;
 
-// The projections P = y + i z of a vertex, one per sample, or one for all where the samples share a ray.
-struct OfEachSample {
-  static constexpr bool kShared = false;
-  alignas(64) Tile y_, z_;
+// The products of some samples while they are in registers. Where Im Z changes its sign bit, the argument has passed 0
+// or +-pi; `passages` counts +1 for factors with Im >= 0 and -1 for the others. Together with the sign of Im Z that
+// gives the turns: see set_turns().
+struct Product {
+  Lanes re, im, passages;
+};
 
-  void look(const Vec3& v, const SampleTile& samples) {
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-      hn::Store(hn::Sub(hn::Set(d, v.y), hn::Load(d, &samples.y[i])), d, &y_[i]);
-      hn::Store(hn::Sub(hn::Set(d, v.z), hn::Load(d, &samples.z[i])), d, &z_[i]);
+// |P|^2, NaN where it is too small or large.
+HWY_INLINE Lanes square_of(Lanes y, Lanes z) {
+  const Lanes square = hn::Add(hn::Mul(y, y), hn::Mul(z, z));
+  const auto ordinary =
+      hn::And(hn::Gt(square, hn::Set(d, kSmallestSquare)), hn::Lt(square, hn::Set(d, kLargestSquare)));
+  return hn::IfThenElse(ordinary, square, hn::NaN(d));
+}
+
+// What the projections along the rays say about an edge: P_a . P_b, and D times the orientation, NaN where the sign of
+// D is in doubt; and that sign as +-1, the direction in which the factor turns.
+struct ProjectedEdge {
+  Lanes re, im, direction;
+};
+
+// The projection of a vertex.
+struct Projected {
+  Lanes y, z;
+  Lanes square;  // square_of(y, z)
+};
+
+// The edge determinant as in predicates.h: from the nearer end, and trusted beyond its error. (dy, dz) is the edge.
+HWY_INLINE ProjectedEdge project(const Projected& a, const Projected& b, Lanes dy, Lanes dz, Lanes orientation) {
+  const auto a_is_nearer = hn::Le(a.square, b.square);
+  const Lanes left = hn::Mul(hn::IfThenElse(a_is_nearer, a.y, b.y), dz);
+  const Lanes right = hn::Mul(hn::IfThenElse(a_is_nearer, a.z, b.z), dy);
+  const Lanes determinant = hn::Sub(left, right);
+  const Lanes doubt =
+      hn::Add(hn::Mul(hn::Set(d, kSideFilter), hn::Add(hn::Abs(left), hn::Abs(right))), hn::Set(d, kSideUnderflow));
+  const auto sure = hn::Gt(hn::Abs(determinant), doubt);
+  const Lanes im = hn::Mul(determinant, orientation);
+  return {hn::Add(hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)), hn::IfThenElse(sure, im, hn::NaN(d)),
+          hn::CopySignToAbs(hn::Set(d, 1.0), im)};
+}
+
+// Steps that are taken together, sample by sample: edge n leads from vertex n to vertex n + 1. What is kept of them for
+// a few samples fits the first-level cache.
+constexpr std::size_t kEdgesPerChunk = 64;
+using Column = std::array<double, kEdgesPerChunk + 8>;  // room for one vertex more, and for lanes beyond the last one
+
+struct Chunk {
+  Column x, y, z;
+  Column dy, dz;       // of edges
+  Column orientation;  // of edges: +1, -1 if reversed, 0 where there is none
+  std::size_t edges;
+
+  Chunk(const Vec3& from, std::span<const ChainStep> steps)
+      : x{}, y{}, z{}, dy{}, dz{}, orientation{}, edges(steps.size()) {
+    set_vertex(0, from);
+    for (std::size_t n = 0; n < edges; ++n) {
+      set_vertex(n + 1, steps[n].to);
+      dy[n] = y[n + 1] - y[n];
+      dz[n] = z[n + 1] - z[n];
+      if (steps[n].joined) orientation[n] = steps[n].reversed ? -1.0 : 1.0;
     }
   }
-  [[nodiscard]] Lanes y(std::size_t i) const { return hn::Load(d, &y_[i]); }
-  [[nodiscard]] Lanes z(std::size_t i) const { return hn::Load(d, &z_[i]); }
+  void set_vertex(std::size_t n, const Vec3& v) {
+    x[n] = v.x;
+    y[n] = v.y;
+    z[n] = v.z;
+  }
+  [[nodiscard]] Vec3 vertex(std::size_t n) const { return {x[n], y[n], z[n]}; }
 };
 
-struct OfOneRay {
-  static constexpr bool kShared = true;
-  double y_ = 0.0, z_ = 0.0;
+// One value per vertex of a chunk and lane.
+using LaneColumn = std::array<double, (kEdgesPerChunk + 1) * 8>;
+HWY_INLINE void store(Lanes value, LaneColumn& column, std::size_t n) {
+  hn::Store(value, d, &column[n * hn::Lanes(d)]);
+}
+HWY_INLINE Lanes load(const LaneColumn& column, std::size_t n) { return hn::Load(d, &column[n * hn::Lanes(d)]); }
 
-  void look(const Vec3& v, const SampleTile& samples) {
-    y_ = v.y - samples.y[0];
-    z_ = v.z - samples.z[0];
+// The projections of a chunk along the one ray that all samples share: the lanes can be vertices and edges.
+class OneRay {
+ public:
+  OneRay(const Chunk& chunk, const SampleTile& samples) : y_{}, z_{}, square_{} {
+    for (std::size_t n = 0; n <= chunk.edges; n += hn::Lanes(d)) {
+      const Lanes y = hn::Sub(hn::LoadU(d, &chunk.y[n]), hn::Set(d, samples.y[0]));
+      const Lanes z = hn::Sub(hn::LoadU(d, &chunk.z[n]), hn::Set(d, samples.z[0]));
+      hn::StoreU(y, d, &y_[n]);
+      hn::StoreU(z, d, &z_[n]);
+      hn::StoreU(square_of(y, z), d, &square_[n]);
+    }
+    for (std::size_t n = 0; n < chunk.edges; n += hn::Lanes(d)) {
+      const ProjectedEdge edge = project(projected(n), projected(n + 1), hn::LoadU(d, &chunk.dy[n]),
+                                         hn::LoadU(d, &chunk.dz[n]), hn::LoadU(d, &chunk.orientation[n]));
+      hn::StoreU(edge.re, d, &re_[n]);
+      hn::StoreU(edge.im, d, &im_[n]);
+      hn::StoreU(edge.direction, d, &direction_[n]);
+    }
   }
-  [[nodiscard]] Lanes y(std::size_t) const { return hn::Set(d, y_); }
-  [[nodiscard]] Lanes z(std::size_t) const { return hn::Set(d, z_); }
+
+  // What a group of samples has seen of the vertices, beyond what all see.
+  struct Seen {};
+  // |P|^2 of vertex n for the samples from i on.
+  [[nodiscard]] Lanes look(std::size_t n, std::size_t, Seen&) const { return hn::Set(d, square_[n]); }
+  // Edge n for the samples that have seen its ends.
+  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Seen&) const {
+    return {hn::Set(d, re_[n]), hn::Set(d, im_[n]), hn::Set(d, direction_[n])};
+  }
+
+ private:
+  [[nodiscard]] Projected projected(std::size_t n) const {
+    return {hn::LoadU(d, &y_[n]), hn::LoadU(d, &z_[n]), hn::LoadU(d, &square_[n])};
+  }
+
+  Column y_, z_, square_;
+  Column re_, im_, direction_;
 };
 
-// Calls body(i, projected(i)) for each group of lanes, from sample i on; where projections are shared, projected() once
-// for all.
-template <class Projection, class Projected, class Body>
-HWY_INLINE void for_lanes(const SampleTile& samples, const Projected& projected, const Body& body) {
-  if constexpr (Projection::kShared) {
-    const auto of_all = projected(0);
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) body(i, of_all);
-  } else {
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) body(i, projected(i));
+// The same for samples with a ray each.
+class RayOfEach {
+ public:
+  RayOfEach(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
+
+  struct Seen {
+    alignas(64) LaneColumn y, z, square;
+    [[nodiscard]] Projected vertex(std::size_t n) const { return {load(y, n), load(z, n), load(square, n)}; }
+  };
+  [[nodiscard]] Lanes look(std::size_t n, std::size_t i, Seen& seen) const {
+    const Lanes y = hn::Sub(hn::Set(d, chunk_.y[n]), hn::Load(d, &samples_.y[i]));
+    const Lanes z = hn::Sub(hn::Set(d, chunk_.z[n]), hn::Load(d, &samples_.z[i]));
+    const Lanes square = square_of(y, z);
+    store(y, seen.y, n);
+    store(z, seen.z, n);
+    store(square, seen.square, n);
+    return square;
   }
-}
+  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Seen& seen) const {
+    return project(seen.vertex(n), seen.vertex(n + 1), hn::Set(d, chunk_.dy[n]), hn::Set(d, chunk_.dz[n]),
+                   hn::Set(d, chunk_.orientation[n]));
+  }
 
-// A vertex seen from the samples: P, and s = |p| - p_x, both times t > 0, which does not change the argument of z. For
-// p_x > 0, where s = |P|^2 / (|p| + p_x), t is the denominator, which saves the division. s is NaN where |P|^2 is out
-// of bounds.
-template <class Projection>
-struct Corner {
-  Vec3 vertex;
-  Projection p;
-  alignas(64) Tile s;
-  alignas(64) Tile t;
+ private:
+  const Chunk& chunk_;
+  const SampleTile& samples_;
+};
 
-  void look(const Vec3& v, const SampleTile& samples) {
-    vertex = v;
-    p.look(v, samples);
-    const auto squared = [&](std::size_t i) { return hn::Add(hn::Mul(p.y(i), p.y(i)), hn::Mul(p.z(i), p.z(i))); };
-    for_lanes<Projection>(samples, squared, [&](std::size_t i, Lanes square) {
-      const Lanes px = hn::Sub(hn::Set(d, v.x), hn::Load(d, &samples.x[i]));
-      const Lanes norm = hn::Sqrt(hn::Add(hn::Mul(px, px), square));
-      const Lanes sum = hn::Add(norm, hn::Abs(px));
-      const auto ahead = hn::Gt(px, hn::Zero(d));
-      const auto ordinary =
-          hn::And(hn::Gt(square, hn::Set(d, kSmallestSquare)), hn::Lt(square, hn::Set(d, kLargestSquare)));
-      hn::Store(hn::IfThenElse(ordinary, hn::IfThenElse(ahead, square, sum), hn::NaN(d)), d, &s[i]);
-      hn::Store(hn::IfThenElse(ahead, sum, hn::Set(d, 1.0)), d, &t[i]);
-    });
+// The vertices of a chunk seen from a group of samples: s = |p| - p_x as fractions s / t, t > 0. For p_x > 0, where
+// s = |P|^2 / (|p| + p_x), that saves the division. NaN where |P|^2 is.
+template <class Rays>
+struct Corners {
+  alignas(64) LaneColumn s, t;
+  typename Rays::Seen seen;
+
+  // Vertex n from the samples from i on.
+  void look(const Chunk& chunk, const Rays& rays, const SampleTile& samples, std::size_t n, std::size_t i) {
+    const Lanes square = rays.look(n, i, seen);
+    const Lanes px = hn::Sub(hn::Set(d, chunk.x[n]), hn::Load(d, &samples.x[i]));
+    const Lanes sum = hn::Add(hn::Sqrt(hn::Add(hn::Mul(px, px), square)), hn::Abs(px));
+    store(hn::IfNegativeThenElse(px, sum, square), s, n);
+    store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);
   }
 };
 
-// Where a sign bit is set in `bits`, `value`; else 0.
-HWY_INLINE Lanes if_sign_bit(Lanes bits, Lanes value) {
-  const hn::RebindToSigned<Doubles> integers;
-  return hn::And(hn::BitCast(d, hn::BroadcastSignBit(hn::BitCast(integers, bits))), value);
+// The factor z_ab t_a t_b of an edge, whose argument is that of z_ab.
+struct Factor {
+  Lanes re, im;
+  Lanes direction;  // the sign of im as +-1
+  Lanes product_of_s;
+};
+
+template <class Rays>
+HWY_INLINE Factor factor_of(const Rays& rays, const Corners<Rays>& corners, std::size_t n) {
+  const ProjectedEdge edge = rays.edge(n, corners.seen);
+  const Lanes product_of_s = hn::Mul(load(corners.s, n), load(corners.s, n + 1));
+  const Lanes product_of_t = hn::Mul(load(corners.t, n), load(corners.t, n + 1));
+  return {hn::Add(product_of_s, hn::Mul(product_of_t, edge.re)), hn::Mul(product_of_t, edge.im), edge.direction,
+          product_of_s};
 }
 
-// Multiplies (re, im) onto Z; if both Im had one sign bit and the product's has the other, the argument has passed
-// +-pi: rounding can neither create nor lose a turn (docs/method.md).
-HWY_INLINE void multiply(ProductTile& z, std::size_t i, Lanes re, Lanes im) {
-  const Lanes z_re = hn::Load(d, &z.re[i]), z_im = hn::Load(d, &z.im[i]);
-  const Lanes product_re = hn::Sub(hn::Mul(z_re, re), hn::Mul(z_im, im));
-  const Lanes product_im = hn::Add(hn::Mul(z_re, im), hn::Mul(z_im, re));
-  const Lanes passed = hn::AndNot(hn::Xor(z_im, im), hn::Xor(z_im, product_im));
-  const Lanes turn = if_sign_bit(passed, hn::CopySign(hn::Set(d, 1.0), z_im));
-  hn::Store(hn::Add(hn::Load(d, &z.turns[i]), turn), d, &z.turns[i]);
-  hn::Store(product_re, d, &z.re[i]);
-  hn::Store(product_im, d, &z.im[i]);
+HWY_INLINE Lanes magnitude(const Factor& f) { return hn::Add(hn::Abs(f.re), hn::Abs(f.im)); }
+
+// Not near the edge; false where anything is NaN.
+HWY_INLINE hn::Mask<Doubles> is_not_near(const Factor& f) {
+  return hn::Gt(magnitude(f), hn::Mul(hn::Set(d, kNearEdge), f.product_of_s));
 }
 
-// The same for one sample.
+HWY_INLINE Product times(const Product& z, const Factor& f) {
+  const Lanes re = hn::Sub(hn::Mul(z.re, f.re), hn::Mul(z.im, f.im));
+  const Lanes im = hn::Add(hn::Mul(z.re, f.im), hn::Mul(z.im, f.re));
+  return {re, im, hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), f.direction, hn::Zero(d)))};
+}
+
+// Without the power of two, which is exact.
+HWY_INLINE Product scaled(const Product& z) {
+  const hn::RebindToUnsigned<Doubles> bits;
+  const auto largest = hn::BitCast(bits, hn::Max(hn::Abs(z.re), hn::Abs(z.im)));
+  const auto exponent = hn::And(largest, hn::Set(bits, 0x7FF0000000000000U));
+  const Lanes inverse = hn::BitCast(d, hn::Sub(hn::Set(bits, std::uint64_t{2046} << 52), exponent));
+  return {hn::Mul(z.re, inverse), hn::Mul(z.im, inverse), z.passages};
+}
+
+HWY_INLINE Product load(const ProductTile& products, std::size_t i) {
+  return {hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i]), hn::Load(d, &products.turns[i])};
+}
+
+HWY_INLINE void store(const Product& z, ProductTile& products, std::size_t i) {
+  hn::Store(z.re, d, &products.re[i]);
+  hn::Store(z.im, d, &products.im[i]);
+  hn::Store(z.passages, d, &products.turns[i]);
+}
+
+// One sample's product times re + i im.
 void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
-  const double product_re = z.re[i] * re - z.im[i] * im, product_im = z.re[i] * im + z.im[i] * re;
-  const bool before = std::signbit(z.im[i]), factor = std::signbit(im), after = std::signbit(product_im);
-  if (before == factor && after != before) z.turns[i] += before ? -1.0 : 1.0;
+  const double before = z.im[i];
+  const double product_re = z.re[i] * re - before * im, product_im = z.re[i] * im + before * re;
+  if (std::signbit(before) != std::signbit(product_im)) z.turns[i] += std::signbit(im) ? -1.0 : 1.0;
   z.re[i] = product_re;
   z.im[i] = product_im;
 }
 
-// Samples [i, i + lanes), of which those whose bit is not set in `trusted` take the careful way.
-HWY_NOINLINE void multiply_carefully(ProductTile& z, std::size_t i, std::uint64_t trusted, Lanes re, Lanes im,
-                                     const Vec3& a, const Vec3& b, bool reversed, const SampleTile& samples) {
-  alignas(64) std::array<double, 8> res, ims;
-  hn::Store(re, d, res.data());
-  hn::Store(im, d, ims.data());
-  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-    const std::size_t sample = i + lane;
-    if ((trusted >> lane) & 1U) {
-      multiply_one(z, sample, res[lane], ims[lane]);
-    } else if (const auto f = edge_factor(a, b, reversed, {samples.x[sample], samples.y[sample], samples.z[sample]})) {
-      multiply_one(z, sample, f->re, f->im);
-    }
-  }
-}
-
-// What the projections of an edge say: P_a . P_b, and D times the orientation, whose sign is sure or not.
-struct ProjectedEdge {
-  Lanes re, im;
-  hn::Mask<Doubles> side_is_sure;
+// A few edges of a chunk.
+struct Block {
+  std::size_t begin, end;
 };
 
-// The edge determinant as in predicates.h: from the nearer end, and trusted beyond its error.
-HWY_INLINE ProjectedEdge project(Lanes ay, Lanes az, Lanes by, Lanes bz, Lanes dy, Lanes dz, Lanes orientation) {
-  const auto a_is_nearer = hn::Le(hn::Add(hn::Abs(ay), hn::Abs(az)), hn::Add(hn::Abs(by), hn::Abs(bz)));
-  const Lanes left = hn::Mul(hn::IfThenElse(a_is_nearer, ay, by), dz);
-  const Lanes right = hn::Mul(hn::IfThenElse(a_is_nearer, az, bz), dy);
-  const Lanes determinant = hn::Sub(left, right);
-  const Lanes doubt =
-      hn::Add(hn::Mul(hn::Set(d, kSideFilter), hn::Add(hn::Abs(left), hn::Abs(right))), hn::Set(d, kSideUnderflow));
-  return {hn::Add(hn::Mul(ay, by), hn::Mul(az, bz)), hn::Mul(determinant, orientation),
-          hn::Gt(hn::Abs(determinant), doubt)};
-}
-
-template <class Projection>
-void multiply_edge(ProductTile& product, const Corner<Projection>& a, const Corner<Projection>& b, bool reversed,
-                   const SampleTile& samples) {
-  const auto projected = [&](std::size_t i) {
-    return project(a.p.y(i), a.p.z(i), b.p.y(i), b.p.z(i), hn::Set(d, b.vertex.y - a.vertex.y),
-                   hn::Set(d, b.vertex.z - a.vertex.z), hn::Set(d, reversed ? -1.0 : 1.0));
-  };
-  for_lanes<Projection>(samples, projected, [&](std::size_t i, const ProjectedEdge& edge) {
-    const Lanes product_of_s = hn::Mul(hn::Load(d, &a.s[i]), hn::Load(d, &b.s[i]));
-    const Lanes product_of_t = hn::Mul(hn::Load(d, &a.t[i]), hn::Load(d, &b.t[i]));
-    const Lanes re = hn::Add(product_of_s, hn::Mul(product_of_t, edge.re));
-    const Lanes im = hn::Mul(product_of_t, edge.im);
-    const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
-    const auto not_near = hn::Gt(magnitude, hn::Mul(hn::Set(d, kNearEdge), product_of_s));
-    const auto in_range =
-        hn::And(hn::Gt(magnitude, hn::Set(d, kSmallestFactor)), hn::Lt(magnitude, hn::Set(d, kLargestFactor)));
-    const auto trusted = hn::And(edge.side_is_sure, hn::And(not_near, in_range));  // false for NaN
-    if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
-      multiply(product, i, re, im);
-    } else {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, trusted, bits);
-      multiply_carefully(product, i, bits[0], re, im, a.vertex, b.vertex, reversed, samples);
+// What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
+template <class Rays>
+HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, const Rays& rays,
+                                     const SampleTile& samples, std::size_t i, const Corners<Rays>& corners,
+                                     const Block& block, std::uint64_t trusted) {
+  for (std::size_t n = block.begin; n < block.end; ++n) {
+    if (chunk.orientation[n] == 0.0) continue;
+    const Factor factor = factor_of(rays, corners, n);
+    const auto in_range = hn::And(hn::Gt(magnitude(factor), hn::Set(d, kSmallestFactor)),
+                                  hn::Lt(magnitude(factor), hn::Set(d, kLargestFactor)));
+    alignas(64) std::array<double, 8> re, im;
+    hn::Store(factor.re, d, re.data());
+    hn::Store(factor.im, d, im.data());
+    std::uint8_t plain[8] = {};
+    hn::StoreMaskBits(d, hn::And(is_not_near(factor), in_range), plain);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      const Vec3 q{samples.x[i + lane], samples.y[i + lane], samples.z[i + lane]};
+      if ((trusted >> lane) & 1U) continue;
+      if ((plain[0] >> lane) & 1U) {
+        multiply_one(products, i + lane, re[lane], im[lane]);
+      } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q)) {
+        multiply_one(products, i + lane, f->re, f->im);
+      }
     }
-  });
-}
-
-// Takes the power of two out of the products, which is exact.
-void scale(ProductTile& z, std::size_t count) {
-  const hn::RebindToUnsigned<Doubles> bits;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const Lanes re = hn::Load(d, &z.re[i]), im = hn::Load(d, &z.im[i]);
-    const auto magnitude = hn::BitCast(bits, hn::Max(hn::Abs(re), hn::Abs(im)));
-    const auto exponent = hn::And(magnitude, hn::Set(bits, 0x7FF0000000000000U));
-    const Lanes inverse = hn::BitCast(d, hn::Sub(hn::Set(bits, std::uint64_t{2046} << 52), exponent));
-    hn::Store(hn::Mul(re, inverse), d, &z.re[i]);
-    hn::Store(hn::Mul(im, inverse), d, &z.im[i]);
   }
 }
 
-template <class Projection>
+// Multiplies the factors of a block onto the products of the samples from i on, and looks at its vertices from the
+// samples at `next`: their square roots fill the time that products wait for one another.
+template <class Rays>
+HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const Rays& rays, const SampleTile& samples,
+                               std::size_t i, const Corners<Rays>& corners, std::size_t next,
+                               Corners<Rays>& next_corners, const Block& block) {
+  Product z = load(products, i);
+  auto trusted = hn::Eq(z.re, z.re);  // all
+  for (std::size_t n = block.begin; n < block.end; ++n) {
+    next_corners.look(chunk, rays, samples, n + 1, next);
+    if (chunk.orientation[n] == 0.0) continue;
+    const Factor factor = factor_of(rays, corners, n);
+    trusted = hn::And(trusted, is_not_near(factor));
+    z = times(z, factor);
+  }
+  // Factors too large show as a product that is large, infinite or NaN.
+  trusted = hn::And(trusted, hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct)));
+  if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
+    store(scaled(z), products, i);
+  } else {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, trusted, bits);
+    multiply_carefully(products, chunk, rays, samples, i, corners, block, bits[0]);
+    const Product careful = load(products, i);
+    store(scaled({hn::IfThenElse(trusted, z.re, careful.re), hn::IfThenElse(trusted, z.im, careful.im),
+                  hn::IfThenElse(trusted, z.passages, careful.passages)}),
+          products, i);
+  }
+}
+
+template <class Rays>
+void multiply_chunk(ProductTile& products, const Chunk& chunk, const SampleTile& samples) {
+  const Rays rays(chunk, samples);
+  std::array<Corners<Rays>, 2> corners;  // of the samples at hand and of the next ones, in turns
+  for (std::size_t n = 0; n <= chunk.edges; ++n) corners[0].look(chunk, rays, samples, n, 0);
+  std::size_t here = 0;
+  for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+    const std::size_t next = i + hn::Lanes(d) < samples.count ? i + hn::Lanes(d) : i;
+    corners[1 - here].look(chunk, rays, samples, 0, next);
+    for (std::size_t begin = 0; begin < chunk.edges; begin += kEdgesPerBlock) {
+      multiply_block(products, chunk, rays, samples, i, corners[here], next, corners[1 - here],
+                     {begin, std::min(begin + kEdgesPerBlock, chunk.edges)});
+    }
+    here = 1 - here;
+  }
+}
+
+// Passages of the positive and the negative real axis, with a sign each, become turns, which are those of the negative
+// axis from above (+1) and from below (-1). A, B: passages from above to below with Im f >= 0 and Im f < 0; C, D: from
+// below to above with Im f < 0 and Im f >= 0. The turns are A - C, and passages = A + D - B - C, and A + B - C - D is 1
+// where the product ends below, else 0. Rounding can neither create nor lose a turn (docs/method.md).
+void set_turns(ProductTile& products, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    products.turns[i] = (products.turns[i] + (std::signbit(products.im[i]) ? 1.0 : 0.0)) / 2;
+  }
+}
+
+template <class Rays>
 void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   products.re.fill(1.0);
   products.im.fill(0.0);
   products.turns.fill(0.0);
-  std::array<Corner<Projection>, 2> corners;  // of the edge at hand, in turns
-  std::size_t here = 0;
-  int factors = 0;
-  for (const ChainStep& step : steps) {
-    here = 1 - here;
-    corners[here].look(step.to, samples);
-    if (!step.joined) continue;
-    multiply_edge(products, corners[1 - here], corners[here], step.reversed, samples);
-    if (++factors % kFactorsPerScaling == 0) scale(products, samples.count);
+  for (std::size_t begin = 0; begin < steps.size(); begin += kEdgesPerChunk) {
+    const Vec3& from = steps[begin > 0 ? begin - 1 : 0].to;
+    const Chunk chunk(from, steps.subspan(begin, std::min(kEdgesPerChunk, steps.size() - begin)));
+    multiply_chunk<Rays>(products, chunk, samples);
   }
+  set_turns(products, samples.count);
 }
 
 void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   if (samples.share_a_ray()) {
-    multiply_all<OfOneRay>(steps, samples, products);
+    multiply_all<OneRay>(steps, samples, products);
   } else {
-    multiply_all<OfEachSample>(steps, samples, products);
+    multiply_all<RayOfEach>(steps, samples, products);
   }
 }
 

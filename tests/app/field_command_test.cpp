@@ -64,17 +64,19 @@ TEST_F(FieldOption, EveryRuleSaysWhatTheWindingNumberSays) {
       {"nonzero", [&](double w) { return integer(w) != 0; }},
       {"positive", [&](double w) { return integer(w) > 0; }},
       {"odd", [&](double w) { return std::fmod(integer(w), 2) != 0; }}};
-  for (const std::string& mesh : {soup_, cubes_}) {
-    for (const auto& [rule, holds] : rules) {
+  for (const auto& [rule, holds] : rules) {
+    std::ptrdiff_t insides = 0, samples = 0;
+    for (const std::string& mesh : {soup_, cubes_}) {
       const auto columns = columns_of(run(mesh, "-", {"--field", "inside,winding", "--rule", rule}).out);
       ASSERT_GT(columns.at("w").size(), 2000U);
       for (std::size_t n = 0; n < columns.at("w").size(); ++n) {
         ASSERT_EQ(columns.at("inside")[n], holds(columns.at("w")[n]) ? 1 : 0) << rule << ' ' << columns.at("w")[n];
       }
-      const auto insides = std::ranges::count(columns.at("inside"), 1.0);
-      EXPECT_GT(insides, 0) << rule;
-      EXPECT_LT(insides, std::ssize(columns.at("w"))) << rule;
+      insides += std::ranges::count(columns.at("inside"), 1.0);
+      samples += std::ssize(columns.at("w"));
     }
+    EXPECT_GT(insides, 0) << rule;
+    EXPECT_LT(insides, samples) << rule;
   }
 }
 

@@ -41,7 +41,7 @@ MUTANTS = [
         ("core/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
          "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
     Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
-        ("core/cone_kernel.cpp", "hn::And(edge.side_is_sure, hn::And(not_near, in_range));", "hn::And(not_near, in_range);")]),
+        ("core/cone_kernel.cpp", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
     Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
         ("core/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
     Mutant("side_filter_without_underflow", "products that underflow vouch for nothing", [
@@ -72,12 +72,12 @@ MUTANTS = [
     # --- The cone's factors ---
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
         ("core/predicates.h", "<= std::abs(by) + std::abs(bz);", "> std::abs(by) + std::abs(bz);"),
-        ("core/cone_kernel.cpp", "a_is_nearer = hn::Le(", "a_is_nearer = hn::Gt(")]),
+        ("core/cone_kernel.cpp", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
     Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
-        ("core/cone_kernel.cpp", "hn::IfThenElse(ahead, square, sum), hn::NaN(d))",
-         "hn::IfThenElse(ahead, hn::Sub(norm, hn::Abs(px)), sum), hn::NaN(d))"),
-        ("core/cone_kernel.cpp", "hn::Store(hn::IfThenElse(ahead, sum, hn::Set(d, 1.0)), d, &t[i]);",
-         "hn::Store(hn::Set(d, 1.0), d, &t[i]);")]),
+        ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, sum, square), s, n);",
+         "store(hn::IfNegativeThenElse(px, sum, hn::Sub(sum, hn::Add(px, px))), s, n);"),
+        ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
+         "store(hn::Set(d, 1.0), t, n);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
         ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, std::abs(bz))) : std::nullopt", "std::nullopt"),
         ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, std::abs(az))) : std::nullopt", "std::nullopt")]),
@@ -98,24 +98,28 @@ MUTANTS = [
     Mutant("near_edge_form_always_normal", "the better conditioned of z and z' is taken", [
         ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
     Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
-        ("core/cone_kernel.cpp", "hn::IfThenElse(ordinary, hn::IfThenElse(ahead, square, sum), hn::NaN(d))",
-         "hn::IfThenElse(ahead, square, sum)"),
+        ("core/cone_kernel.cpp", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
+         "return (void)ordinary, square;"),
         ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest;", "return true;")]),
 
     # --- The product ---
     Mutant("turns_by_comparison", "turns are told by sign bits: -0 is below the axis", [
-        ("core/cone_kernel.cpp",
-         "before = std::signbit(z.im[i]), factor = std::signbit(im), after = std::signbit(product_im);",
-         "before = z.im[i] < 0, factor = im < 0, after = product_im < 0;")]),
+        ("core/cone_kernel.cpp", "std::signbit(before) != std::signbit(product_im)",
+         "(before < 0) != (product_im < 0)"),
+        ("core/cone_kernel.cpp", "std::signbit(im) ? -1.0 : 1.0;", "im < 0 ? -1.0 : 1.0;")]),
     Mutant("no_turns", "the running product's turns are counted", [
-        ("core/cone_kernel.cpp", "hn::Store(hn::Add(hn::Load(d, &z.turns[i]), turn), d, &z.turns[i]);", "")]),
+        ("core/cone_kernel.cpp", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), f.direction, hn::Zero(d)))",
+         "z.passages")]),
     Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
-        ("core/cone_kernel.cpp", "z.turns[i] += before ? -1.0 : 1.0;", "{}")]),
+        ("core/cone_kernel.cpp", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
     Mutant("product_never_scaled", "the power of two is taken out of the product", [
-        ("core/cone_kernel.cpp", "scale(products, samples.count);", "{}")]),
+        ("core/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
     Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
         ("core/cone_kernel.cpp", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
         ("core/cone_kernel.cpp", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
+    Mutant("blocks_of_any_size", "a block may underflow or overflow, and is then multiplied factor by factor", [
+        ("core/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
+        ("core/cone_kernel.cpp", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
     Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
         ("core/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
 

@@ -1,95 +1,134 @@
 #include "core/exterior_edges.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
-#include <numeric>
-#include <span>
+#include <utility>
 
-#include "core/buckets.h"
 #include "core/threads.h"
 
 namespace raycone {
 namespace {
 
-// Traversals of neighbouring lower vertices share a bucket, which fits a cache and is sorted there.
-constexpr int kBucketLog2 = 12;
-constexpr std::uint32_t kBucketMask = (1U << kBucketLog2) - 1;
+// An edge traversed from its lower vertex to the higher one, or back.
+struct Traversal {
+  std::uint32_t low, high;
+  std::int32_t direction;  // +1 from low to high, -1 back
+};
 
-// One traversal of an edge, filed in the bucket of its lower vertex. From the top: the lower vertex counted from the
-// bucket's first, 32 bits for the higher one, one bit for low to high.
-using Traversal = std::uint64_t;
-constexpr int kLowShift = 33;
+// Lets traversals of one edge in opposite directions cancel each other, for edges whose lower vertex is in a range: in
+// nearly all meshes they follow each other soon, so that few wait at a vertex at any time.
+class Cancellation {
+ public:
+  Cancellation(std::size_t first_vertex, std::size_t last_vertex)
+      : first_(first_vertex), waiting_(last_vertex - first_vertex) {}
 
-Traversal traversal(std::uint32_t low, std::uint32_t high, bool forward) {
-  return Traversal{low & kBucketMask} << kLowShift | Traversal{high} << 1 | Traversal{forward};
-}
-std::uint32_t low_in_bucket(Traversal t) { return static_cast<std::uint32_t>(t >> kLowShift); }
-std::uint32_t high(Traversal t) { return static_cast<std::uint32_t>(t >> 1); }
-bool forward(Traversal t) { return (t & 1) != 0; }
+  [[nodiscard]] bool has(std::uint32_t low) const { return low - first_ < waiting_.size(); }
 
-Buckets<Traversal> traversals_of(const TriangleMesh& mesh) {
-  const std::size_t count = (mesh.vertices.size() >> kBucketLog2) + 1;
-  return {mesh.triangles.size(), count, [&](std::size_t begin, std::size_t end, auto emit) {
-            for (std::size_t i = begin; i < end; ++i) {
-              const Triangle& t = mesh.triangles[i];
-              for (std::size_t corner = 0; corner < 3; ++corner) {
-                const std::uint32_t from = t[corner], to = t[corner < 2 ? corner + 1 : 0];
-                const std::uint32_t low = std::min(from, to);
-                if (from != to) emit(low >> kBucketLog2, traversal(low, std::max(from, to), from < to));
-              }
-            }
-          }};
-}
+  void prefetch(std::uint32_t low) const { _mm_prefetch(&waiting_[low - first_], _MM_HINT_T0); }
 
-// Few nearly always: six edges meet at a vertex of a large mesh.
-void sort(std::span<Traversal> traversals) {
-  constexpr std::size_t kFew = 24;
-  if (traversals.size() > kFew) return std::sort(traversals.begin(), traversals.end());
-  for (std::size_t i = 1; i < traversals.size(); ++i) {
-    const Traversal t = traversals[i];
-    std::size_t place = i;
-    for (; place > 0 && traversals[place - 1] > t; --place) traversals[place] = traversals[place - 1];
-    traversals[place] = t;
+  // Without branches on what the order of a mesh makes a coin toss.
+  void add(std::uint32_t low, std::uint32_t high, bool forward) {
+    Waiting& here = waiting_[low - first_];
+    const unsigned same = forward ? 1 : 0, opposite = 1 - same;
+    const unsigned places = equal(here.high[opposite], high) | equal(here.high[same], kFree) << 4;
+    if (places == 0) return crowd_.push_back({low, high, forward ? 1 : -1});
+    const auto place = static_cast<unsigned>(std::countr_zero(places));
+    const unsigned waits = place >> 2;  // 0: cancels its partner
+    put(here.high[opposite ^ waits], place & 3, high * waits);
   }
-}
 
-// By lower vertex, then higher one: a counting sort, then one sort per lower vertex.
-std::vector<Traversal> sorted(std::span<const Traversal> bucket) {
-  std::array<std::uint32_t, kBucketMask + 3> begin{};
-  for (const Traversal t : bucket) ++begin[low_in_bucket(t) + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Traversal> all(bucket.size());
-  // begin[v + 1] is the next free place of vertex v, and its end when all are filled.
-  for (const Traversal t : bucket) all[begin[low_in_bucket(t) + 1]++] = t;
-  for (std::size_t v = 0; v <= kBucketMask; ++v) sort(std::span(all).subspan(begin[v], begin[v + 1] - begin[v]));
-  return all;
-}
+  // What has not been cancelled, by increasing low, then high.
+  [[nodiscard]] std::vector<Traversal> rest() {
+    std::vector<Traversal> rest = std::move(crowd_);
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+      for (const bool forward : {false, true}) {
+        for (const std::uint32_t high : waiting_[i].high[forward ? 1 : 0]) {
+          if (high != kFree) rest.push_back({static_cast<std::uint32_t>(first_ + i), high, forward ? 1 : -1});
+        }
+      }
+    }
+    std::sort(rest.begin(), rest.end(), [](const Traversal& a, const Traversal& b) {
+      return std::pair(a.low, a.high) < std::pair(b.low, b.high);
+    });
+    return rest;
+  }
 
-// Calls visit for each edge whose traversals are in the bucket, by increasing low, then high.
+ private:
+  static constexpr std::uint32_t kFree = 0;  // no vertex is lower than 0
+  struct alignas(32) Waiting {
+    std::array<std::array<std::uint32_t, 4>, 2> high{};  // by direction
+  };
+
+  using Values = std::array<std::uint32_t, 4>;
+  static __m128i load(const Values& values) { return _mm_load_si128(reinterpret_cast<const __m128i*>(values.data())); }
+
+  // Bit i: values[i] == value.
+  static unsigned equal(const Values& values, std::uint32_t value) {
+    const __m128i same = _mm_cmpeq_epi32(load(values), _mm_set1_epi32(static_cast<int>(value)));
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(same)));
+  }
+
+  // values[i] = value, as one store of all four: soon they are loaded as four, which would wait for a smaller one.
+  static void put(Values& values, unsigned i, std::uint32_t value) {
+    alignas(16) static constexpr std::array<Values, 4> kPlace{
+        {{~0U, 0, 0, 0}, {0, ~0U, 0, 0}, {0, 0, ~0U, 0}, {0, 0, 0, ~0U}}};
+    const __m128i here = load(kPlace[i]);
+    const __m128i all = _mm_or_si128(_mm_and_si128(here, _mm_set1_epi32(static_cast<int>(value))),
+                                     _mm_andnot_si128(here, load(values)));
+    _mm_store_si128(reinterpret_cast<__m128i*>(values.data()), all);
+  }
+
+  std::size_t first_;
+  std::vector<Waiting> waiting_;
+  std::vector<Traversal> crowd_;  // those that found no place
+};
+
 template <class Visit>
-void for_each_edge_in(std::span<const Traversal> bucket, std::uint32_t first_vertex, const Visit& visit) {
-  const std::vector<Traversal> all = sorted(bucket);
-  for (auto it = all.begin(); it != all.end();) {
-    const Traversal edge = *it >> 1;
-    EdgeUse use{first_vertex + low_in_bucket(*it), high(*it), 0, 0};
-    for (; it != all.end() && *it >> 1 == edge; ++it) ++(forward(*it) ? use.forward : use.backward);
-    visit(use);
+void for_each_traversal(const Triangle& t, const Visit& visit) {
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const std::uint32_t from = t[corner], to = t[corner < 2 ? corner + 1 : 0];
+    if (from != to) visit(std::min(from, to), std::max(from, to), from < to);
   }
 }
 
-std::uint32_t first_vertex_of(std::size_t bucket) { return static_cast<std::uint32_t>(bucket << kBucketLog2); }
-
-// By increasing low, then high.
-std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh) {
-  const Buckets<Traversal> buckets = traversals_of(mesh);
-  std::vector<std::vector<ExteriorEdge>> parts(buckets.count());
-  parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      for_each_edge_in(buckets[n], first_vertex_of(n), [&](const EdgeUse& use) {
-        const std::int32_t net = static_cast<std::int32_t>(use.forward - use.backward);
-        if (net != 0) parts[n].push_back({use.low, use.high, net});
+// Net counts of the edges with their lower vertex in a range, by increasing low, then high.
+std::vector<ExteriorEdge> exterior_edges_of(const TriangleMesh& mesh, std::size_t first_vertex,
+                                            std::size_t last_vertex) {
+  Cancellation cancellation(first_vertex, last_vertex);
+  constexpr std::size_t kAhead = 16;  // triangles: their vertices may be anywhere in memory
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i + kAhead < mesh.triangles.size()) {
+      for_each_traversal(mesh.triangles[i + kAhead], [&](std::uint32_t low, std::uint32_t, bool) {
+        if (cancellation.has(low)) cancellation.prefetch(low);
       });
+    }
+    for_each_traversal(mesh.triangles[i], [&](std::uint32_t low, std::uint32_t high, bool forward) {
+      if (cancellation.has(low)) cancellation.add(low, high, forward);
+    });
+  }
+  std::vector<ExteriorEdge> edges;
+  const std::vector<Traversal> rest = cancellation.rest();
+  for (auto it = rest.begin(); it != rest.end();) {
+    ExteriorEdge edge{it->low, it->high, 0};
+    for (; it != rest.end() && it->low == edge.from && it->high == edge.to; ++it) edge.multiplicity += it->direction;
+    if (edge.multiplicity != 0) edges.push_back(edge);
+  }
+  return edges;
+}
+
+// By increasing low, then high. Each thread goes through all triangles, for a range of lower vertices.
+std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh) {
+  constexpr std::size_t kMaxRanges = 8;  // more would only read the triangles more often
+  const std::size_t ranges = std::min<std::size_t>(kMaxRanges, static_cast<std::size_t>(thread_count()));
+  std::vector<std::vector<ExteriorEdge>> parts(ranges);
+  parallel_for(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t vertices = mesh.vertices.size();
+      parts[n] = exterior_edges_of(mesh, vertices * n / ranges, vertices * (n + 1) / ranges);
     }
   });
   std::vector<ExteriorEdge> edges;
@@ -162,11 +201,6 @@ class Chains {
 };
 
 }  // namespace
-
-void for_each_edge(const TriangleMesh& mesh, const std::function<void(const EdgeUse&)>& visit) {
-  const Buckets<Traversal> buckets = traversals_of(mesh);
-  for (std::size_t n = 0; n < buckets.count(); ++n) for_each_edge_in(buckets[n], first_vertex_of(n), visit);
-}
 
 std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh) {
   std::vector<ExteriorEdge> edges = unordered_exterior_edges(mesh);

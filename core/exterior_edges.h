@@ -1,25 +1,12 @@
-// Edges of a mesh, and those of them that its boundary consists of.
+// The edges that the boundary of a mesh consists of.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "core/triangle_mesh.h"
 
 namespace raycone {
-
-// How often triangles traverse the undirected edge {low, high}, low < high (vertex indices).
-struct EdgeUse {
-  std::uint32_t low = 0;
-  std::uint32_t high = 0;
-  std::uint32_t forward = 0;   // from low to high
-  std::uint32_t backward = 0;  // from high to low
-};
-
-// Calls visit once for each undirected edge between two different vertices, by increasing low, then high. An edge that
-// one triangle traverses in both directions (two equal corners) counts in both.
-void for_each_edge(const TriangleMesh& mesh, const std::function<void(const EdgeUse&)>& visit);
 
 // An exterior edge: the boundary of the mesh, as a sum of directed edges, holds from -> to `multiplicity` times (not 0;
 // negative: to -> from). Jacobson, Kavan, Sorkine-Hornung 2013, section 4.2; METHOD section 2.

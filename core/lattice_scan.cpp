@@ -12,44 +12,69 @@ namespace {
 
 constexpr std::size_t kTrianglesPerTask = 2048;
 
-// The values of one axis within [lower, upper] as [begin, end).
-struct Range {
-  std::size_t begin, end;
+constexpr std::size_t kVerticesPerTask = 8192;
+
+// Where a number lies among ascending values: how many of them are below it, and not above it.
+struct Place {
+  std::uint32_t below, up_to;
 };
 
-Range values_within(const std::vector<double>& values, double per_unit, double lower, double upper) {
-  if (upper < values.front() || lower > values.back()) return {0, 0};
-  return {count_below(values, per_unit, lower), count_up_to(values, per_unit, upper)};
+Place place_of(double x, const std::vector<double>& values, double per_unit) {
+  const std::size_t below = count_below(values, per_unit, x);
+  std::size_t up_to = below;
+  while (up_to < values.size() && values[up_to] == x) ++up_to;
+  return {static_cast<std::uint32_t>(below), static_cast<std::uint32_t>(up_to)};
+}
+
+// The values within the interval that three numbers span, as [begin, end).
+struct Range {
+  std::uint32_t begin, end;
+  [[nodiscard]] bool empty() const { return begin >= end; }
+};
+
+Range range_of(const Place& a, const Place& b, const Place& c) {
+  return {std::min({a.below, b.below, c.below}), std::max({a.up_to, b.up_to, c.up_to})};
 }
 
 }  // namespace
 
+struct LatticeScan::VertexPlace {
+  Place y, z;
+};
+
 LatticeScan::LatticeScan(const TriangleMesh& mesh, const LatticeRows& rows) {
+  // Once per vertex, not per triangle: most triangles of a fine mesh meet no row, and need nothing else.
+  std::vector<VertexPlace> places(mesh.vertices.size());
+  parallel_for(places.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& v = mesh.vertices[i];
+      places[i] = {place_of(v.y, rows.ys, rows.samples_per_unit.y), place_of(v.z, rows.zs, rows.samples_per_unit.z)};
+    }
+  });
   std::vector<Found> parts;
   std::mutex mutex;
   parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     Found found;
-    for (std::size_t i = begin; i < end; ++i) scan(mesh, mesh.triangles[i], rows, found);
+    for (std::size_t i = begin; i < end; ++i) scan(mesh, places, mesh.triangles[i], rows, found);
     const std::lock_guard<std::mutex> lock(mutex);
     parts.push_back(std::move(found));
   });
   sort_by_row(parts, rows.size());
 }
 
-void LatticeScan::scan(const TriangleMesh& mesh, const Triangle& triangle, const LatticeRows& rows, Found& found) {
+void LatticeScan::scan(const TriangleMesh& mesh, const std::vector<VertexPlace>& places, const Triangle& triangle,
+                       const LatticeRows& rows, Found& found) {
+  const VertexPlace &pa = places[triangle[0]], &pb = places[triangle[1]], &pc = places[triangle[2]];
+  const Range ks = range_of(pa.z, pb.z, pc.z), js = range_of(pa.y, pb.y, pc.y);
+  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
   const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]], &c = mesh.vertices[triangle[2]];
-  const Range ks =
-      values_within(rows.zs, rows.samples_per_unit.z, std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}));
-  if (ks.begin == ks.end) return;
-  const Range js =
-      values_within(rows.ys, rows.samples_per_unit.y, std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}));
-  if (js.begin == js.end || rows.xs.front() > std::max({a.x, b.x, c.x})) return;
+  if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
   const TrianglePlane plane(a, b, c);
   for (std::size_t k = ks.begin; k < ks.end; ++k) {
     for (std::size_t j = js.begin; j < js.end; ++j) {
-      const std::size_t row = k * rows.ys.size() + j;
-      const TriangleCrossing crossing = triangle_crossing(a, b, c, rows.row(row), &plane);
-      const auto number = static_cast<std::uint32_t>(row);
+      const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
+      const TriangleCrossing crossing = triangle_crossing(a, b, c, row, &plane);
+      const auto number = static_cast<std::uint32_t>(k * rows.ys.size() + j);
       if (crossing.crossed > 0) {
         found.crossed.push_back({number, static_cast<std::uint32_t>(crossing.crossed), crossing.sigma});
       }

@@ -47,7 +47,10 @@ class LatticeScan {
     std::vector<Degenerate> degenerate;
   };
 
-  static void scan(const TriangleMesh& mesh, const Triangle& triangle, const LatticeRows& rows, Found& found);
+  struct VertexPlace;
+
+  static void scan(const TriangleMesh& mesh, const std::vector<VertexPlace>& places, const Triangle& triangle,
+                   const LatticeRows& rows, Found& found);
   void sort_by_row(const std::vector<Found>& parts, std::size_t rows);
 
   std::vector<std::size_t> begin_;  // per row, into crossings_; and the end

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/exterior_edges.h"
+#include "core/edge_uses.h"
 #include "core/floating_point.h"
 #include "core/predicates.h"
 

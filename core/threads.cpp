@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <new>
@@ -20,6 +21,11 @@ struct ThreadLimit::Control {
 ThreadLimit::ThreadLimit(int count)
     : control_(new Control{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)}}) {}
 ThreadLimit::~ThreadLimit() = default;
+
+int thread_count() {
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(static_cast<int>(allowed), tbb::this_task_arena::max_concurrency());
+}
 
 void prime_threads() {
   tbb::parallel_for(0, 1, [](int) {});

@@ -21,6 +21,9 @@ class ThreadLimit {
   std::unique_ptr<Control> control_;
 };
 
+// Threads that parallel_for() may use, at least 1.
+[[nodiscard]] int thread_count();
+
 // Makes TBB start its workers in the floating-point environment of the caller. Call before Embree is first used:
 // workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero.
 void prime_threads();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/edge_uses.h"
 #include "core/mesh_statistics.h"
 #include "tests/support/shapes.h"
 

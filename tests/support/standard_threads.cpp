@@ -23,6 +23,8 @@ struct ThreadLimit::Control {
 ThreadLimit::ThreadLimit(int count) : control_(new Control{allowed_threads.exchange(count)}) {}
 ThreadLimit::~ThreadLimit() { allowed_threads = control_->before; }
 
+int thread_count() { return allowed_threads; }
+
 void prime_threads() {}
 
 // Thread t of T takes ranges t, t + T, ... without synchronisation: all work however short the loop is, and nothing but

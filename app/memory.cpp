@@ -1,6 +1,8 @@
-// Large blocks of memory in huge pages: touching a new page costs a microsecond or two, and with pages of 4 kB that was
-// half of the time that reading, welding and edge tables took. Many systems give huge pages only to who asks for them
-// (Linux, admin-guide/mm/transhuge, "madvise").
+// Memory without its hidden costs: touching a new page takes a microsecond or two, and with pages of 4 kB that was half
+// of the time that reading, welding and edge tables took. Large blocks therefore come in huge pages, which many systems
+// give only to who asks for them (Linux, admin-guide/mm/transhuge, "madvise"), and smaller ones are kept when they are
+// freed, for the next step to use.
+#include <malloc.h>
 #include <sys/mman.h>
 
 #include <cstdlib>
@@ -11,6 +13,10 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 // Smaller blocks would waste too much of their last page.
 constexpr std::size_t kLargeBlock = 4 * kHugePage;
+
+constexpr int kKept = 1 << 26;
+[[maybe_unused]] const int done_at_start =
+    mallopt(M_MMAP_THRESHOLD, static_cast<int>(kLargeBlock)) + mallopt(M_TRIM_THRESHOLD, kKept);
 
 // Nothing where there is no memory left.
 void* allocate(std::size_t size) {

@@ -13,6 +13,8 @@ namespace {
 // Farther out by more than the rounding to float.
 float rounded_up(double x) { return static_cast<float>(x + std::abs(x) * 0x1p-22 + 0x1p-120); }
 
+constexpr double kPlacesPerSide = 256;
+
 // The lower 8 bits of v in the even places.
 std::uint32_t spread(std::uint32_t v) {
   v = (v | (v << 4)) & 0x0F0FU;
@@ -321,7 +323,7 @@ std::vector<ProjectedGrid::Entry> ProjectedGrid::Builder::all_entries() const {
 }
 
 void ProjectedGrid::Builder::build() {
-  constexpr double kEntriesPerTriangle = 5.0;
+  constexpr double kEntriesPerTriangle = 8.0;
   const std::vector<Entry> entries = all_entries();
   const Rectangle box{{result_.lower_.y, result_.upper_.y}, {result_.lower_.z, result_.upper_.z}};
   result_.grids_.push_back(choose(box, entries, kEntriesPerTriangle));
@@ -349,6 +351,8 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   unit_ = unit_of(box);
   lower_ = local(box.lower);
   upper_ = local(box.upper);
+  places_per_y_ = kPlacesPerSide / (upper_.y - lower_.y);
+  places_per_z_ = kPlacesPerSide / (upper_.z - lower_.z);
   triangles_ = along_curve(mesh);
   filters_.resize(triangles_.size());
   constexpr std::size_t kTrianglesPerTask = 4096;
@@ -373,14 +377,14 @@ std::vector<std::uint32_t> ProjectedGrid::along_curve(const TriangleMesh& mesh) 
 }
 
 // A Z-curve.
-std::size_t ProjectedGrid::place(const Vec3& q) const {
-  constexpr double kSide = 256;  // places along each axis
+std::uint16_t ProjectedGrid::place(const Vec3& q) const {
   const Local p = local(q);
-  const auto quantized = [&](double x, double lower, double upper) {
-    const double at = (x - lower) / (upper - lower) * kSide;
-    return at > 0.0 ? static_cast<std::uint32_t>(std::min(at, kSide - 1)) : 0U;
+  const auto quantized = [](double x, double lower, double places_per_unit) {
+    const double at = (x - lower) * places_per_unit;
+    return at > 0.0 ? static_cast<std::uint32_t>(std::min(at, kPlacesPerSide - 1)) : 0U;
   };
-  return spread(quantized(p.y, lower_.y, upper_.y)) | (spread(quantized(p.z, lower_.z, upper_.z)) << 1);
+  return static_cast<std::uint16_t>(spread(quantized(p.y, lower_.y, places_per_y_)) |
+                                    (spread(quantized(p.z, lower_.z, places_per_z_)) << 1));
 }
 
 }  // namespace raycone

@@ -30,7 +30,7 @@ class ProjectedGrid {
   // Where a ray lies along a curve that fills the projection, in [0, kPlaces): rays of neighbouring places share
   // triangles.
   static constexpr std::size_t kPlaces = std::size_t{1} << 16;
-  [[nodiscard]] std::size_t place(const Vec3& q) const;
+  [[nodiscard]] std::uint16_t place(const Vec3& q) const;
 
  private:
   // Coordinates about the centre of the mesh's box, in [-1, 1] for the mesh.
@@ -82,6 +82,7 @@ class ProjectedGrid {
   Vec3 centre_;
   PowerOfTwo unit_;
   Local lower_, upper_;
+  double places_per_y_ = 0, places_per_z_ = 0;
   std::vector<Grid> grids_;
   std::vector<Cell> cells_;
   std::vector<Entry> entries_;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/buckets.h"
 #include "core/cone.h"
 #include "core/crossings.h"
 #include "core/floating_point.h"
@@ -297,24 +298,56 @@ Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const Lattice
   return total.sum();
 }
 
-// The indices of the points in an order in which neighbours share triangles (a counting sort by place).
-std::vector<std::size_t> coherent_order(const Engine& engine, std::span<const Vec3> points) {
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (engine.engine() != RayEngine::kScan) return order;
-  std::vector<std::uint32_t> places(points.size());
-  constexpr std::size_t kPointsPerTask = 4096;
-  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      places[i] = static_cast<std::uint32_t>(engine.grid().place(engine.to_scale(points[i])));
-    }
-  });
-  std::vector<std::size_t> next(ProjectedGrid::kPlaces + 1, 0);
-  for (const std::uint32_t place : places) ++next[place + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t i = 0; i < places.size(); ++i) order[next[places[i]]++] = i;
-  return order;
-}
+// Points in an order in which neighbours share triangles: a radix sort by place that moves the points themselves, so
+// that none has to be fetched from afar in the end.
+class CoherentOrder {
+ public:
+  struct PlacedPoint {
+    Vec3 point;
+    std::uint32_t index;  // among the points
+    std::uint16_t place;
+  };
+  static constexpr std::size_t kBuckets = 256;
+
+  // Less than 2^32 points.
+  CoherentOrder(const Engine& engine, std::span<const Vec3> points) : CoherentOrder(points, places(engine, points)) {}
+
+  // Those of one bucket, in order.
+  [[nodiscard]] std::vector<PlacedPoint> operator[](std::size_t bucket) const {
+    std::array<std::uint32_t, kPlacesPerBucket + 1> next{};
+    for (const PlacedPoint& p : buckets_[bucket]) ++next[p.place % kPlacesPerBucket + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<PlacedPoint> ordered(buckets_[bucket].size());
+    for (const PlacedPoint& p : buckets_[bucket]) ordered[next[p.place % kPlacesPerBucket]++] = p;
+    return ordered;
+  }
+
+ private:
+  static constexpr std::size_t kPlacesPerBucket = ProjectedGrid::kPlaces / kBuckets;
+
+  CoherentOrder(std::span<const Vec3> points, const std::vector<std::uint16_t>& places)
+      : buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
+          for (std::size_t i = begin; i < end; ++i) {
+            emit(places[i] / kPlacesPerBucket, PlacedPoint{points[i], static_cast<std::uint32_t>(i), places[i]});
+          }
+        }) {}
+
+  // Embree's rays go in the order of the points: they are for comparison.
+  static std::vector<std::uint16_t> places(const Engine& engine, std::span<const Vec3> points) {
+    std::vector<std::uint16_t> places(points.size());
+    constexpr std::size_t kPointsPerTask = 4096;
+    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        places[i] = engine.engine() == RayEngine::kScan
+                        ? engine.grid().place(engine.to_scale(points[i]))
+                        : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kPlaces + 1));
+      }
+    });
+    return places;
+  }
+
+  Buckets<PlacedPoint> buckets_;
+};
 
 // Points that are evaluated together, and where their values belong.
 class PointTile {
@@ -376,6 +409,30 @@ struct WindingNumberEvaluator::Implementation {
     return *unscaled;
   }
 
+  Tally evaluate_batch(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done,
+                       const Diagnostics* diagnostics) const {
+    const CoherentOrder order(scaled, points);
+    TallySum total;
+    parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
+      PointTile tile;
+      Tally tally;
+      for (std::size_t bucket = begin; bucket < end; ++bucket) {
+        const auto placed = order[bucket];
+        for (const CoherentOrder::PlacedPoint& p : placed) {
+          const bool exact = scaled.can_take(p.point);
+          if (!exact) tally += tile.evaluate(scaled, values, diagnostics);
+          const Engine& engine = engine_for(exact);
+          tile.add(p.index, engine.to_scale(p.point));
+          if (!exact || tile.full()) tally += tile.evaluate(engine, values, diagnostics);
+        }
+        if (done) done->fetch_add(placed.size(), std::memory_order_relaxed);
+      }
+      tally += tile.evaluate(scaled, values, diagnostics);
+      total.add(tally);
+    });
+    return total.sum();
+  }
+
  private:
   mutable std::once_flag unscaled_built;
   mutable std::optional<Engine> unscaled;
@@ -427,23 +484,14 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
   const DefaultFloatingPoint guard;
-  const std::vector<std::size_t> order = coherent_order(implementation_->scaled, points);
   TallySum total;
-  parallel_for(points.size(), 4 * kTile, [&](std::size_t begin, std::size_t end) {
-    PointTile tile;
-    Tally tally;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t index = order[i];
-      const bool exact = implementation_->scaled.can_take(points[index]);
-      if (!exact) tally += tile.evaluate(implementation_->scaled, values, diagnostics);
-      const Engine& engine = implementation_->engine_for(exact);
-      tile.add(index, engine.to_scale(points[index]));
-      if (!exact || tile.full()) tally += tile.evaluate(engine, values, diagnostics);
-    }
-    tally += tile.evaluate(implementation_->scaled, values, diagnostics);
-    if (done) done->fetch_add(end - begin, std::memory_order_relaxed);
-    total.add(tally);
-  });
+  constexpr std::size_t kBatch = std::size_t{1} << 18;  // bounds the memory; points enough that neighbours are near
+  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, points.size() - begin);
+    const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
+    total.add(implementation_->evaluate_batch(points.subspan(begin, count), values.subspan(begin, count), done,
+                                              diagnostics ? &of_batch : nullptr));
+  }
   return total.sum();
 }
 

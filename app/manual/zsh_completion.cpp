@@ -46,15 +46,17 @@ std::string action_for(const std::string& placeholder) {
   return message + ' ';
 }
 
-// An argument of _arguments a name.
+// An argument of _arguments for each name: "(-o --output)-o+[description]:message:action".
 std::vector<std::string> arguments_for(const OptionSpec& option) {
   const std::vector<std::string> names = names_of(option);
+  const std::string exclusive = '(' + joined(names, " ") + ')';
+  const bool has_value = !option.value.empty();
+  const std::string rest = '[' + escaped(option.description, "[]") + ']' + (has_value ? action_for(option.value) : "");
   std::vector<std::string> arguments;
   for (const std::string& name : names) {
-    const std::string joined_value = option.value.empty() ? "" : name.starts_with("--") ? "=" : "+";
-    arguments.push_back(quoted('(' + joined(names, " ") + ')' + name + joined_value + '[' +
-                               escaped(option.description, "[]") + ']' +
-                               (option.value.empty() ? "" : action_for(option.value))));
+    std::string argument = exclusive + name;
+    if (has_value) argument += name.starts_with("--") ? '=' : '+';
+    arguments.push_back(quoted(argument + rest));
   }
   return arguments;
 }

@@ -103,6 +103,16 @@ class BashCompletion(unittest.TestCase):
         self.offers(["batch", "--format", "n"], "npy", "none", "npz")
         self.offers(["lattice", "--engine", "em"], "embree")
 
+    def test_takes_files_words_and_numbers_from_the_placeholder(self):
+        for command in COMMANDS:
+            text = output_of(RAYCONE, command, "--help")
+            for option, placeholder in re.findall(r"^  (?:-\w,)?(--[-\w]+) (\S+)", text, re.M):
+                offered, asked = complete_in_bash("raycone", command, option, "")
+                words = {word for word in placeholder.replace("[,...]", "").split("|") if word[0].islower()}
+                self.assertEqual(offered, {re.sub("=.*", "=", word) for word in words}, (command, option))
+                files = {"default"} if re.match(r"OUT|[A-Z]+\.[a-z]+", placeholder) else set()
+                self.assertEqual(asked - {"nospace"}, {"dirnames"} if placeholder == "DIR" else files, (command, option))
+
     def test_goes_on_behind_commas_and_equals_signs(self):
         self.offers(["lattice", "--field", "winding,s"], "winding,sdf")
         self.assertEqual(complete_in_bash("raycone", "lattice", "--rule", "thr"), ({"threshold="}, {"nospace"}))

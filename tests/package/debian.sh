@@ -17,7 +17,7 @@ section() {
   sed -n "/^%$1$/,/^%/{/^%/d;p}" app/package/raycone.def
 }
 inside() {
-  chroot "$system" "$@"
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive chroot "$system" "$@"
 }
 
 cmake --workflow --preset debian >"$work/log" 2>&1 || fail "$(tail -n 30 "$work/log")"
@@ -52,6 +52,17 @@ for file in man/man1/raycone.1.gz doc/raycone/copyright doc/raycone/changelog.gz
             zsh/vendor-completions/_raycone; do
   inside dpkg-query -L raycone | grep -qx "/usr/share/$file" || fail "/usr/share/$file is not in the package"
 done
+
+# The library, with the packages that its page names and nothing else of what raycone is built from.
+packages=$(sed -n 's/.*(Debian: `\(.*\)`).*/\1/p' docs/library.md)
+inside apt-get -qq update
+inside apt-get -qq -y install --no-install-recommends g++ cmake make $packages >"$work/log" 2>&1 || \
+  fail "$(tail -n 30 "$work/log")"
+cmake --install build/debian --component development --prefix "$system/opt/raycone" >"$work/log"
+cp -R tests/package "$system/tmp/example"
+inside sh -ec 'cd /tmp/example; cmake -B build -DCMAKE_PREFIX_PATH=/opt/raycone; cmake --build build; build/example' \
+  >"$work/log" 2>&1 || fail "$(tail -n 30 "$work/log")"
+
 inside apt-get -qq -y purge raycone >"$work/log" 2>&1
 [ -z "$(find "$system/usr" -name '*raycone*')" ] || fail "purged, but left: $(find "$system/usr" -name '*raycone*')"
 echo "== The package is good: $package"

@@ -185,6 +185,8 @@ class RealShells(unittest.TestCase):
             ("lat\t", "tice "),
             ("lattice --resol\t", "ution"),
             ("lattice --weld ex\t", "act "),
+            ("lattice --progress=nev\t", "er"),
+            ("lattice x --report=my\t", "\\ mesh.obj"),
             ("lattice --field winding,de\t", "nsity"),
             ("lattice --rule thr\t", "eshold="),
             ("lattice my\t", "\\ mesh.obj"),

@@ -49,9 +49,9 @@ std::string bmp_header(std::int64_t width, std::int64_t height, std::size_t pixe
   append_number(bytes, kInfoHeader, 4);
   append_number(bytes, static_cast<std::uint32_t>(width), 4);
   append_number(bytes, static_cast<std::uint32_t>(height), 4);
-  append_number(bytes, 1, 2);   // plane
-  append_number(bytes, 4, 2);   // bits a pixel
-  append_number(bytes, 0, 16);  // not compressed; no resolution
+  append_number(bytes, 1, 2);  // plane
+  append_number(bytes, 4, 2);  // bits a pixel
+  bytes.append(16, '\0');      // not compressed; no resolution
   append_number(bytes, kColours, 4);
   append_number(bytes, 0, 4);
   return bytes;

@@ -1,6 +1,7 @@
 // The lattice of an OpenVDB grid: its transform, and the extent that raycone recorded or that its active voxels have.
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,46 @@ std::size_t choose_grid(const std::string& path, const std::vector<std::string>&
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
   throw InputError(path + ": has no grid '" + wanted + "', expected one of: " + all);
 }
+
+// An entry of /proc/self/status, in bytes.
+std::uint64_t status_bytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word && word != key) continue;
+  std::uint64_t kilobytes = 0;
+  status >> kilobytes;
+  return kilobytes << 10;
+}
+
+// OpenVDB allocates whatever lengths a file announces. While this lives, this process cannot allocate more than what a
+// true announcement of the file at `path` may lead to.
+class MemoryForFile {
+ public:
+  explicit MemoryForFile(const std::string& path) {
+    constexpr std::uint64_t kLibraries = std::uint64_t{64} << 20;  // their own needs, an arena of the allocator
+    // The largest node: 32^3 tiles of 8 bytes, of which two masks of a bit each and little else need be in the file.
+    constexpr std::uint64_t kMostPerByte = 64;
+    const std::uint64_t more = kLibraries + kMostPerByte * std::filesystem::file_size(path);
+    const std::uint64_t enough = status_bytes("VmData:") + more;
+    rlimit space{};
+    getrlimit(RLIMIT_AS, &space);
+    getrlimit(RLIMIT_DATA, &before_);
+    is_tightest_ = before_.rlim_cur > enough &&
+                   (space.rlim_cur == RLIM_INFINITY || space.rlim_cur > status_bytes("VmSize:") + more);
+    const rlimit limit{std::min(before_.rlim_cur, enough), before_.rlim_max};
+    setrlimit(RLIMIT_DATA, &limit);
+  }
+  ~MemoryForFile() { setrlimit(RLIMIT_DATA, &before_); }
+  MemoryForFile(const MemoryForFile&) = delete;
+  MemoryForFile& operator=(const MemoryForFile&) = delete;
+
+  // Whether allocations that fail meanwhile fail because of the file.
+  [[nodiscard]] bool is_tightest() const { return is_tightest_; }
+
+ private:
+  rlimit before_{};
+  bool is_tightest_ = false;
+};
 
 // Reads metadata and transform of a grid but not its tree. OpenVDB's File does that too, but returns a copy whose
 // transform has been recomputed, with rounding errors (see transform_of in write_vdb.cpp).
@@ -139,10 +180,14 @@ Lattice vdb::read_lattice(const std::string& path, const std::string& name) {
     throw InputError(path + ": cannot read: " + (status ? status.message() : "not a regular file"));
   }
   openvdb::initialize();
+  const MemoryForFile memory(path);
   try {
     return read(path, name);
   } catch (const InputError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    if (!memory.is_tightest()) throw;
+    throw InputError(path + ": not a readable OpenVDB file: it announces more than it holds");
   } catch (const std::exception& error) {  // OpenVDB's own and the standard library's
     throw InputError(path + ": not a readable OpenVDB file: " + error.what());
   }

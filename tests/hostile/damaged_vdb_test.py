@@ -1,0 +1,72 @@
+"""Damaged VDB files for --like: python3 damaged_vdb_test.py RAYCONE MESH [RUNS]
+
+OpenVDB crashes on some of them and allocates what others announce; raycone must end with status 0 or 2 and one line, at
+once. Debian's OpenVDB is not built for libFuzzer, which would see nothing of what the bytes make it do: hence mutations at
+random, from a fixed seed, of a file by raycone, whose head tells the lattice, and of one whose tree must be read.
+"""
+
+import collections
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:3])
+RUNS = int(sys.argv[3]) if len(sys.argv) > 3 else 200
+PATIENCE = 10.0  # seconds, on a busy machine and under sanitizers
+failures = []
+chance = random.Random(5)
+
+
+def mutated(content):
+    content = bytearray(content)
+    kind = chance.randrange(3)
+    if kind == 0:
+        return content[: chance.randrange(len(content))]
+    if kind == 1:
+        for _ in range(chance.randrange(1, 9)):
+            content[chance.randrange(len(content))] = chance.choice([0, 1, 0x7F, 0x80, 0xFF, chance.randrange(256)])
+        return content
+    place = chance.randrange(len(content) - 4)
+    content[place : place + 4] = chance.choice([b"\xff\xff\xff\x7f", b"\xff\xff\xff\xff", b"\0\0\0\x80", b"\0\0\0\0"])
+    return content
+
+
+# The name of what the run came to, for the count.
+def outcome(content):
+    with open("like.vdb", "wb") as file:
+        file.write(content)
+    start = time.monotonic()
+    arguments = ["lattice", MESH, "--like", "like.vdb", "-o", "out.npy", "--quiet", "--memory-limit", "1G"]
+    result = subprocess.run([RAYCONE, *arguments], capture_output=True, timeout=120)
+    seconds = time.monotonic() - start
+    message = result.stderr.decode(errors="backslashreplace")
+    # A lattice of its own that is too large is no fault of the file's.
+    too_large = result.returncode == 4 and "needs about" in message
+    right_status = result.returncode in (0, 2) or too_large
+    if not right_status or message.count("\n") != (result.returncode != 0) or seconds > PATIENCE:
+        failures.append("status %d after %.1f s: %s: %s" % (result.returncode, seconds, message[:300].strip(), content.hex()))
+    if result.returncode == 0:
+        return "read"
+    return "crashed OpenVDB" if "crashed OpenVDB" in message else "too large" if too_large else "refused"
+
+
+with tempfile.TemporaryDirectory() as directory:
+    os.chdir(directory)
+    subprocess.run([RAYCONE, "lattice", MESH, "-o", "seed.vdb", "--resolution", "4", "--quiet"], check=True)
+    with open("seed.vdb", "rb") as file:
+        by_head = file.read()
+    # Renamed: the lattice that raycone recorded, and OpenVDB's own statistics.
+    by_tree = by_head.replace(b"raycone_index_min", b"raycone_index_mix").replace(b"file_bbox_min", b"file_bbox_mix")
+    assert len(by_tree) == len(by_head)
+    outcomes = collections.Counter()
+    for seed in (by_head, by_tree):
+        assert outcome(seed) == "read", failures
+        outcomes.update(outcome(mutated(seed)) for _ in range(RUNS // 2))
+    os.chdir("/")
+for failure in failures:
+    print(failure)
+print("%s; %d wrong" % (", ".join("%d %s" % (n, name) for name, n in sorted(outcomes.items())), len(failures)))
+sys.exit(1 if failures else 0)

@@ -8,4 +8,4 @@ sh app/install_packages.sh --tests
 cmake --preset dev -DRAYCONE_WERROR="${RAYCONE_WERROR:-OFF}"
 cmake --build --preset dev --parallel "$(nproc)"
 ctest --preset dev --parallel "$(nproc)" --output-log build/dev/ctest.log "$@"
-sh tests/check_skipped.sh build/dev/ctest.log "$(sed -n 's/^RAYCONE_SHARED_MESHES:PATH=//p' build/dev/CMakeCache.txt)"
+sh tests/check_skipped.sh build/dev/ctest.log build/dev

@@ -1,10 +1,12 @@
-"""Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--long]
+"""Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--memory] [--long]
 
-Memory that runs out, signals, a full disk, a file that shrinks. Whatever happens, a run ends with a documented status and
-one line, and leaves the earlier output as it was or replaces it by the complete new one. --long sweeps more finely.
+Signals, a full disk, a file that shrinks; with --memory instead memory that runs out (status 77 where RAYCONE is built with
+a sanitizer). Whatever happens, a run ends with a documented status and one line, and leaves the earlier outputs as they were
+or replaces them by the complete new ones. --long sweeps more finely.
 """
 
 import hashlib
+import json
 import os
 import random
 import resource
@@ -14,9 +16,10 @@ import sys
 import tempfile
 import time
 
-RAYCONE, MESHES = sys.argv[1:3]
+RAYCONE, MESHES = (os.path.abspath(path) for path in sys.argv[1:3])
 LONG = "--long" in sys.argv
 CLOSED, OPEN = (os.path.join(MESHES, name) for name in ("teapot.obj", "open_box.obj"))
+EARLIER = b"earlier"
 failures = []
 
 
@@ -24,30 +27,44 @@ def fail(what, result, message):
     failures.append("%s: status %d: %s" % (what, result, message.decode()[:300].strip()))
 
 
-# A run's arguments in a directory of its own, with an earlier output, whose fate is checked.
-class Run:
-    def __init__(self, name, *arguments, output):
-        self.name, self.arguments, self.output = name, [*arguments, "--threads", "2"], output
-        subprocess.run([RAYCONE, *self.arguments, "-o", output], check=True, stderr=subprocess.DEVNULL)
-        self.complete = self.read()
+def contents(path):
+    with open(path, "rb") as file:
+        return file.read()
 
-    def read(self):
-        with open(self.output, "rb") as file:
-            return hashlib.sha256(file.read()).digest()
+
+# A run's arguments, with earlier outputs, whose fate is checked: -o and those of other options.
+class Run:
+    def __init__(self, name, *arguments, output, **others):
+        self.name, self.outputs = name, [output, *others.values()]
+        self.arguments = [RAYCONE, *arguments, "--threads", "2", "-o", output]
+        for option, path in others.items():
+            self.arguments += ["--" + option, path]
+        subprocess.run(self.arguments, check=True, stderr=subprocess.DEVNULL)
+        self.complete = {path: hashlib.sha256(contents(path)).digest() for path in self.outputs}
+
+    def is_complete(self, path):
+        content = contents(path)
+        if path.endswith(".json"):  # it tells times, which vary
+            return content.endswith(b"}\n") and "seconds" in json.loads(content)
+        return hashlib.sha256(content).digest() == self.complete[path]
 
     def start(self, **options):
-        with open(self.output, "w") as file:
-            file.write("earlier")
+        for path in self.outputs:
+            with open(path, "wb") as file:
+                file.write(EARLIER)
         self.before = set(os.listdir())
-        return subprocess.Popen([RAYCONE, *self.arguments, "-o", self.output], stderr=subprocess.PIPE, **options)
+        return subprocess.Popen(self.arguments, stderr=subprocess.PIPE, **options)
 
-    # `done`: whether the run said that it was.
+    # `done`: whether the run said that it was. Of several outputs some may have been completed before a fault.
     def check(self, what, status, message, done):
         debris = set(os.listdir()) - self.before
         if debris:
             fail("%s, %s left %s" % (self.name, what, debris), status, message)
-        if self.read() != (self.complete if done else hashlib.sha256(b"earlier").digest()):
-            fail("%s, %s: output neither the earlier nor the complete one" % (self.name, what), status, message)
+        for path in self.outputs:
+            if contents(path) == EARLIER and not done:
+                continue
+            if not self.is_complete(path) or (not done and len(self.outputs) == 1):
+                fail("%s, %s: %s neither the earlier nor the complete one" % (self.name, what, path), status, message)
 
 
 def limit(kind, size):
@@ -89,15 +106,16 @@ def sweep_signals(run, count):
         process.send_signal(kind)
         message = process.communicate(timeout=300)[1]
         # A signal between the renaming and the end finds the output complete, and perhaps the summary printed.
-        done = run.read() == run.complete
+        done = run.is_complete(run.outputs[0])
         if process.returncode not in (0, -kind) or (message and not done):
             fail("%s, signal %d" % (run.name, kind), process.returncode, message)
-        run.check("signal %d" % kind, process.returncode, message, done)
+        run.check("signal %d" % kind, process.returncode, message, done and len(run.outputs) == 1)
 
 
 # At any byte the disk may be full.
 def sweep_disk(run, count):
-    length = os.path.getsize(run.output)
+    run.start().communicate()
+    length = os.path.getsize(run.outputs[0])
     for i in range(count):
         size = length * i // count
         process = run.start(preexec_fn=limit(resource.RLIMIT_FSIZE, max(size, 1)))
@@ -124,21 +142,65 @@ def sweep_shrinking(count):
     os.unlink("shrinking.obj")
 
 
-with tempfile.TemporaryDirectory() as directory:
-    os.chdir(directory)
+# The meshes of a batch fail one by one, or all of it does; what there is afterwards is complete.
+def sweep_batch_memory(step):
+    arguments = [RAYCONE, "batch", CLOSED, OPEN, "--resolution", "16", "--threads", "2", "--out-dir"]
+    subprocess.run([*arguments, "whole"], check=True, stderr=subprocess.DEVNULL)
+    complete = {name: contents("whole/" + name) for name in os.listdir("whole") if name.endswith(".vdb")}
+    size, statuses = 24 << 20, []
+    while statuses.count(0) < 3:
+        subprocess.run(["rm", "-rf", "out"], check=True)
+        process = subprocess.run([*arguments, "out"], capture_output=True, timeout=300, preexec_fn=limit(resource.RLIMIT_AS, size))
+        what = "batch, address space of %d MB" % (size >> 20)
+        statuses.append(process.returncode)
+        lines = process.stderr.splitlines()
+        if process.returncode not in (0, 4, 5, 127) or (process.returncode != 127 and not all(line.startswith(b"raycone: ") for line in lines)):
+            fail(what, process.returncode, process.stderr)
+        for name in os.listdir("out") if os.path.isdir("out") else []:
+            if not name.endswith(".csv") and contents("out/" + name) != complete.get(name):
+                fail("%s: %s is not the complete one" % (what, name), process.returncode, process.stderr)
+        size += step
+        if size > 8 << 30:
+            return fail("batch: no memory is enough", process.returncode, process.stderr)
+
+
+def all_runs():
     with open("points.csv", "w") as points:
         points.writelines("%r,%r,%r\n" % (random.random(), random.random(), random.random()) for _ in range(20000))
     runs = [
         Run("closed mesh to VDB", "lattice", CLOSED, "--resolution", "48", output="out.vdb"),
         Run("open mesh to CSV", "lattice", OPEN, "--resolution", "24", "--diagnostics", output="out.csv"),
         Run("points to NPY", "points", CLOSED, "points.csv", output="points.npy"),
+        Run("level set to VTI", "lattice", CLOSED, "--field", "sdf", "--resolution", "24", output="out.vti", depfile="out.d"),
+        Run("samples to NPZ", "points", CLOSED, "--sample", "uniform=9000,near=9000:0.01", "--field", "winding,inside,sdf",
+            output="out.npz", report="npz.json"),
+        Run("slice to PNG", "slice", OPEN, "--size", "150", output="out.png", values="values.npy", report="png.json"),
     ]
-    for run in runs:
-        sweep_disk(run, 60 if LONG else 6)
-        sweep_signals(run, 300 if LONG else 15)
-        if "--no-memory" not in sys.argv:  # sanitizers need terabytes of addresses
+    os.rename("out.vdb", "like.vdb")
+    runs[0] = Run("closed mesh to VDB", "lattice", CLOSED, "--like", "like.vdb", output="out.vdb", report="vdb.json")
+    return runs
+
+
+# Sanitizers reserve terabytes of addresses before the program starts.
+def is_sanitized():
+    return subprocess.run([RAYCONE, "--version"], capture_output=True, preexec_fn=limit(resource.RLIMIT_AS, 8 << 30)).returncode != 0
+
+
+if "--memory" in sys.argv and is_sanitized():
+    print("no sanitizer lives within a limit of addresses")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as directory:
+    os.chdir(directory)
+    for run in all_runs():
+        if "--memory" in sys.argv:
             sweep_memory(run, (1 if LONG else 10) << 20)
-    sweep_shrinking(200 if LONG else 10)
+        else:
+            sweep_disk(run, 60 if LONG else 6)
+            sweep_signals(run, 300 if LONG else 15)
+    if "--memory" in sys.argv:
+        sweep_batch_memory((1 if LONG else 20) << 20)
+    else:
+        sweep_shrinking(200 if LONG else 10)
     os.chdir("/")
 for failure in failures:
     print(failure)

@@ -1,0 +1,140 @@
+"""A small disk that is full or read-only: python3 full_disk_test.py RAYCONE MESH_DIRECTORY
+
+Every command, on a file system of its own (tmpfs in a namespace of users and mounts) with ever more room, until it succeeds:
+before that status 3, one line, the earlier outputs and nothing else. Status 77 where no such namespace may be made.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+
+RAYCONE, MESHES = (os.path.abspath(path) for path in sys.argv[1:3])
+NAMESPACE = ["unshare", "--user", "--map-root-user", "--mount"]
+CLOSED, OPEN = (os.path.join(MESHES, name) for name in ("cube.obj", "open_box.obj"))
+DISK = 4 << 20
+EARLIER = b"earlier"
+failures = []
+
+
+# Arguments, and the outputs among them.
+COMMANDS = [
+    (["lattice", OPEN, "--resolution", "12", "-o", "out.vdb", "--report", "out.json"], ["out.vdb", "out.json"]),
+    (["lattice", OPEN, "--resolution", "12", "-o", "out.csv", "--depfile", "out.d"], ["out.csv", "out.d"]),
+    (["lattice", OPEN, "--resolution", "24", "-o", "out.npy"], ["out.npy"]),
+    (["lattice", OPEN, "--resolution", "24", "--field", "sdf", "-o", "out.vti"], ["out.vti"]),
+    (["points", OPEN, "--sample", "uniform=2000", "-o", "out.npz"], ["out.npz"]),
+    (["points", OPEN, "--sample", "uniform=2000", "-o", "samples.csv"], ["samples.csv"]),
+    (["slice", OPEN, "--size", "64", "-o", "out.png", "--values", "values.npy"], ["out.png", "values.npy"]),
+    (["report", "batch", "-o", "page.html"], ["page.html"]),
+]
+
+
+def contents(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def run(arguments):
+    quiet = [] if arguments[0] == "report" else ["--quiet"]
+    return subprocess.run([RAYCONE, *arguments, *quiet], capture_output=True, timeout=300)
+
+
+def fail(what, result):
+    failures.append("%s: status %d: %s" % (what, result.returncode, result.stderr.decode()[:300].strip()))
+
+
+def empty():
+    if os.path.exists("filler"):
+        os.unlink("filler")
+
+
+# Fills the disk but for so many bytes.
+def leave(room):
+    empty()
+    free = os.statvfs(".").f_bavail * os.statvfs(".").f_bsize
+    with open("filler", "wb") as file:
+        file.write(bytes(free - room))
+
+
+def run_once(arguments, outputs, expected):
+    before = set(os.listdir())
+    result = run(arguments)
+    what = " ".join(arguments)
+    if set(os.listdir()) != before:
+        fail("%s left %s" % (what, set(os.listdir()) - before), result)
+    if result.returncode == 0:
+        return True
+    message = result.stderr.decode()
+    if result.returncode != 3 or message.count("\n") != 1 or not message.startswith("raycone: ") or expected not in message:
+        fail(what, result)
+    if contents(outputs[0]) != EARLIER and len(outputs) == 1:
+        fail("%s: not the earlier output" % what, result)
+    return False
+
+
+# From a page on, which is what a tmpfs counts in, to enough.
+def sweep_room(arguments, outputs):
+    refusals, room = 0, 0
+    while True:
+        empty()
+        for path in outputs:
+            with open(path, "wb") as file:
+                file.write(EARLIER)
+        leave(room)
+        if run_once(arguments, outputs, "No space left on device"):
+            break
+        if room > DISK // 2:
+            return failures.append("%s: no room is enough" % " ".join(arguments))
+        refusals += 1
+        room += 4096 if room < 65536 else 65536
+    if refusals == 0:
+        failures.append("%s: had room on a full disk" % " ".join(arguments))
+
+
+# Rows that cannot be written end a batch; an output that cannot costs its mesh.
+def sweep_batch():
+    statuses, room = [], 0
+    while 0 not in statuses:
+        subprocess.run(["rm", "-rf", "out"], check=True)
+        leave(room)
+        result = run(["batch", CLOSED, OPEN, "--resolution", "12", "--format", "npy", "--out-dir", "out", "--threads", "1"])
+        statuses.append(result.returncode)
+        if result.returncode not in (0, 3, 5) or not all(line.startswith(b"raycone: ") for line in result.stderr.splitlines()):
+            fail("batch with %d bytes of room" % room, result)
+        for name in os.listdir("out") if os.path.isdir("out") else []:
+            if not name.endswith((".csv", ".npy")) or (name.endswith(".npy") and os.path.getsize("out/" + name) != 128 + 4 * 12**3):
+                fail("batch with %d bytes of room left %s" % (room, name), result)
+        room += 4096
+    if not {3, 5} <= set(statuses):
+        failures.append("batch: neither rows nor outputs lacked room: %s" % statuses)
+
+
+def inside(directory):
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=%d" % DISK, "tmpfs", directory], check=True)
+    os.chdir(directory)
+    subprocess.run([RAYCONE, "batch", CLOSED, OPEN, "--resolution", "8", "--out-dir", "batch", "--quiet"], check=True)
+    for arguments, outputs in COMMANDS:
+        sweep_room(arguments, outputs)
+    sweep_batch()
+    empty()
+    subprocess.run(["mount", "-o", "remount,ro", directory], check=True)
+    for arguments, outputs in COMMANDS:
+        result = run(arguments)
+        if result.returncode != 3 or b"Read-only file system" not in result.stderr or result.stderr.count(b"\n") != 1:
+            fail("read-only: " + " ".join(arguments), result)
+    for failure in failures:
+        print(failure)
+    print("%d wrong" % len(failures))
+    os.chdir("/")
+    sys.exit(1 if failures else 0)
+
+
+if "--inside" in sys.argv:
+    inside(sys.argv[-1])
+with tempfile.TemporaryDirectory() as directory:
+    mountable = [*NAMESPACE, "mount", "-t", "tmpfs", "tmpfs", directory]
+    if subprocess.run(mountable, stderr=subprocess.DEVNULL).returncode != 0:
+        print("no namespace for a file system of its own may be made here")
+        sys.exit(77)
+    sys.exit(subprocess.run([*NAMESPACE, sys.executable, __file__, *sys.argv[1:3], "--inside", directory]).returncode)

@@ -1,5 +1,6 @@
-// libFuzzer target of the point readers (text, NPY, PLY): whatever the bytes, they return finite points, as many as
-// announced, or throw InputError or LimitError.
+// libFuzzer target of the point readers (text, NPY, PLY; with RAYCONE_RAW coordinates alone, in the precision that the
+// first byte says): whatever the bytes, they return finite points, as many as announced, or throw InputError or
+// LimitError.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -32,9 +33,9 @@ class MemoryFile {
   int descriptor_;
 };
 
-void read_all(const std::string& path) {
+void read_all(const std::string& path, const ReadPointsOptions& options) {
   constexpr std::size_t kBatch = 7;
-  const std::unique_ptr<PointReader> reader = open_points(path);
+  const std::unique_ptr<PointReader> reader = open_points(path, options);
   std::vector<Vec3> batch;
   std::uint64_t count = 0;
   while (reader->next(batch, kBatch)) {
@@ -51,9 +52,15 @@ void read_all(const std::string& path) {
 }  // namespace raycone
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  raycone::ReadPointsOptions options;
+#ifdef RAYCONE_RAW
+  if (size == 0) return 0;
+  options.raw = data[0] % 2 == 0 ? raycone::RawPrecision::kFloat : raycone::RawPrecision::kDouble;
+  ++data, --size;
+#endif
   const raycone::MemoryFile file(data, size);
   try {
-    raycone::read_all(file.path());
+    raycone::read_all(file.path(), options);
   } catch (const raycone::InputError&) {
   } catch (const raycone::LimitError&) {
   }

@@ -5,26 +5,11 @@
 // that of the quotient t (u) thus count double; the rest's quotient, the product and the sum add less than 3 u.
 #include "core/angle.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace raycone {
 namespace {
-
-// atan(k / 8) / (2 pi).
-constexpr std::array<long double, 9> kTableInTurns = {
-    0.0L,
-    0.019791712080282771005425836L,
-    0.038989565188684662730256445L,
-    0.057100125609954067523037813L,
-    0.073791808825216637087700538L,
-    0.088903842244676376557751794L,
-    0.102416382349566725824598924L,
-    0.114405347682526793903023851L,
-    0.125L,
-};
-constexpr long double kTurnsPerRadian = 0.159154943091895335768883763L;
 
 template <class Real>
 Real small_arc_tangent(Real t) {
@@ -39,7 +24,7 @@ Real arc_tangent_in_turns(Real t) {
   const Real k = std::nearbyint(8 * t);
   const Real c = k / 8;
   const Real rest = (t - c) / (1 + t * c);
-  return static_cast<Real>(kTableInTurns[static_cast<std::size_t>(k)]) +
+  return static_cast<Real>(kArcTangentsInTurns[static_cast<std::size_t>(k)]) +
          static_cast<Real>(kTurnsPerRadian) * small_arc_tangent(rest);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/angle.h"
 #include "core/exterior_edges.h"
 
 namespace raycone {
@@ -33,7 +32,7 @@ void Cone::winding_numbers(SampleTile& samples, std::span<Turns> cone) const {
     multiply_chains_(group.steps, samples, products);
     for (std::size_t i = 0; i < samples.count; ++i) {
       cone[i].whole += group.multiplicity * static_cast<std::int64_t>(products.turns[i]);
-      cone[i].rest += group.multiplicity * argument_in_turns<double>(products.re[i], products.im[i]);
+      cone[i].rest += group.multiplicity * products.argument[i];
     }
   }
 }

@@ -1,11 +1,13 @@
 #include "core/cone_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
 
+#include "core/angle.h"
 #include "core/edge_factor.h"
 #include "core/near_edge.h"
 #include "core/predicates.h"
@@ -106,6 +108,10 @@ struct Chunk {
   [[nodiscard]] Vec3 vertex(std::size_t n) const { return {x[n], y[n], z[n]}; }
 };
 
+EdgeSide side_of(const Chunk& chunk, std::size_t n, const Vec3& q) {
+  return edge_side(chunk.vertex(n), chunk.vertex(n + 1), q);
+}
+
 // One value per vertex of a chunk and lane.
 using LaneColumn = std::array<double, (kEdgesPerChunk + 1) * 8>;
 HWY_INLINE void store(Lanes value, LaneColumn& column, std::size_t n) {
@@ -116,7 +122,7 @@ HWY_INLINE Lanes load(const LaneColumn& column, std::size_t n) { return hn::Load
 // The projections of a chunk along the one ray that all samples share: the lanes can be vertices and edges.
 class OneRay {
  public:
-  OneRay(const Chunk& chunk, const SampleTile& samples) : y_{}, z_{}, square_{} {
+  OneRay(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), y_{}, z_{}, square_{} {
     for (std::size_t n = 0; n <= chunk.edges; n += hn::Lanes(d)) {
       const Lanes y = hn::Sub(hn::LoadU(d, &chunk.y[n]), hn::Set(d, samples.y[0]));
       const Lanes z = hn::Sub(hn::LoadU(d, &chunk.z[n]), hn::Set(d, samples.z[0]));
@@ -131,6 +137,10 @@ class OneRay {
       hn::StoreU(edge.im, d, &im_[n]);
       hn::StoreU(edge.direction, d, &direction_[n]);
     }
+    for (std::size_t n = 0; n < chunk.edges; ++n) {
+      if (chunk.orientation[n] != 0.0 && std::isnan(im_[n]))
+        sides_[n] = side_of(chunk, n, {samples.x[0], samples.y[0], samples.z[0]});
+    }
   }
 
   // What a group of samples has seen of the vertices, beyond what all see.
@@ -141,14 +151,20 @@ class OneRay {
   [[nodiscard]] ProjectedEdge edge(std::size_t n, const Seen&) const {
     return {hn::Set(d, re_[n]), hn::Set(d, im_[n]), hn::Set(d, direction_[n])};
   }
+  // That of edge n, exact.
+  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const {
+    return std::isnan(im_[n]) ? sides_[n] : side_of(chunk_, n, q);
+  }
 
  private:
   [[nodiscard]] Projected projected(std::size_t n) const {
     return {hn::LoadU(d, &y_[n]), hn::LoadU(d, &z_[n]), hn::LoadU(d, &square_[n])};
   }
 
+  const Chunk& chunk_;
   Column y_, z_, square_;
   Column re_, im_, direction_;
+  std::array<EdgeSide, kEdgesPerChunk> sides_;  // where Im z is NaN
 };
 
 // The same for samples with a ray each.
@@ -173,6 +189,7 @@ class RayOfEach {
     return project(seen.vertex(n), seen.vertex(n + 1), hn::Set(d, chunk_.dy[n]), hn::Set(d, chunk_.dz[n]),
                    hn::Set(d, chunk_.orientation[n]));
   }
+  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return side_of(chunk_, n, q); }
 
  private:
   const Chunk& chunk_;
@@ -278,7 +295,8 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
       if ((trusted >> lane) & 1U) continue;
       if ((plain[0] >> lane) & 1U) {
         multiply_one(products, i + lane, re[lane], im[lane]);
-      } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q)) {
+      } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q,
+                                            rays.side(n, q))) {
         multiply_one(products, i + lane, f->re, f->im);
       }
     }
@@ -342,6 +360,42 @@ void set_turns(ProductTile& products, std::size_t count) {
   }
 }
 
+// atan(t) / (2 pi) for t in [0, 1]. This and the next one: operation by operation what core/angle.cpp does for one.
+HWY_INLINE Lanes arc_tangent_in_turns(Lanes t) {
+  static constexpr auto kTable = [] {
+    std::array<double, kArcTangentsInTurns.size()> table{};
+    std::copy(kArcTangentsInTurns.begin(), kArcTangentsInTurns.end(), table.begin());
+    return table;
+  }();
+  const hn::RebindToSigned<Doubles> integers;
+  const Lanes k = hn::Round(hn::Mul(hn::Set(d, 8.0), t));
+  const Lanes c = hn::Mul(k, hn::Set(d, 0.125));
+  const Lanes rest = hn::Div(hn::Sub(t, c), hn::Add(hn::Set(d, 1.0), hn::Mul(t, c)));
+  const Lanes s = hn::Mul(rest, rest);
+  Lanes tail = hn::Zero(d);
+  for (int power = 17; power >= 3; power -= 2) {
+    tail = hn::Mul(s, hn::Add(hn::Set(d, (power % 4 == 1 ? 1.0 : -1.0) / power), tail));
+  }
+  const Lanes radians = hn::Add(rest, hn::Mul(rest, tail));
+  return hn::Add(hn::GatherIndex(d, kTable.data(), hn::ConvertTo(integers, k)),
+                 hn::Mul(hn::Set(d, static_cast<double>(kTurnsPerRadian)), radians));
+}
+
+HWY_INLINE Lanes argument_in_turns_of(Lanes re, Lanes im) {
+  const Lanes x = hn::Abs(re), y = hn::Abs(im);
+  const auto flat = hn::Le(y, x);
+  const Lanes octant = arc_tangent_in_turns(hn::Div(hn::IfThenElse(flat, y, x), hn::IfThenElse(flat, x, y)));
+  const Lanes quadrant = hn::IfThenElse(flat, octant, hn::Sub(hn::Set(d, 0.25), octant));
+  return hn::CopySign(hn::IfNegativeThenElse(re, hn::Sub(hn::Set(d, 0.5), quadrant), quadrant), im);
+}
+
+void set_arguments(ProductTile& products, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::Store(argument_in_turns_of(hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i])), d,
+              &products.argument[i]);
+  }
+}
+
 template <class Rays>
 void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   products.re.fill(1.0);
@@ -353,6 +407,7 @@ void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, P
     multiply_chunk<Rays>(products, chunk, samples);
   }
   set_turns(products, samples.count);
+  set_arguments(products, samples.count);
 }
 
 void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {

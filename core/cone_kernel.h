@@ -33,11 +33,13 @@ struct SampleTile {
   [[nodiscard]] bool share_a_ray() const;  // one y and one z, as along a row of a lattice
 };
 
-// Per sample the product of the factors, scaled by a power of two, and the turns that its argument has completed.
+// Per sample the product of the factors, scaled by a power of two, the turns that its argument has completed, and what
+// is left of it, as argument_in_turns() (core/angle.h).
 struct ProductTile {
   alignas(64) Tile re;
   alignas(64) Tile im;
   alignas(64) Tile turns;  // integers
+  alignas(64) Tile argument;
 };
 
 // Multiplies the factors of all edges at all samples. One lane is one sample, and its operations come in one order,

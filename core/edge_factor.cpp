@@ -28,7 +28,8 @@ Factor<double> scaled(const Factor<double>& f) {
 }
 
 // |Im| is |D|.
-Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q, const EdgeDeterminant& d) {
+Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const EdgeDeterminant d = edge_determinant(a, b, q);
   const Corner ca(a, q), cb(b, q);
   const double product_of_s = ca.s * cb.s;
   const Factor<double> plain{product_of_s + (ca.y * cb.y + ca.z * cb.z), d.value};
@@ -40,12 +41,11 @@ Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q, const
 
 }  // namespace
 
-std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
-  const EdgeDeterminant d = edge_determinant(a, b, q);
-  const EdgeSide side = edge_side(a, b, q, d);
+std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,
+                                          const EdgeSide& side) {
   if (side.sign == 0) return std::nullopt;  // projects to a point
   const std::optional<Factor<double>> f =
-      side.tie ? tied_factor<double>(a, b, q) : std::optional(generic_factor(a, b, q, d));
+      side.tie ? tied_factor<double>(a, b, q) : std::optional(generic_factor(a, b, q));
   if (!f) return std::nullopt;
   return scaled({f->re, std::copysign(f->im, reversed ? -side.sign : side.sign)});
 }

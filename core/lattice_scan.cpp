@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/threads.h"
+#include "core/triangle_sections.h"
 
 namespace raycone {
 namespace {
@@ -30,10 +31,35 @@ Place place_of(double x, const std::vector<double>& values, double per_unit) {
 struct Range {
   std::uint32_t begin, end;
   [[nodiscard]] bool empty() const { return begin >= end; }
+  [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
 Range range_of(const Place& a, const Place& b, const Place& c) {
   return {std::min({a.below, b.below, c.below}), std::max({a.up_to, b.up_to, c.up_to})};
+}
+
+// Calls visit(j, k) for the rows that the triangle may concern, of those in its box.
+template <class Visit>
+void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const Range& js, const Range& ks,
+                const Visit& visit) {
+  constexpr std::uint32_t kFew = 6;  // rows, not worth a section
+  if (std::max(js.size(), ks.size()) <= kFew) {
+    for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
+      for (std::uint32_t j = js.begin; j < js.end; ++j) visit(j, k);
+    }
+  } else if (js.size() >= ks.size()) {
+    const TriangleSections sections(a, b, c, 1);
+    for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
+      sections.visit(rows.zs[k], rows.ys, rows.samples_per_unit.y, js.begin, js.end,
+                     [&](std::uint32_t j) { visit(j, k); });
+    }
+  } else {
+    const TriangleSections sections(a, b, c, 2);
+    for (std::uint32_t j = js.begin; j < js.end; ++j) {
+      sections.visit(rows.ys[j], rows.zs, rows.samples_per_unit.z, ks.begin, ks.end,
+                     [&](std::uint32_t k) { visit(j, k); });
+    }
+  }
 }
 
 }  // namespace
@@ -70,17 +96,16 @@ void LatticeScan::scan(const TriangleMesh& mesh, const std::vector<VertexPlace>&
   const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]], &c = mesh.vertices[triangle[2]];
   if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
   const TrianglePlane plane(a, b, c);
-  for (std::size_t k = ks.begin; k < ks.end; ++k) {
-    for (std::size_t j = js.begin; j < js.end; ++j) {
-      const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
-      const TriangleCrossing crossing = triangle_crossing(a, b, c, row, &plane);
-      const auto number = static_cast<std::uint32_t>(k * rows.ys.size() + j);
-      if (crossing.crossed > 0) {
-        found.crossed.push_back({number, static_cast<std::uint32_t>(crossing.crossed), crossing.sigma});
-      }
-      if (crossing.met > 0 || crossing.on_begin < crossing.on_end) found.degenerate.push_back({number, crossing});
+  const auto visit = [&](std::uint32_t j, std::uint32_t k) {
+    const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
+    const TriangleCrossing crossing = triangle_crossing(a, b, c, row, &plane);
+    const auto number = static_cast<std::uint32_t>(k * rows.ys.size() + j);
+    if (crossing.crossed > 0) {
+      found.crossed.push_back({number, static_cast<std::uint32_t>(crossing.crossed), crossing.sigma});
     }
-  }
+    if (crossing.met > 0 || crossing.on_begin < crossing.on_end) found.degenerate.push_back({number, crossing});
+  };
+  visit_rows(a, b, c, rows, js, ks, visit);
 }
 
 void LatticeScan::sort_by_row(const std::vector<Found>& parts, std::size_t rows) {

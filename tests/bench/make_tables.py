@@ -77,6 +77,16 @@ def evaluation(results, what, meshes, threads):
     return table(header, rows)
 
 
+def throughput(results, what, baseline):
+    rows = []
+    for name, (time, counters) in results.items():
+        if name.startswith(what + "/"):
+            rate = counters["bytes_per_second"] * counters["real_time"] / time
+            compared = results.get(name.replace(what, baseline), (None, None))[0]
+            rows.append([name.split("/")[1], f"{rate / 1e6:.0f}", f"{time / compared:.1f}" if compared else "-"])
+    return rows
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         run = json.load(file)
@@ -93,7 +103,13 @@ def main():
         title = "one thread" if count == 1 else f"{count} threads"
         print(f"### Read (always one thread) and prepare, {title}\n\n{preparation(results, meshes, count)}")
         print(f"### Lattice of 50 x 50 x 50 samples, {title}\n\n{evaluation(results, 'lattice', meshes, count)}")
-        print(f"### 100 000 random points, {title}\n\n{evaluation(results, 'points', meshes, count)}")
+        print(f"### Random points: a million in closed meshes, 100 000 in open ones; {title}\n")
+        print(evaluation(results, "points", meshes, count))
+    reading = throughput(results, "read_format", "line_ends")
+    print("### Reading a mesh of 409 600 faces, one thread\n")
+    print(table(["file", "MB/s", "times as long as finding its line ends"], reading))
+    print("### Writing eight million samples, or a million points, one thread\n")
+    print(table(["file", "MB/s"], [row[:2] for row in throughput(results, "write_format", "")]))
 
 
 if __name__ == "__main__":

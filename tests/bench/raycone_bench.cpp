@@ -21,15 +21,19 @@
 #include "core/weld.h"
 #include "core/winding_number.h"
 #include "io/read_mesh.h"
+#include "tests/bench/io_bench.h"
 #include "tests/bench/paper_transcription.h"
+#include "tests/support/temporary_directory.h"
 
 namespace raycone::bench {
 namespace {
 
-// The bundled teapot, and six shared meshes: from closed to mostly boundary.
+// The bundled teapot, and shared meshes: from closed to mostly boundary.
 const std::vector<std::string> kMeshes = {
     RAYCONE_DATA "/meshes/teapot.obj",
     RAYCONE_SHARED_MESHES "/thingi10k/79741.stl",
+    RAYCONE_SHARED_MESHES "/thingi10k/99865.stl",
+    RAYCONE_SHARED_MESHES "/meshes__sword-quad-dominant.obj",
     RAYCONE_SHARED_MESHES "/meshes__nefertiti-lowres.obj",
     RAYCONE_SHARED_MESHES "/meshes__demosthenes-low-res.obj",
     RAYCONE_SHARED_MESHES "/meshes__mountain.obj",
@@ -39,6 +43,7 @@ const std::vector<std::string> kMeshes = {
 
 constexpr std::int64_t kSamplesPerSide = 50;
 constexpr std::size_t kPoints = 100'000;
+constexpr std::size_t kPointsInClosedMeshes = 1'000'000;
 
 // Both ends of the mesh's box are samples: `--resolution 50,50,50`.
 Lattice lattice_of(const Box& box) {
@@ -50,13 +55,13 @@ Lattice lattice_of(const Box& box) {
 }
 
 // Uniform in the box; mt19937_64 and this conversion give the same points everywhere.
-std::vector<Vec3> random_points(const Box& box) {
+std::vector<Vec3> random_points(const Box& box, std::size_t count) {
   std::mt19937_64 generator(1);
   const auto coordinate = [&](int axis) {
     const double fraction = std::ldexp(static_cast<double>(generator() >> 11), -53);
     return box.lower[axis] + fraction * (box.upper[axis] - box.lower[axis]);
   };
-  std::vector<Vec3> points(kPoints);
+  std::vector<Vec3> points(count);
   for (Vec3& point : points) {
     for (int axis = 0; axis < 3; ++axis) point[axis] = coordinate(axis);
   }
@@ -83,8 +88,8 @@ Workload load(const std::string& path) {
   workload.welded = weld(workload.mesh, {});
   const Box box = bounding_box(workload.welded);
   workload.lattice = lattice_of(box);
-  workload.points = random_points(box);
   const WindingNumberEvaluator evaluator(workload.welded);
+  workload.points = random_points(box, evaluator.exterior_edges() == 0 ? kPointsInClosedMeshes : kPoints);
   workload.lattice_reference.resize(static_cast<std::size_t>(whole(workload.lattice).size()));
   evaluator.evaluate(workload.lattice, whole(workload.lattice), workload.lattice_reference);
   workload.points_reference.resize(workload.points.size());
@@ -201,6 +206,8 @@ int main(int argc, char** argv) {
     workloads.push_back(raycone::bench::load(path));
     raycone::bench::add_workload(workloads.back(), threads);
   }
+  const raycone::test::TemporaryDirectory directory;
+  raycone::bench::add_io_benchmarks(directory.path());
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -14,7 +14,7 @@ commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 name=docs/benchmarks/$(date -u +%Y-%m-%d)-$commit
 [ -z "$(git status --porcelain --untracked-files=no 2>/dev/null)" ] || commit="$commit with local changes"
 mkdir -p docs/benchmarks
-build/bench/tests/bench/raycone_bench --benchmark_repetitions=5 --benchmark_min_time=0.1 \
+build/bench/tests/raycone_bench --benchmark_repetitions=5 --benchmark_min_time=0.1 \
   --benchmark_context=commit="$commit" --benchmark_context=compiler="$("$compiler" --version | head -n 1)" \
   --benchmark_out="$name.json" --benchmark_out_format=json "$@"
 sed -i '/"host_name"/d' "$name.json"

@@ -19,7 +19,7 @@ constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-// 0 for what is not a component type.
+// Of a type that is_position_type() or is_index_type() accepts.
 std::size_t component_size(std::uint64_t type) {
   switch (type) {
     case kByte:
@@ -28,15 +28,14 @@ std::size_t component_size(std::uint64_t type) {
     case kShort:
     case kUnsignedShort:
       return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
     default:
-      return 0;
+      return 4;
   }
 }
 
-bool is_position_type(std::uint64_t type) { return component_size(type) != 0 && type != kUnsignedInt; }
+bool is_position_type(std::uint64_t type) {
+  return type == kByte || type == kUnsignedByte || type == kShort || type == kUnsignedShort || type == kFloat;
+}
 bool is_index_type(std::uint64_t type) {
   return type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt;
 }

@@ -19,7 +19,7 @@ allow() {
   allow 'OutputFile\.RefusesADirectoryWithoutPermission|BatchMeshes\.ADirectoryThatCannotBeReadStandsForWhatItHolds'
 # The shared meshes lie beside the repository, not in it.
 [ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow 'shared_meshes|accuracy_of_real_meshes|SharedMeshes\..*|ReadGltf\.SharedMeshes.*'
-# Sanitizers reserve terabytes of addresses, so that no limit of addresses can be swept.
+# Sanitizers reserve terabytes of addresses, and die where memory runs out.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory'
 # Containers may forbid file systems of one's own.
 unshare --user --map-root-user --mount true 2>/dev/null || allow 'full_disk'

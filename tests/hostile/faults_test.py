@@ -1,7 +1,7 @@
 """Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--memory] [--long]
 
 Signals, a full disk, a file that shrinks; with --memory instead memory that runs out (status 77 where RAYCONE is built with
-a sanitizer). Whatever happens, a run ends with a documented status and one line, and leaves the earlier outputs as they were
+a sanitizer, which ends the process then). Whatever happens, a run ends with a documented status and one line, and leaves the earlier outputs as they were
 or replaces them by the complete new ones. --long sweeps more finely.
 """
 
@@ -164,6 +164,14 @@ def sweep_batch_memory(step):
             return fail("batch: no memory is enough", process.returncode, process.stderr)
 
 
+# Meshes that never end are read until the limit, and no further.
+def read_endless_meshes():
+    for what in ("%s info --memory-limit 100M /dev/zero", "yes 'v 0 0 0' | exec %s info --memory-limit 100M --mesh-format obj -"):
+        process = subprocess.run(["sh", "-c", what % RAYCONE], capture_output=True, timeout=300)
+        if process.returncode != 4 or process.stderr.count(b"\n") != 1 or b"memory" not in process.stderr:
+            fail(what, process.returncode, process.stderr)
+
+
 def all_runs():
     with open("points.csv", "w") as points:
         points.writelines("%r,%r,%r\n" % (random.random(), random.random(), random.random()) for _ in range(20000))
@@ -181,13 +189,13 @@ def all_runs():
     return runs
 
 
-# Sanitizers reserve terabytes of addresses before the program starts.
+# Sanitizers reserve terabytes of addresses before the program starts, and die where memory runs out.
 def is_sanitized():
     return subprocess.run([RAYCONE, "--version"], capture_output=True, preexec_fn=limit(resource.RLIMIT_AS, 8 << 30)).returncode != 0
 
 
 if "--memory" in sys.argv and is_sanitized():
-    print("no sanitizer lives within a limit of addresses")
+    print("sanitizers do not live within limits of memory")
     sys.exit(77)
 with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
@@ -199,6 +207,7 @@ with tempfile.TemporaryDirectory() as directory:
             sweep_signals(run, 300 if LONG else 15)
     if "--memory" in sys.argv:
         sweep_batch_memory((1 if LONG else 20) << 20)
+        read_endless_meshes()
     else:
         sweep_shrinking(200 if LONG else 10)
     os.chdir("/")

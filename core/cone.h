@@ -15,13 +15,7 @@
 
 namespace raycone {
 
-// A sum of angles in turns: whole turns and a rest, kept apart so that the whole ones stay exact.
-struct Turns {
-  std::int64_t whole = 0;
-  double rest = 0.0;
-};
-
-// The same with 64 bits, and how far the sum may be off.
+// A sum of angles in turns as Turns, with 64 bits, and how far it may be off.
 struct TurnsWithin {
   std::int64_t whole = 0;
   long double rest = 0.0L;

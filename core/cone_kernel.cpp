@@ -5,9 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 
-#include "core/angle.h"
 #include "core/edge_factor.h"
 #include "core/near_edge.h"
 #include "core/predicates.h"
@@ -18,32 +16,17 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/product_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
-
-constexpr std::size_t kEdgesPerBlock = 8;  // multiplied before anybody looks whether all went well
 // An edge is taken with care where |P|^2 of an end is beyond these bounds. Within them s_a s_b is at least 2^-100, so a
 // factor that is not near its edge is above 2^-108, and the product of a block cannot underflow.
 constexpr double kSmallestSquare = 0x1p-50;
 constexpr double kLargestSquare = 0x1p800;
-// Factors within these bounds can be multiplied kEdgesPerBlock times onto a number near 1.
-constexpr double kSmallestFactor = 0x1p-120;
-constexpr double kLargestFactor = 0x1p120;
-constexpr double kLargestProduct = 0x1p1000;
-
-// The products of some samples while they are in registers. Where Im Z changes its sign bit, the argument has passed 0
-// or +-pi; `passages` counts +1 for factors with Im >= 0 and -1 for the others. Together with the sign of Im Z that
-// gives the turns: see set_turns().
-struct Product {
-  Lanes re, im, passages;
-};
 
 // |P|^2, NaN where it is too small or large.
 HWY_INLINE Lanes square_of(Lanes y, Lanes z) {
@@ -236,40 +219,6 @@ HWY_INLINE hn::Mask<Doubles> is_not_near(const Factor& f) {
   return hn::Gt(magnitude(f), hn::Mul(hn::Set(d, kNearEdge), f.product_of_s));
 }
 
-HWY_INLINE Product times(const Product& z, const Factor& f) {
-  const Lanes re = hn::Sub(hn::Mul(z.re, f.re), hn::Mul(z.im, f.im));
-  const Lanes im = hn::Add(hn::Mul(z.re, f.im), hn::Mul(z.im, f.re));
-  return {re, im, hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), f.direction, hn::Zero(d)))};
-}
-
-// Without the power of two, which is exact.
-HWY_INLINE Product scaled(const Product& z) {
-  const hn::RebindToUnsigned<Doubles> bits;
-  const auto largest = hn::BitCast(bits, hn::Max(hn::Abs(z.re), hn::Abs(z.im)));
-  const auto exponent = hn::And(largest, hn::Set(bits, 0x7FF0000000000000U));
-  const Lanes inverse = hn::BitCast(d, hn::Sub(hn::Set(bits, std::uint64_t{2046} << 52), exponent));
-  return {hn::Mul(z.re, inverse), hn::Mul(z.im, inverse), z.passages};
-}
-
-HWY_INLINE Product load(const ProductTile& products, std::size_t i) {
-  return {hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i]), hn::Load(d, &products.turns[i])};
-}
-
-HWY_INLINE void store(const Product& z, ProductTile& products, std::size_t i) {
-  hn::Store(z.re, d, &products.re[i]);
-  hn::Store(z.im, d, &products.im[i]);
-  hn::Store(z.passages, d, &products.turns[i]);
-}
-
-// One sample's product times re + i im.
-void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
-  const double before = z.im[i];
-  const double product_re = z.re[i] * re - before * im, product_im = z.re[i] * im + before * re;
-  if (std::signbit(before) != std::signbit(product_im)) z.turns[i] += std::signbit(im) ? -1.0 : 1.0;
-  z.re[i] = product_re;
-  z.im[i] = product_im;
-}
-
 // A few edges of a chunk.
 struct Block {
   std::size_t begin, end;
@@ -288,12 +237,11 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
     alignas(64) std::array<double, 8> re, im;
     hn::Store(factor.re, d, re.data());
     hn::Store(factor.im, d, im.data());
-    std::uint8_t plain[8] = {};
-    hn::StoreMaskBits(d, hn::And(is_not_near(factor), in_range), plain);
+    const std::uint64_t plain = bits_of(hn::And(is_not_near(factor), in_range));
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       const Vec3 q{samples.x[i + lane], samples.y[i + lane], samples.z[i + lane]};
       if ((trusted >> lane) & 1U) continue;
-      if ((plain[0] >> lane) & 1U) {
+      if ((plain >> lane) & 1U) {
         multiply_one(products, i + lane, re[lane], im[lane]);
       } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q,
                                             rays.side(n, q))) {
@@ -316,20 +264,14 @@ HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const 
     if (chunk.orientation[n] == 0.0) continue;
     const Factor factor = factor_of(rays, corners, n);
     trusted = hn::And(trusted, is_not_near(factor));
-    z = times(z, factor);
+    z = times(z, factor.re, factor.im, factor.direction);
   }
-  // Factors too large show as a product that is large, infinite or NaN.
-  trusted = hn::And(trusted, hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct)));
+  trusted = hn::And(trusted, is_sound(z));
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
     store(scaled(z), products, i);
   } else {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, trusted, bits);
-    multiply_carefully(products, chunk, rays, samples, i, corners, block, bits[0]);
-    const Product careful = load(products, i);
-    store(scaled({hn::IfThenElse(trusted, z.re, careful.re), hn::IfThenElse(trusted, z.im, careful.im),
-                  hn::IfThenElse(trusted, z.passages, careful.passages)}),
-          products, i);
+    multiply_carefully(products, chunk, rays, samples, i, corners, block, bits_of(trusted));
+    store_trusted(z, trusted, products, i);
   }
 }
 
@@ -342,72 +284,23 @@ void multiply_chunk(ProductTile& products, const Chunk& chunk, const SampleTile&
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
     const std::size_t next = i + hn::Lanes(d) < samples.count ? i + hn::Lanes(d) : i;
     corners[1 - here].look(chunk, rays, samples, 0, next);
-    for (std::size_t begin = 0; begin < chunk.edges; begin += kEdgesPerBlock) {
+    for (std::size_t begin = 0; begin < chunk.edges; begin += kFactorsPerBlock) {
       multiply_block(products, chunk, rays, samples, i, corners[here], next, corners[1 - here],
-                     {begin, std::min(begin + kEdgesPerBlock, chunk.edges)});
+                     {begin, std::min(begin + kFactorsPerBlock, chunk.edges)});
     }
     here = 1 - here;
   }
 }
 
-// Passages of the positive and the negative real axis, with a sign each, become turns, which are those of the negative
-// axis from above (+1) and from below (-1). A, B: passages from above to below with Im f >= 0 and Im f < 0; C, D: from
-// below to above with Im f < 0 and Im f >= 0. The turns are A - C, and passages = A + D - B - C, and A + B - C - D is 1
-// where the product ends below, else 0. Rounding can neither create nor lose a turn (docs/method.md).
-void set_turns(ProductTile& products, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    products.turns[i] = (products.turns[i] + (std::signbit(products.im[i]) ? 1.0 : 0.0)) / 2;
-  }
-}
-
-// atan(t) / (2 pi) for t in [0, 1]. This and the next one: operation by operation what core/angle.cpp does for one.
-HWY_INLINE Lanes arc_tangent_in_turns(Lanes t) {
-  static constexpr auto kTable = [] {
-    std::array<double, kArcTangentsInTurns.size()> table{};
-    std::copy(kArcTangentsInTurns.begin(), kArcTangentsInTurns.end(), table.begin());
-    return table;
-  }();
-  const hn::RebindToSigned<Doubles> integers;
-  const Lanes k = hn::Round(hn::Mul(hn::Set(d, 8.0), t));
-  const Lanes c = hn::Mul(k, hn::Set(d, 0.125));
-  const Lanes rest = hn::Div(hn::Sub(t, c), hn::Add(hn::Set(d, 1.0), hn::Mul(t, c)));
-  const Lanes s = hn::Mul(rest, rest);
-  Lanes tail = hn::Zero(d);
-  for (int power = 17; power >= 3; power -= 2) {
-    tail = hn::Mul(s, hn::Add(hn::Set(d, (power % 4 == 1 ? 1.0 : -1.0) / power), tail));
-  }
-  const Lanes radians = hn::Add(rest, hn::Mul(rest, tail));
-  return hn::Add(hn::GatherIndex(d, kTable.data(), hn::ConvertTo(integers, k)),
-                 hn::Mul(hn::Set(d, static_cast<double>(kTurnsPerRadian)), radians));
-}
-
-HWY_INLINE Lanes argument_in_turns_of(Lanes re, Lanes im) {
-  const Lanes x = hn::Abs(re), y = hn::Abs(im);
-  const auto flat = hn::Le(y, x);
-  const Lanes octant = arc_tangent_in_turns(hn::Div(hn::IfThenElse(flat, y, x), hn::IfThenElse(flat, x, y)));
-  const Lanes quadrant = hn::IfThenElse(flat, octant, hn::Sub(hn::Set(d, 0.25), octant));
-  return hn::CopySign(hn::IfNegativeThenElse(re, hn::Sub(hn::Set(d, 0.5), quadrant), quadrant), im);
-}
-
-void set_arguments(ProductTile& products, std::size_t count) {
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    hn::Store(argument_in_turns_of(hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i])), d,
-              &products.argument[i]);
-  }
-}
-
 template <class Rays>
 void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
-  products.re.fill(1.0);
-  products.im.fill(0.0);
-  products.turns.fill(0.0);
+  set_ones(products);
   for (std::size_t begin = 0; begin < steps.size(); begin += kEdgesPerChunk) {
     const Vec3& from = steps[begin > 0 ? begin - 1 : 0].to;
     const Chunk chunk(from, steps.subspan(begin, std::min(kEdgesPerChunk, steps.size() - begin)));
     multiply_chunk<Rays>(products, chunk, samples);
   }
-  set_turns(products, samples.count);
-  set_arguments(products, samples.count);
+  finish(products, samples.count);
 }
 
 void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
@@ -425,60 +318,15 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace raycone {
-namespace {
 
-using Kernel = std::remove_pointer_t<ConeKernel>;
-
-// Null where the processor or the compiler lacks the level. Highway would choose it too, but its library, where it is
-// linked, measures the clock whenever the program starts, for as long as all the rest of a small run takes.
-Kernel* kernel_of([[maybe_unused]] SimdLevel level) {
+ConeKernel cone_kernel([[maybe_unused]] SimdLevel level) {
 #if HWY_ARCH_X86
-  const bool sse4 =
-      __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("aes");
-  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  if (level == SimdLevel::kAvx512) return avx512 ? HWY_CHOOSE_AVX3(multiply_chains_here) : nullptr;
-  if (level == SimdLevel::kAvx2) return avx2 ? HWY_CHOOSE_AVX2(multiply_chains_here) : nullptr;
-  if (level == SimdLevel::kSse4) return sse4 ? HWY_CHOOSE_SSE4(multiply_chains_here) : nullptr;
+  const SimdLevel available = available_level(level);
+  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_chains_here);
+  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_chains_here);
+  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_chains_here);
 #endif
-  return nullptr;
-}
-
-Kernel* best_kernel() {
-  for (const SimdLevel level : {SimdLevel::kAvx512, SimdLevel::kAvx2, SimdLevel::kSse4}) {
-    if (Kernel* const kernel = kernel_of(level)) return kernel;
-  }
   return &HWY_STATIC_DISPATCH(multiply_chains_here);
-}
-
-}  // namespace
-
-void SampleTile::add(const Vec3& q) {
-  x[count] = q.x;
-  y[count] = q.y;
-  z[count] = q.z;
-  ++count;
-}
-
-void SampleTile::fill_up() {
-  for (std::size_t i = count; i % 8 != 0; ++i) {
-    x[i] = x[count - 1];
-    y[i] = y[count - 1];
-    z[i] = z[count - 1];
-  }
-}
-
-bool SampleTile::share_a_ray() const {
-  return std::all_of(y.begin(), y.begin() + count, [&](double value) { return value == y[0]; }) &&
-         std::all_of(z.begin(), z.begin() + count, [&](double value) { return value == z[0]; });
-}
-
-bool is_available(SimdLevel level) { return level == SimdLevel::kBest || kernel_of(level) != nullptr; }
-
-ConeKernel cone_kernel(SimdLevel level) {
-  return level == SimdLevel::kBest || !kernel_of(level) ? best_kernel() : kernel_of(level);
 }
 
 }  // namespace raycone

@@ -4,14 +4,12 @@
 // over- or underflows) and, with exact products and sums, for N.
 #include "core/near_edge.h"
 
-#include <array>
 #include <cmath>
-#include <cstddef>
+
+#include "core/exact_determinant.h"
 
 namespace raycone {
 namespace {
-
-using Quad = __float128;
 
 Quad absolute(Quad x) { return x < 0 ? -x : x; }
 
@@ -19,52 +17,6 @@ Quad square_root(Quad x) {
   if (!(x > 0)) return 0;
   const Quad guess = std::sqrt(static_cast<long double>(x));  // same exponents, 64 bits
   return guess + (x - guess * guess) / (2 * guess);
-}
-
-// A difference of two doubles, exactly, as the two terms of a sum: nothing is rounded, nothing overflows.
-struct Difference {
-  double plus;
-  double minus;
-  [[nodiscard]] Quad rounded() const { return Quad(plus) + minus; }
-};
-
-Difference difference(double x, double y) { return {x, -y}; }
-
-// The exact sum of the terms added, as a non-overlapping expansion (Shewchuk 1997, grow-expansion).
-class ExactSum {
- public:
-  void add(Quad term) {
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Quad sum = term + terms_[i];
-      const Quad part = sum - term;
-      terms_[i] = (term - (sum - part)) + (terms_[i] - part);
-      term = sum;
-    }
-    terms_[size_++] = term;
-  }
-  [[nodiscard]] Quad rounded() const {
-    Quad sum = 0;
-    for (std::size_t i = 0; i < size_; ++i) sum += terms_[i];  // from the smallest
-    return sum;
-  }
-
- private:
-  std::array<Quad, 8> terms_{};
-  std::size_t size_ = 0;
-};
-
-void add_product(ExactSum& sum, const Difference& x, const Difference& y, int sign) {
-  for (const double a : {x.plus, x.minus}) {
-    for (const double b : {y.plus, y.minus}) sum.add(Quad(sign) * a * b);  // 106 bits: exact
-  }
-}
-
-// a d - b c of exact differences, rounded once.
-Quad determinant(const Difference& a, const Difference& b, const Difference& c, const Difference& d) {
-  ExactSum sum;
-  add_product(sum, a, d, 1);
-  add_product(sum, b, c, -1);
-  return sum.rounded();
 }
 
 struct QuadVec3 {

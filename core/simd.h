@@ -13,4 +13,7 @@ enum class SimdLevel {
 // Whether this processor has the level (and the compiler knew it).
 [[nodiscard]] bool is_available(SimdLevel level);
 
+// The level itself where it is available, else the best one; kBest on processors that have none of them.
+[[nodiscard]] SimdLevel available_level(SimdLevel wanted);
+
 }  // namespace raycone

@@ -18,6 +18,7 @@
 #include "core/ray_caster.h"
 #include "core/row.h"
 #include "core/scale.h"
+#include "core/solid_angles.h"
 #include "core/threads.h"
 
 namespace raycone {
@@ -51,7 +52,7 @@ struct Scratch {
   RowCrossings crossings;
   std::vector<std::int64_t> sums;
   SampleTile tile;
-  std::array<Turns, kTile> cone;
+  std::array<Turns, kTile> turns;
 };
 
 // Diagnostics of the samples [begin, begin + count).
@@ -98,19 +99,25 @@ struct PointCrossings {
 // The mesh in one scale, with all that is needed to evaluate rows in that scale.
 class Engine {
  public:
-  Engine(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level)
+  Engine(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level, Summation summation)
       : scale_(scale),
         inverse_(-scale.exponent()),
         engine_(engine),
         level_(level),
+        summation_(summation),
         mesh_(in_scale(std::move(mesh), scale)),
-        cone_(mesh_, level) {}
+        cone_(mesh_, level) {
+    const bool cheaper = SolidAngles::are_cheaper(mesh_.triangles.size(), cone_.exterior_edges());
+    const bool wanted = summation == Summation::kTriangles || (summation == Summation::kCheapest && cheaper);
+    if (wanted && cone_.exterior_edges() > 0) solid_angles_.emplace(mesh_, level);
+  }
   Engine(const Engine&) = delete;  // rays_ refers to mesh_
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] RayEngine engine() const { return engine_; }
   [[nodiscard]] SimdLevel level() const { return level_; }
+  [[nodiscard]] Summation summation() const { return summation_; }
   [[nodiscard]] const Cone& cone() const { return cone_; }
   // Built when first needed: lattices may need neither.
   [[nodiscard]] const RayCaster& rays() const {
@@ -151,17 +158,17 @@ class Engine {
     for (const std::uint32_t triangle : scratch.candidates) scratch.crossings.add(crossing(triangle, row));
   }
 
-  // w = n - w_cone at each sample of a row in the engine's scale, n from scratch.crossings.
+  // w at each sample of a row in the engine's scale, with its crossings in scratch.crossings.
   Tally evaluate_row(const Row& row, std::span<double> values, const Diagnostics* diagnostics, Scratch& scratch) const {
     scratch.sums.resize(row.xs.size());
     RowCrossings::sum(scratch.crossings.crossings, scratch.sums);
-    subtract_cone(
+    set_values(
         scratch.sums, [&](std::size_t i) { return row.query(i); }, values, scratch);
     if (diagnostics) diagnose(row, values, *diagnostics, scratch);
     return tally_of(scratch.crossings, row.xs.size());
   }
 
-  // w = n - w_cone at the points, which are in the engine's scale.
+  // w at the points, which are in the engine's scale.
   Tally evaluate_points(std::span<const Vec3> points, std::span<double> values, const Diagnostics* diagnostics,
                         Scratch& scratch) const {
     Tally tally;
@@ -175,7 +182,7 @@ class Engine {
       diagnostics->degenerate[i] = crossings.ties;
       diagnostics->on_surface[i] = crossings.on_surface ? 1 : 0;
     }
-    subtract_cone(
+    set_values(
         n, [&](std::size_t i) { return points[i]; }, values, scratch);
     for (std::size_t i = 0; diagnostics && i < points.size(); ++i) {
       diagnostics->crossings[i] = n[i];
@@ -202,10 +209,10 @@ class Engine {
     return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
   }
 
-  // values[i] = n[i] - w_cone(query(i)).
+  // values[i] = w(query(i)), n[i] its crossings.
   template <class Query>
-  void subtract_cone(std::span<const std::int64_t> n, const Query& query, std::span<double> values,
-                     Scratch& scratch) const {
+  void set_values(std::span<const std::int64_t> n, const Query& query, std::span<double> values,
+                  Scratch& scratch) const {
     if (cone_.exterior_edges() == 0) {
       std::copy(n.begin(), n.end(), values.begin());
       return;
@@ -213,9 +220,15 @@ class Engine {
     for (std::size_t begin = 0; begin < n.size(); begin += kTile) {
       scratch.tile.clear();
       for (std::size_t i = begin; i < std::min(begin + kTile, n.size()); ++i) scratch.tile.add(query(i));
-      cone_.winding_numbers(scratch.tile, {scratch.cone.data(), scratch.tile.count});
-      for (std::size_t i = 0; i < scratch.tile.count; ++i) {
-        values[begin + i] = static_cast<double>(n[begin + i] - scratch.cone[i].whole) - scratch.cone[i].rest;
+      const std::span<Turns> turns(scratch.turns.data(), scratch.tile.count);
+      if (solid_angles_) {
+        solid_angles_->winding_numbers(scratch.tile, turns);
+      } else {
+        cone_.winding_numbers(scratch.tile, turns);
+      }
+      for (std::size_t i = 0; i < turns.size(); ++i) {
+        values[begin + i] = solid_angles_ ? static_cast<double>(turns[i].whole) + turns[i].rest
+                                          : static_cast<double>(n[begin + i] - turns[i].whole) - turns[i].rest;
       }
     }
   }
@@ -246,8 +259,10 @@ class Engine {
   PowerOfTwo inverse_;
   RayEngine engine_;
   SimdLevel level_;
+  Summation summation_;
   TriangleMesh mesh_;
   Cone cone_;
+  std::optional<SolidAngles> solid_angles_;  // where they take the cone's place
   mutable std::once_flag rays_built_, grid_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
@@ -396,15 +411,15 @@ class PointTile {
 struct WindingNumberEvaluator::Implementation {
   Engine scaled;
 
-  Implementation(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level)
-      : scaled(std::move(mesh), scale, engine, level) {}
+  Implementation(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level, Summation summation)
+      : scaled(std::move(mesh), scale, engine, level, summation) {}
 
   // The engine for queries with these coordinates: where scaling would drop bits of one (a number below 1e-290 mesh
   // sizes), the mesh as it is, in which predicates are slower. Built when first needed.
   [[nodiscard]] const Engine& engine_for(bool scaling_is_exact) const {
     if (scaling_is_exact) return scaled;
     std::call_once(unscaled_built, [this] {
-      unscaled.emplace(scaled.unscaled_mesh(), PowerOfTwo(0), scaled.engine(), scaled.level());
+      unscaled.emplace(scaled.unscaled_mesh(), PowerOfTwo(0), scaled.engine(), scaled.level(), scaled.summation());
     });
     return *unscaled;
   }
@@ -438,10 +453,11 @@ struct WindingNumberEvaluator::Implementation {
   mutable std::optional<Engine> unscaled;
 };
 
-WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level) {
+WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level,
+                                               Summation summation) {
   const DefaultFloatingPoint guard;
   const PowerOfTwo scale = unit_scale(mesh);
-  implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine, level);
+  implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine, level, summation);
 }
 WindingNumberEvaluator::~WindingNumberEvaluator() = default;
 WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept = default;

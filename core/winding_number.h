@@ -38,12 +38,19 @@ enum class RayEngine {
   kEmbree,  // Embree for all
 };
 
+// What is summed up. Values agree up to rounding.
+enum class Summation {
+  kCheapest,   // of the following, as the mesh has it
+  kCone,       // crossings, and the cone over the exterior edges
+  kTriangles,  // the solid angles of all triangles
+};
+
 class WindingNumberEvaluator {
  public:
   // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/weld.h); vertices used
   // by triangles are finite. Throws std::bad_alloc.
   explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
-                                  SimdLevel level = SimdLevel::kBest);
+                                  SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest);
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;

@@ -33,7 +33,7 @@ forbid 'io may include only the data headers of core, and threads.h' "\"(${evalu
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/predicates\.cpp'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/threads\.cpp'
-only_in Highway '[<"]hwy' 'core/cone_kernel\.cpp'
+only_in Highway '[<"]hwy' 'core/(cone_kernel\.cpp|solid_angle_kernel\.cpp|simd\.cpp|product_lanes-inl\.h)'
 only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'
 only_in nlohmann-json '[<"]nlohmann' 'io/gltf_document\.cpp|app/json\.cpp'
 only_in nettle '[<"]nettle' 'io/(base64|read_file)\.cpp'

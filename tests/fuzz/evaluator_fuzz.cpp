@@ -115,12 +115,14 @@ std::vector<Vec3> points_of(const Lattice& lattice) {
 void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
   const std::vector<Vec3> points = points_of(lattice);
   std::vector<double> expected(points.size()), values(points.size());
-  WindingNumberEvaluator(mesh).evaluate(points, expected);
-  for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
-    WindingNumberEvaluator(mesh, engine).evaluate(lattice, whole(lattice), values);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::bit_cast<std::uint64_t>(values[i]) == std::bit_cast<std::uint64_t>(expected[i])) continue;
-      report(mesh, {points[i], "another value as a sample of a lattice"});
+  for (const Summation summation : {Summation::kCone, Summation::kTriangles}) {
+    WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation).evaluate(points, expected);
+    for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
+      WindingNumberEvaluator(mesh, engine, SimdLevel::kBest, summation).evaluate(lattice, whole(lattice), values);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (std::bit_cast<std::uint64_t>(values[i]) == std::bit_cast<std::uint64_t>(expected[i])) continue;
+        report(mesh, {points[i], "another value as a sample of a lattice"});
+      }
     }
   }
 }

@@ -106,24 +106,35 @@ MUTANTS = [
          "return (void)ordinary, square;"),
         ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest;", "return true;")]),
 
+    # --- The sum over triangles ---
+    Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
+        ("core/solid_angle_kernel.cpp", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
+    Mutant("no_care_next_to_triangles", "next to a triangle z_T cancels", [
+        ("core/solid_angle_kernel.cpp", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
+        ("core/solid_angle_kernel.cpp", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
+    Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
+        ("core/solid_angle_kernel.cpp", "if (crossing.crossed > 0) products", "if (false) products")]),
+    Mutant("triangles_as_they_come", "the order of faces changes no bit", [
+        ("core/solid_angles.cpp", "  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });\n", "")]),
+
     # --- The product ---
     Mutant("turns_by_comparison", "turns are told by sign bits: -0 is below the axis", [
-        ("core/cone_kernel.cpp", "std::signbit(before) != std::signbit(product_im)",
+        ("core/product_lanes-inl.h", "std::signbit(before) != std::signbit(product_im)",
          "(before < 0) != (product_im < 0)"),
-        ("core/cone_kernel.cpp", "std::signbit(im) ? -1.0 : 1.0;", "im < 0 ? -1.0 : 1.0;")]),
+        ("core/product_lanes-inl.h", "std::signbit(im) ? -1.0 : 1.0;", "im < 0 ? -1.0 : 1.0;")]),
     Mutant("no_turns", "the running product's turns are counted", [
-        ("core/cone_kernel.cpp", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), f.direction, hn::Zero(d)))",
+        ("core/product_lanes-inl.h", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))",
          "z.passages")]),
     Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
-        ("core/cone_kernel.cpp", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
+        ("core/product_lanes-inl.h", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
     Mutant("product_never_scaled", "the power of two is taken out of the product", [
         ("core/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
     Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
-        ("core/cone_kernel.cpp", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
-        ("core/cone_kernel.cpp", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
+        ("core/product_lanes-inl.h", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
+        ("core/product_lanes-inl.h", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
     Mutant("blocks_of_any_size", "a block may underflow or overflow, and is then multiplied factor by factor", [
         ("core/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
-        ("core/cone_kernel.cpp", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
+        ("core/product_lanes-inl.h", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
     Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
         ("core/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
 

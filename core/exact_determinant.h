@@ -1,0 +1,59 @@
+// Determinants of differences of doubles, rounded once, in 113-bit arithmetic with exact products and sums. Some
+// hundred times slower than in doubles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace raycone {
+
+using Quad = __float128;
+
+// A difference of two doubles, exactly, as the two terms of a sum: nothing is rounded, nothing overflows.
+struct Difference {
+  double plus;
+  double minus;
+  [[nodiscard]] Quad rounded() const { return Quad(plus) + minus; }
+};
+
+inline Difference difference(double x, double y) { return {x, -y}; }
+
+// The exact sum of the terms added, as a non-overlapping expansion (Shewchuk 1997, grow-expansion).
+class ExactSum {
+ public:
+  void add(Quad term) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Quad sum = term + terms_[i];
+      const Quad part = sum - term;
+      terms_[i] = (term - (sum - part)) + (terms_[i] - part);
+      term = sum;
+    }
+    terms_[size_++] = term;
+  }
+  [[nodiscard]] Quad rounded() const {
+    Quad sum = 0;
+    for (std::size_t i = 0; i < size_; ++i) sum += terms_[i];  // from the smallest
+    return sum;
+  }
+
+ private:
+  std::array<Quad, 8> terms_{};
+  std::size_t size_ = 0;
+};
+
+inline void add_product(ExactSum& sum, const Difference& x, const Difference& y, int sign) {
+  for (const double a : {x.plus, x.minus}) {
+    for (const double b : {y.plus, y.minus}) sum.add(Quad(sign) * a * b);  // 106 bits: exact
+  }
+}
+
+// a d - b c of exact differences, rounded once.
+[[nodiscard]] inline Quad determinant(const Difference& a, const Difference& b, const Difference& c,
+                                      const Difference& d) {
+  ExactSum sum;
+  add_product(sum, a, d, 1);
+  add_product(sum, b, c, -1);
+  return sum.rounded();
+}
+
+}  // namespace raycone

@@ -80,8 +80,13 @@ def lattices(folder):
     sphere(mesh, 80_000)
     for n in (64, 128, 256, 512, 1024, 2048):
         yield run(folder, "samples", n, "lattice", mesh, "-o", output, "--resolution", str(n))
-    yield run(folder, "threads", os.cpu_count(), "lattice", mesh, "-o", output, "--resolution", "1024",
-              threads=os.cpu_count())
+    for threads in (1, os.cpu_count()):
+        yield run(folder, "threads, closed, 1024^3", threads, "lattice", mesh, "-o", output, "--resolution", "1024",
+                  threads=threads)
+    cylinder(mesh, 160)
+    for threads in (1, os.cpu_count()):
+        yield run(folder, "threads, 160 exterior edges, 256^3", threads, "lattice", mesh, "-o", output,
+                  "--resolution", "256", threads=threads)
 
 
 def faces(folder):

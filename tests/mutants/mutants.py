@@ -95,7 +95,7 @@ MUTANTS = [
     Mutant("no_near_edge_factor", "near an edge z cancels, in any precision", [
         ("core/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
     Mutant("near_edge_normal_in_double", "N must be known to full relative precision", [
-        ("core/near_edge.cpp", "  return sum.rounded();", "  const auto in_double = [](const Difference& x) { return x.plus + x.minus; };\n"
+        ("core/exact_determinant.h", "  return sum.rounded();", "  const auto in_double = [](const Difference& x) { return x.plus + x.minus; };\n"
          "  return in_double(a) * in_double(d) - in_double(b) * in_double(c);")]),
     Mutant("near_edge_form_always_plain", "the better conditioned of z and z' is taken", [
         ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "true ||")]),

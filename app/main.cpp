@@ -4,19 +4,31 @@
 
 #include "app/batch/worker.h"
 #include "app/exit_code.h"
+#include "app/grid_reader.h"
 #include "app/options.h"
 #include "app/report.h"
 #include "app/run.h"
 #include "app/signals.h"
 
+namespace raycone {
+namespace {
+
+// Raycone starts itself for some of its work, by commands that are not for users.
+ExitCode run_words(const std::vector<std::string>& words) {
+  const std::string command = words.empty() ? "" : words.front();
+  if (command == kWorkerCommand) return run_worker({words.begin() + 1, words.end()});
+  if (command == kGridReaderCommand) return run_grid_reader({words.begin() + 1, words.end()});
+  return run(parse_command_line(words));
+}
+
+}  // namespace
+}  // namespace raycone
+
 int main(int argc, char** argv) {
   using namespace raycone;
   set_up_process();
-  const std::vector<std::string> words(argv + (argc > 0 ? 1 : 0), argv + argc);
   try {
-    const bool is_worker = !words.empty() && words.front() == kWorkerCommand;
-    const ExitCode code = is_worker ? run_worker({words.begin() + 1, words.end()}) : run(parse_command_line(words));
-    return static_cast<int>(code);
+    return static_cast<int>(run_words({argv + (argc > 0 ? 1 : 0), argv + argc}));
   } catch (...) {
     return static_cast<int>(report_current_exception());
   }

@@ -12,6 +12,7 @@
 
 #include "app/field_evaluator.h"
 #include "app/fields.h"
+#include "app/grid_reader.h"
 #include "app/lattice_choice.h"
 #include "app/limits.h"
 #include "app/progress.h"
@@ -22,7 +23,6 @@
 #include "core/weld.h"
 #include "io/field_writer.h"
 #include "io/output_file.h"
-#include "io/read_vdb.h"
 
 namespace raycone {
 namespace {
@@ -42,7 +42,7 @@ void check_cubic(const Vec3& spacing) {
 Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const Lattice lattice = grid
-                              ? read_vdb_lattice(grid->path, grid->name)
+                              ? read_grid_lattice(grid->path, grid->name)
                               : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
   if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
   return lattice;

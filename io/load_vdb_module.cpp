@@ -3,13 +3,10 @@
 #include <sys/mman.h>
 
 #include <cstddef>
-#include <cstring>
 #include <filesystem>
 #include <new>
 #include <string>
-#include <type_traits>
 
-#include "io/child_process.h"
 #include "io/file_error.h"
 #include "io/format_writers.h"
 #include "io/read_vdb.h"
@@ -44,29 +41,6 @@ const vdb::Module& vdb_module(const std::string& name) {
   throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
 }
 
-// How the child tells what became of its reading: one of these letters, and behind it the lattice or the message.
-enum Outcome : char { kRead = 'r', kInvalid = 'i', kOutOfMemory = 'm' };
-
-std::string outcome_of_reading(const vdb::Module& module, const std::string& path, const std::string& name) {
-  static_assert(std::is_trivially_copyable_v<Lattice>);
-  try {
-    const Lattice lattice = module.read(path, name);
-    return std::string(1, kRead).append(reinterpret_cast<const char*>(&lattice), sizeof lattice);
-  } catch (const InputError& error) {
-    return std::string(1, kInvalid) + error.what();
-  } catch (const std::bad_alloc&) {
-    return std::string(1, kOutOfMemory);
-  }
-}
-
-Lattice lattice_from(const std::string& outcome) {
-  if (outcome.at(0) == kInvalid) throw InputError(outcome.substr(1));
-  if (outcome.at(0) == kOutOfMemory) throw std::bad_alloc();
-  Lattice lattice;
-  std::memcpy(&lattice, outcome.data() + 1, sizeof lattice);
-  return lattice;
-}
-
 }  // namespace
 
 std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
@@ -74,15 +48,8 @@ std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const
   return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
 }
 
-// OpenVDB trusts what it reads: damaged files crash it, which must not be the end of this process (and its temporary
-// files, and of the other meshes of a batch).
 Lattice read_vdb_lattice(const std::string& path, const std::string& name) {
-  const vdb::Module& module = vdb_module<InputError>(path);
-  try {
-    return lattice_from(in_child_process([&] { return outcome_of_reading(module, path, name); }));
-  } catch (const ChildDied& death) {
-    throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + death.what() + ")");
-  }
+  return vdb_module<InputError>(path).read(path, name);
 }
 
 }  // namespace raycone

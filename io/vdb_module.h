@@ -16,7 +16,7 @@ namespace raycone::vdb {
 // As make_vdb_lattice_writer() of io/format_writers.h.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                  const OutputDescription& description);
-// As read_vdb_lattice() of io/read_vdb.h, but a damaged file may crash it. Limits this process's memory meanwhile.
+// As read_vdb_lattice() of io/read_vdb.h.
 [[nodiscard]] Lattice read_lattice(const std::string& path, const std::string& name);
 
 // What the module is asked for, by the name kModuleSymbol.

@@ -283,8 +283,9 @@ void ProjectedGrid::Builder::add(std::uint32_t grid_number, std::span<const Entr
   result_.cells_.resize(first + cells);
   const double width = 1.0 / grid.columns_per_unit, height = 1.0 / grid.rows_per_unit;
   for (std::size_t i = 0; i < cells; ++i) {
-    const double y = grid.lower_y + static_cast<double>(i % grid.columns) * width;
-    const double z = grid.lower_z + static_cast<double>(i / grid.columns) * height;
+    const std::size_t column = i % grid.columns, row = i / grid.columns;
+    const double y = grid.lower_y + static_cast<double>(column) * width;
+    const double z = grid.lower_z + static_cast<double>(row) * height;
     finish(first + i, {{y, y + width}, {z, z + height}}, std::span(list).subspan(ends[i], ends[i + 1] - ends[i]),
            depth);
   }

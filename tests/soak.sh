@@ -23,6 +23,7 @@ pipe_points() {
   shift 3
   mkfifo "$work/in" "$work/out"
   sh -c "$producer" >"$work/in" &
+  producer_pid=$!
   "$build/app/raycone" points data/meshes/swiss_roll.obj - "$@" --quiet <"$work/in" >"$work/out" &
   pid=$!
   wc -c <"$work/out" >"$work/bytes" &
@@ -35,6 +36,7 @@ pipe_points() {
     sleep 1
     seconds=$((seconds + 1))
   done
+  wait "$producer_pid"
   wait "$pid"
   wait "$counter"
   echo "$name: $points points in $seconds s, $(cat "$work/bytes") bytes out; ${first:-0} kB after 3 s, at most $most kB"
@@ -44,9 +46,10 @@ pipe_points() {
 }
 
 text="awk 'BEGIN { for (i = 0; i < $points; i++) printf \"%.6f,%.6f,%.6f\\n\", 3*rand()-1.5, 3*rand()-1.5, 3*rand() }'"
-raw="python3 -c 'import array, random, sys; random.seed(1)
-block = array.array(\"d\", (random.uniform(-1.5, 1.5) for _ in range(300000))).tobytes()
-for _ in range($points // 100000): sys.stdout.buffer.write(block)'"
+python3 -c 'import array, random, sys
+random.seed(1)
+array.array("d", (random.uniform(-1.5, 1.5) for _ in range(300000))).tofile(sys.stdout.buffer)' >"$work/block"
+raw="for i in \$(seq $((points / 100000))); do cat '$work/block'; done"
 pipe_points text 10 "$text"
 pipe_points raw 8 "$raw" --raw f64
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -36,9 +37,11 @@ void erase_progress_line() {
 
 // Installed with SA_RESETHAND: the signal raised again takes its default action as soon as this returns.
 extern "C" void clean_up_and_die(int signal) {
+  const int interrupted = errno;
   remove_temporary_files();
   if (signal != SIGPIPE) erase_progress_line();
   raise(signal);
+  errno = interrupted;
 }
 
 extern "C" void time_out(int /*signal*/) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages that raycone needs, where some are missing:
-#   sh app/install_packages.sh [--tests]
-# --tests adds what the tests and benchmarks need. Without apt (not Debian, not Ubuntu) it only says what to install.
+#   sh app/install_packages.sh [--tests | --tidy]
+# --tests adds what the tests and benchmarks need, --tidy what tests/tidy.sh does. Without apt (not Debian, not Ubuntu) it only says what to install.
 set -eu
 
 # libboost-iostreams-dev: CMake's find module of Debian's OpenVDB asks for it, the package does not depend on it.
@@ -9,11 +9,14 @@ build_packages='g++ cmake ninja-build pkg-config libcgal-dev libcli11-dev libemb
   libboost-iostreams-dev libpng-dev libtbb-dev nettle-dev nlohmann-json3-dev zlib1g-dev'
 test_packages='libgtest-dev libbenchmark-dev make mandoc python3 python3-numpy python3-openvdb zsh'
 
+tidy_packages='clang-tidy'
+
 packages=$build_packages
 case "${1-}" in
   '') ;;
   --tests) packages="$packages $test_packages" ;;
-  *) echo "usage: sh app/install_packages.sh [--tests]" >&2; exit 1 ;;
+  --tidy) packages="$packages $test_packages $tidy_packages" ;;
+  *) echo "usage: sh app/install_packages.sh [--tests | --tidy]" >&2; exit 1 ;;
 esac
 packages=$(echo $packages)
 

@@ -21,6 +21,8 @@ allow() {
 [ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow 'shared_meshes|accuracy_of_real_meshes|SharedMeshes\..*|ReadGltf\.SharedMeshes.*'
 # Sanitizers reserve terabytes of addresses, and die where memory runs out.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory'
+# ThreadSanitizer has a thread of its own, and core/threads.h another implementation.
+[ "$(setting RAYCONE_SANITIZE)" != thread ] || allow 'BatchInterruption\.NeverMoreThreadsAreBusyThanAllowed'
 # Containers may forbid file systems of one's own.
 unshare --user --map-root-user --mount true 2>/dev/null || allow 'full_disk'
 

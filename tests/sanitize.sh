@@ -1,11 +1,37 @@
 #!/bin/sh
-# The tests that face hostile input and faults, under AddressSanitizer and UndefinedBehaviorSanitizer:
-#   sh tests/sanitize.sh [CTEST-OPTION...]
-# A part of the suite, so that it takes minutes; all of it: docs/developing.md, preset asan-ubsan.
+# The executable under sanitizers, as continuous integration runs it, behind tests/run.sh: sh tests/sanitize.sh
+# The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and one
+# with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the hostile
+# files and the faults. The whole suite under sanitizers takes an hour: docs/developing.md.
 set -eu
 cd "$(dirname "$0")/.."
+jobs=$(nproc)
+
+# Suites whose tests start the executable. BatchCost compares it with its own process.
+suites=$(grep -lE 'run_raycone|raycone_command|batch_fixture' tests/app/*_test.cpp tests/app/batch/*_test.cpp |
+  xargs sed -nE 's/^TEST(_F)?\((\w+),.*/\2/p' | sort -u | grep -vx BatchCost | paste -sd '|')
+
+# black_box PRESET CTEST-OPTION...: the dev build's tests of what PRESET built.
+black_box() {
+  preset=$1
+  shift
+  RAYCONE_TEST_EXECUTABLE=$PWD/build/$preset/app/raycone \
+    ctest --preset dev --parallel "$jobs" --output-log "build/$preset/ctest.log" -R "^($suites)\." "$@"
+  sh tests/check_skipped.sh "build/$preset/ctest.log" "build/$preset"
+}
 
 sh app/install_packages.sh --tests
+cmake --build --preset dev --parallel "$jobs" --target raycone_tests
+
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 cmake --preset asan-ubsan
-cmake --build --preset asan-ubsan --parallel "$(nproc)" --target raycone replay
-ctest --preset asan-ubsan --parallel "$(nproc)" -R '^(fuzz_corpus_.*|hostile_files|faults|vdb_module)$' "$@"
+cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
+black_box asan-ubsan
+ctest --preset asan-ubsan --parallel "$jobs" --output-log build/asan-ubsan/ctest.log \
+  -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|vdb_module)$'
+sh tests/check_skipped.sh build/asan-ubsan/ctest.log build/asan-ubsan
+
+export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
+cmake --preset tsan
+cmake --build --preset tsan --parallel "$jobs" --target raycone
+black_box tsan -E NeverMoreThreadsAreBusyThanAllowed  # it counts those of core/threads.cpp, which this build replaces

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <stdexcept>
 
 namespace raycone::test {
@@ -150,7 +151,8 @@ CommandResult run_raycone(const std::vector<std::string>& arguments, const Comma
 }
 
 std::vector<std::string> raycone_command(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words{RAYCONE_EXECUTABLE};
+  const char* const other = std::getenv("RAYCONE_TEST_EXECUTABLE");
+  std::vector<std::string> words{other ? other : RAYCONE_EXECUTABLE};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }

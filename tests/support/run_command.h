@@ -59,7 +59,7 @@ class Command {
   std::string err_;
 };
 
-// Executable `raycone` with these arguments.
+// Executable `raycone` with these arguments: this build's, or that of RAYCONE_TEST_EXECUTABLE (tests/sanitize.sh).
 [[nodiscard]] CommandResult run_raycone(const std::vector<std::string>& arguments, const CommandOptions& options = {});
 [[nodiscard]] std::vector<std::string> raycone_command(const std::vector<std::string>& arguments);
 

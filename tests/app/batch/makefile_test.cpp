@@ -24,7 +24,7 @@ class Makefile : public Batch {
                                    "MESHES=" + meshes_,
                                    "FIELDS=" + out_,
                                    "OPTIONS=--resolution " + resolution,
-                                   std::string("RAYCONE=") + RAYCONE_EXECUTABLE};
+                                   "RAYCONE=" + raycone_command({}).front()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }

@@ -44,13 +44,14 @@ struct HashedVertex {
 // Sets first[i] of the vertices of one bucket to the smallest index of a vertex of the same hash. Buckets hold all
 // vertices of a hash, by increasing index.
 void find_first(std::span<const HashedVertex> bucket, std::vector<std::uint32_t>& first) {
-  const std::size_t slots = std::bit_ceil(2 * bucket.size() + 1);
-  std::vector<HashedVertex> table(slots, {0, kNone});  // open addressing
-  for (const HashedVertex& vertex : bucket) {
+  const std::size_t slots = std::bit_ceil(bucket.size() + bucket.size() / 2 + 1);
+  std::vector<std::uint32_t> table(slots, kNone);  // places in the bucket; open addressing
+  for (std::uint32_t place = 0; place < bucket.size(); ++place) {
+    const HashedVertex& vertex = bucket[place];
     std::size_t slot = vertex.hash & (slots - 1);
-    while (table[slot].index != kNone && table[slot].hash != vertex.hash) slot = (slot + 1) & (slots - 1);
-    if (table[slot].index == kNone) table[slot] = vertex;
-    first[vertex.index] = table[slot].index;
+    while (table[slot] != kNone && bucket[table[slot]].hash != vertex.hash) slot = (slot + 1) & (slots - 1);
+    if (table[slot] == kNone) table[slot] = place;
+    first[vertex.index] = bucket[table[slot]].index;
   }
 }
 

@@ -501,7 +501,7 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
   assert(values.size() == points.size());
   const DefaultFloatingPoint guard;
   TallySum total;
-  constexpr std::size_t kBatch = std::size_t{1} << 18;  // bounds the memory; points enough that neighbours are near
+  constexpr std::size_t kBatch = std::size_t{1} << 17;  // bounds the memory; points enough that neighbours are near
   for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
     const std::size_t count = std::min(kBatch, points.size() - begin);
     const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};

@@ -38,15 +38,18 @@ struct EdgeDeterminant {
   double terms = 0.0;  // the sum of the absolute values of its two products
 };
 
-// D = P_a x d = P_b x d with d = b - a, from the end that is nearer in projection: the error is a few u times `terms`,
-// which shrinks with the edge and with the distance from that end. From the farther end a query level with a vertex, as
-// on lattices, would lose all digits of D.
-[[nodiscard]] inline EdgeDeterminant edge_determinant(const Vec3& a, const Vec3& b, const Vec3& q) {
-  const double ay = a.y - q.y, az = a.z - q.z, by = b.y - q.y, bz = b.z - q.z;
-  const bool a_is_nearer = std::abs(ay) + std::abs(az) <= std::abs(by) + std::abs(bz);
-  const double left = (a_is_nearer ? ay : by) * (b.z - a.z);
-  const double right = (a_is_nearer ? az : bz) * (b.y - a.y);
+// D = P_a x d = P_b x d with d = b - a, from one of the ends.
+[[nodiscard]] inline EdgeDeterminant determinant_from(const Vec3& end, const Vec3& a, const Vec3& b, const Vec3& q) {
+  const double left = (end.y - q.y) * (b.z - a.z), right = (end.z - q.z) * (b.y - a.y);
   return {left - right, std::abs(left) + std::abs(right)};
+}
+
+// D from the end that is nearer in projection: the error is a few u times `terms`, which shrinks with the edge and with
+// the distance from that end. From the farther end a query level with a vertex, as on lattices, would lose all digits
+// of D.
+[[nodiscard]] inline EdgeDeterminant edge_determinant(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const bool a_is_nearer = std::abs(a.y - q.y) + std::abs(a.z - q.z) <= std::abs(b.y - q.y) + std::abs(b.z - q.z);
+  return determinant_from(a_is_nearer ? a : b, a, b, q);
 }
 
 // Floating point vouches for the sign of D^ where |D^| exceeds this many times `terms`, plus the absolute value, which
@@ -55,23 +58,24 @@ struct EdgeDeterminant {
 inline constexpr double kSideFilter = 4.0 * 0x1p-53 * (1.0 + 0x1p-50);
 inline constexpr double kSideUnderflow = 0x1p-1000;
 
+// The sign of D where that is sure, else 0.
+[[nodiscard]] inline int sure_sign(const EdgeDeterminant& d) {
+  const double trust = kSideFilter * d.terms + kSideUnderflow;
+  return static_cast<int>(d.value > trust) - static_cast<int>(d.value < -trust);
+}
+
 [[nodiscard]] inline EdgeSide broken_tie(const Vec3& a, const Vec3& b) {
   if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};
   if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};
   return {0, true};
 }
 
-// The side of the edge, given its determinant.
-[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q, const EdgeDeterminant& d) {
-  const double trust = kSideFilter * d.terms + kSideUnderflow;
-  if (d.value > trust) return {1, false};
-  if (-d.value > trust) return {-1, false};
+[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q) {
+  // From either end a sure sign is the right one; which is nearer, no processor can foresee.
+  if (const int sign = sure_sign(determinant_from(a, a, b, q)); sign != 0) return {sign, false};
+  if (const int sign = sure_sign(determinant_from(b, a, b, q)); sign != 0) return {sign, false};
   const int sign = exact_edge_orientation(a, b, q);
   return sign != 0 ? EdgeSide{sign, false} : broken_tie(a, b);
-}
-
-[[nodiscard]] inline EdgeSide edge_side(const Vec3& a, const Vec3& b, const Vec3& q) {
-  return edge_side(a, b, q, edge_determinant(a, b, q));
 }
 
 // Sign of det(b - a, c - a, q - a): positive where q lies on the front side of the triangle.

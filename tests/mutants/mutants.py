@@ -75,7 +75,8 @@ MUTANTS = [
 
     # --- The cone's factors ---
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
-        ("core/predicates.h", "<= std::abs(by) + std::abs(bz);", "> std::abs(by) + std::abs(bz);"),
+        ("core/predicates.h", "<= std::abs(b.y - q.y) + std::abs(b.z - q.z);",
+         "> std::abs(b.y - q.y) + std::abs(b.z - q.z);"),
         ("core/cone_kernel.cpp", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
     Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
         ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, sum, square), s, n);",

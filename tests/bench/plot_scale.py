@@ -15,7 +15,7 @@ with open(run_path, encoding="utf-8") as file:
     run = json.load(file)
 
 PANELS = {  # series: axis, exponent and name of the slope drawn for comparison
-    "samples": ("samples along a side, closed mesh of 80 000 faces, to VDB", 2, "surface, N²"),
+    "samples": ("samples N along a side, closed mesh of 80 000 faces, to VDB", 3, "all samples, N³"),
     "faces": ("faces, closed mesh, 128³", 1, "faces"),
     "exterior_edges": ("exterior edges, 64³", 1, "edges"),
     "points": ("points, closed mesh of 80 000 faces", 1, "points"),
@@ -33,6 +33,10 @@ for column, (series, (label, exponent, name)) in enumerate(PANELS.items()):
     memory.loglog(numbers, [row["peak_memory_bytes"] / 1e6 for row in rows], marker="o", label="peak memory")
     if series != "points":
         memory.loglog(numbers, [row["output_bytes"] / 1e6 for row in rows], marker=".", label="file")
+    if series == "samples":
+        megabytes = rows[-1]["peak_memory_bytes"] / 1e6
+        memory.loglog(numbers, [megabytes * (n / numbers[-1]) ** 2 for n in numbers], "k:", label="as surface, N²")
+    memory.set_ylim(0.1, 10_000)
     last = rows[-1]["seconds"]["total"]
     times.loglog(numbers, [last * (n / numbers[-1]) ** exponent for n in numbers], "k:", label=f"as {name}")
     times.set_ylabel("seconds, one thread")

@@ -1,0 +1,30 @@
+"""What Blender sees of volumes and meshes, as one line of JSON: blender -b --factory-startup -noaudio -P blender_import.py -- FILE...
+
+Of each file its bounding box in the world, by the importers and their defaults that users get from the menu; of a .vdb
+the names of its grids too.
+"""
+
+import json
+import sys
+
+import bpy
+from mathutils import Vector
+
+
+def box_of(thing):
+    corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
+    return [[choose(corner[axis] for corner in corners) for axis in range(3)] for choose in (min, max)]
+
+
+def seen(path):
+    if path.endswith(".vdb"):
+        bpy.ops.object.volume_import(filepath=path)
+        grids = bpy.context.object.data.grids
+        grids.load()
+        bpy.context.view_layer.update()
+        return {"grids": {grid.name: grid.data_type for grid in grids}, "box": box_of(bpy.context.object)}
+    bpy.ops.wm.obj_import(filepath=path)
+    return {"box": box_of(bpy.context.object)}
+
+
+print(json.dumps({path: seen(path) for path in sys.argv[sys.argv.index("--") + 1 :]}))

@@ -1,0 +1,51 @@
+"""Memory of points on standard input does not grow with their number: python3 points_memory_test.py RAYCONE MESH
+
+Peaks of memory are those of the report. A batch holds 262 144 points, or those that have come where the next is waited for:
+a slow writer's are compared from fewer than a batch on, a file's from several batches on.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RAYCONE, MESH = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+ALLOWED_BYTES = 4 << 20  # what the allocator keeps or not as it happens; 900 000 points as numbers would be 21.6 MB
+FROM_AWK = """awk -v n="$1" 'BEGIN { for (i = 0; i < n; i++) printf "%.3f %.3f %.3f\\n", i % 7 / 5, i % 11 / 9, i % 13 / 11 }' |
+"$2" points "$3" - -o - --report "$4" --quiet | wc -l"""
+FROM_A_FILE = '"$2" points "$3" - -o - --report "$4" --quiet <"$5" | wc -l'
+
+
+class PointsOnStandardInput(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.report, self.points = (os.path.join(directory.name, name) for name in ("report.json", "points.txt"))
+
+    def peak(self, pipeline, count):
+        """The peak of memory in bytes, every point being answered."""
+        command = ["sh", "-c", pipeline, "sh", str(count), RAYCONE, MESH, self.report, self.points]
+        lines = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True).stdout
+        self.assertEqual(int(lines), count + 1)  # and a header
+        with open(self.report, encoding="utf-8") as file:
+            return json.load(file)["peak_memory_bytes"]
+
+    def peak_from_a_file(self, thousands):
+        block = "".join(f"{i % 7 / 5:.3f} {i % 11 / 9:.3f} {i % 13 / 11:.3f}\n" for i in range(1000))
+        with open(self.points, "w", encoding="utf-8") as file:
+            file.writelines(block for _ in range(thousands))
+        return self.peak(FROM_A_FILE, 1000 * thousands)
+
+    def test_those_of_a_slow_writer(self):
+        few = self.peak(FROM_AWK, 100_000)
+        self.assertLessEqual(self.peak(FROM_AWK, 1_000_000), few + ALLOWED_BYTES)
+
+    def test_those_of_a_file(self):
+        few = self.peak_from_a_file(1000)
+        self.assertLessEqual(self.peak_from_a_file(3000), few + ALLOWED_BYTES)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -23,7 +23,7 @@ namespace raycone {
 namespace {
 
 // Points evaluated at a time.
-constexpr std::size_t kPointBatch = std::size_t{1} << 18;
+constexpr std::size_t kPointBatch = std::size_t{1} << 16;
 
 // Answers are handed on whenever the next question would have to be waited for.
 void evaluate_points(const FieldEvaluator& evaluator, PointReader& reader, PointWriter& writer, FieldSamples& samples,

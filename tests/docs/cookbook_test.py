@@ -1,8 +1,9 @@
 """What the documents tell readers to copy: python3 cookbook_test.py RAYCONE REPOSITORY
 
-Every ```sh block of docs/cookbook.md, and of those sections of README.md that use the tool, runs with `sh -e`; where a
-```text block follows, the block must have printed exactly that. A ```make block is run as a Makefile, for the goal that
-the text before it names. Each section has a fresh directory with a copy of data/, in which its blocks run in order.
+Every ```sh block of docs/cookbook.md and docs/tutorial.md, and of those sections of README.md that use the tool, runs
+with `sh -e`; where a ```text block follows, the block must have printed exactly that. A ```make block is run as a
+Makefile, for the goal that the text before it names. A ```console block, for what needs more than the tests install
+(Blender), is not run. Each section has a fresh directory with a copy of data/, in which its blocks run in order.
 """
 
 import os
@@ -37,7 +38,7 @@ class Documents(unittest.TestCase):
 
     def run_blocks(self, blocks):
         """How many blocks of each language there were."""
-        counts = {"sh": 0, "make": 0, "text": 0}
+        counts = {"sh": 0, "make": 0, "text": 0, "console": 0}
         printed = None
         for prose, block in blocks:
             language, _, code = block.partition("\n")
@@ -50,7 +51,7 @@ class Documents(unittest.TestCase):
                 goal = re.search(r"`make (\S+)`", prose)[1]
                 self.output_of("make", goal)
                 self.assertTrue(os.path.exists(os.path.join(self.directory, goal)), goal)
-            else:
+            elif language == "text":
                 self.assertEqual(prose.strip(), "", "expected output stands directly below its block")
                 self.assertEqual(printed, code)
         return counts
@@ -67,6 +68,12 @@ class Documents(unittest.TestCase):
         self.assertEqual(len(recipes), 5)
         for heading, blocks in recipes:
             self.run_section(heading, blocks, {"sh": 1, "text": 1})
+
+    def test_commands_of_the_tutorial_print_what_it_says(self):
+        blocks = dict(sections("docs/tutorial.md"))["From scan to picture"]
+        languages = [block.partition("\n")[0] for _, block in blocks]
+        self.assertEqual([language for language in languages if language != "text"], ["sh"] * 9 + ["console"])
+        self.run_section("Tutorial", blocks, {"text": 4})
 
     def test_commands_of_the_readme_work(self):
         readme = dict(sections("README.md"))

@@ -44,17 +44,36 @@ void check_indices(const Lattice& lattice, const std::string& name) {
   }
 }
 
+// The voxel that OpenVDB gives to copies of a grid, also while it writes one: the difference of two positions.
+Vec3 copied_spacing(const Lattice& lattice) {
+  Vec3 result{};
+  for (int axis = 0; axis < 3; ++axis) {
+    result[axis] = (lattice.origin[axis] + lattice.spacing[axis]) - lattice.origin[axis];
+  }
+  return result;
+}
+
 // OpenVDB takes a transform whose determinant is below 3e-15 for singular, however well scaled it is.
-void check_voxel_volume(const Vec3& spacing, const std::string& name) {
+void check_voxels(const Lattice& lattice, const std::string& name) {
   constexpr double kLeastVolume = 3e-15;
-  const double volume = spacing.x * spacing.y * spacing.z;
-  if (volume >= kLeastVolume) return;
-  const double mean_exponent = (std::log10(spacing.x) + std::log10(spacing.y) + std::log10(spacing.z)) / 3;
-  char message[160];
-  std::snprintf(message, sizeof message,
-                ": voxel volume %.2g is below 3e-15, which OpenVDB cannot represent; scale the mesh (--scale 1e%.0f)",
-                volume, -std::floor(mean_exponent));
-  throw OutputError(name + message);
+  const auto volume_of = [](const Vec3& spacing) { return spacing.x * spacing.y * spacing.z; };
+  const Vec3& spacing = lattice.spacing;
+  const double volume = volume_of(spacing);
+  char message[200];
+  if (volume < kLeastVolume) {
+    const double mean_exponent = (std::log10(spacing.x) + std::log10(spacing.y) + std::log10(spacing.z)) / 3;
+    std::snprintf(message, sizeof message,
+                  ": voxel volume %.2g is below 3e-15, which OpenVDB cannot represent; scale the mesh (--scale 1e%.0f)",
+                  volume, -std::floor(mean_exponent));
+    throw OutputError(name + message);
+  }
+  if (!(volume_of(copied_spacing(lattice)) >= kLeastVolume)) {  // infinity times 0 is refused, too
+    std::snprintf(message, sizeof message,
+                  ": voxels of %.2g x %.2g x %.2g at (%.2g, %.2g, %.2g) are too small beside their coordinates, which "
+                  "OpenVDB cannot represent; expected larger ones, or bounds nearer to 0",
+                  spacing.x, spacing.y, spacing.z, lattice.origin.x, lattice.origin.y, lattice.origin.z);
+    throw OutputError(name + message);
+  }
 }
 
 // Halves range from 2^-14, below which they lose digits, to 65504.
@@ -557,7 +576,7 @@ class VdbWriter final : public LatticeWriter {
 std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                         const OutputDescription& description) {
   check_indices(lattice, output.name());
-  check_voxel_volume(lattice.spacing, output.name());
+  check_voxels(lattice, output.name());
   check_half(description, lattice, output.name());
   openvdb::initialize();
   return std::make_unique<VdbWriter>(output, lattice, description);

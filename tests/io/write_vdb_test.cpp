@@ -335,6 +335,28 @@ TEST(WriteVdb, RefusesVoxelsThatOpenVdbTakesForSingular) {
   EXPECT_EQ(read_vdb_lattice(directory / "out.vdb", "").spacing, field.lattice.spacing);
 }
 
+// OpenVDB copies a grid while it writes it, and the copy's voxels would have no size.
+TEST(WriteVdb, RefusesVoxelsBelowTheSpacingOfTheirCoordinates) {
+  const TemporaryDirectory directory;
+  Field field = field_of({1, 1, 1}, [](auto, auto, auto) { return 1.0; });
+  const auto write = [&] { write_vdb(directory / "out.vdb", field); };
+  field.lattice.spacing = {1, 1, 1};
+  field.lattice.origin = {0, 0x1p53, 0};  // the nearest double to 2^53 + 1 is 2^53
+  EXPECT_EQ(output_error_of(write),
+            directory / "out.vdb" +
+                ": voxels of 1 x 1 x 1 at (0, 9e+15, 0) are too small beside their coordinates, which OpenVDB cannot "
+                "represent; expected larger ones, or bounds nearer to 0");
+  field.lattice.spacing = {1e200, 1e200, 1};
+  field.lattice.origin = {0, 0, 0x1p53};
+  EXPECT_TRUE(output_error_of(write).ends_with("nearer to 0"));
+  field.lattice.spacing = {1, 1, 1};
+  field.lattice.origin = {0, 0x1p52, -0x1p53};  // the doubles below 2^53 are 1 apart
+  write();
+  const Lattice read = read_vdb_lattice(directory / "out.vdb", "");
+  EXPECT_EQ(read.origin, field.lattice.origin);
+  EXPECT_EQ(read.spacing, field.lattice.spacing);
+}
+
 TEST(WriteVdb, RefusesIndicesBeyond32Bits) {
   const TemporaryDirectory directory;
   Field field = field_of({2, 1, 1}, [](auto, auto, auto) { return 1.0; });

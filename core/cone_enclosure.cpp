@@ -1,6 +1,6 @@
 // The cone's winding number in extended precision with a running bound of its error. u is half a unit in the last place
 // of 1L; every constant counts roundings, derived in docs/method.md, "Error bound". Exponents of long double neither
-// over- nor underflow here: products of two factors reach 2^+-8000 at most before they are scaled.
+// over- nor underflow here: products of two numbers in range reach 2^+-4000, and their squares 2^+-8000.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,9 +80,11 @@ std::optional<FactorWithin> factor_of(const Corner& a, const Corner& b, bool rev
   return FactorWithin{{f->re, std::copysign(f->im, Wide(sign))}, 2 * u};
 }
 
-// The same argument, magnitude about 1: products of two such numbers, and their squares, stay in range.
-Factor<Wide> unit(const Factor<Wide>& z) {
-  const int exponent = -std::ilogb(std::max(std::abs(z.re), std::abs(z.im)));
+// The same argument and bits, the magnitude within 2^+-2000.
+Factor<Wide> in_range(const Factor<Wide>& z) {
+  const Wide magnitude = std::max(std::abs(z.re), std::abs(z.im));
+  if (magnitude > 0x1p-2000L && magnitude < 0x1p2000L) return z;  // nearly always, and scaling is slow
+  const int exponent = -std::ilogb(magnitude);
   return {std::scalbn(z.re, exponent), std::scalbn(z.im, exponent)};
 }
 
@@ -93,7 +95,7 @@ struct Product {
   Wide error = 0;  // radians
 
   void multiply(const FactorWithin& factor) {
-    const Factor<Wide> f = unit(factor.z);
+    const Factor<Wide> f = in_range(factor.z);
     const Wide rr = z.re * f.re, ii = z.im * f.im, ri = z.re * f.im, ir = z.im * f.re;
     const Factor<Wide> product{rr - ii, ri + ir};
     const bool before = std::signbit(z.im), turn = std::signbit(f.im), after = std::signbit(product.im);
@@ -101,7 +103,7 @@ struct Product {
     const Wide e_re = u * (std::abs(rr) + std::abs(ii) + std::abs(product.re));
     const Wide e_im = u * (std::abs(ri) + std::abs(ir) + std::abs(product.im));
     error += factor.error + argument_error(product.re, product.im, e_re, e_im);
-    z = unit(product);
+    z = in_range(product);
   }
 };
 

@@ -62,12 +62,15 @@ MeshOptions parse_mesh(const Values& values) {
 }
 
 OptionGroup output_group(const std::string& formats) {
-  return {"Output",
-          {{"-o,--output", "OUT", "File to write; - for standard output"},
-           {"--format", formats, "Format of OUT (default: by its extension, csv for -)"},
-           {"--no-clobber", "", "Never replace an existing file"},
-           {"--report", "FILE.json", "Write what was done, for machines"},
-           {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
+  const bool is_choice = formats.find('|') != std::string::npos;
+  return {
+      "Output",
+      {{"-o,--output", "OUT", "File to write; - for standard output"},
+       {"--format", formats,
+        is_choice ? "Format of OUT (default: by its extension, csv for -)" : "Format of OUT, whatever its extension"},
+       {"--no-clobber", "", "Never replace an existing file"},
+       {"--report", "FILE.json", "Write what was done, for machines"},
+       {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
 }
 
 OutputFiles parse_output_files(const Values& values) {

@@ -10,9 +10,12 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 
+#include "app/signals.h"
 #include "io/file_error.h"
 #include "io/read_vdb.h"
 
@@ -20,7 +23,7 @@ namespace raycone {
 namespace {
 
 // What the reader writes: one of these letters, and behind it the lattice or the message.
-enum Outcome : char { kRead = 'r', kInvalid = 'i', kOutOfMemory = 'm' };
+enum Outcome : char { kRead = 'r', kInvalid = 'i', kLimited = 'l', kOutOfMemory = 'm' };
 
 std::string outcome_of_reading(const std::string& path, const std::string& name) {
   static_assert(std::is_trivially_copyable_v<Lattice>);
@@ -29,15 +32,20 @@ std::string outcome_of_reading(const std::string& path, const std::string& name)
     return std::string(1, kRead).append(reinterpret_cast<const char*>(&lattice), sizeof lattice);
   } catch (const InputError& error) {
     return std::string(1, kInvalid) + error.what();
+  } catch (const LimitError& error) {
+    return std::string(1, kLimited) + error.what();
   } catch (const std::bad_alloc&) {
     return std::string(1, kOutOfMemory);
   }
 }
 
-Lattice lattice_from(const std::string& outcome) {
+Lattice lattice_from(const std::string& path, const std::string& outcome) {
   if (outcome[0] == kInvalid) throw InputError(outcome.substr(1));
+  if (outcome[0] == kLimited) throw LimitError(outcome.substr(1));
   if (outcome[0] == kOutOfMemory) throw std::bad_alloc();
   Lattice lattice;
+  if (outcome.size() != 1 + sizeof lattice)
+    throw InputError(path + ": cannot read: the process that does it was disturbed");
   std::memcpy(&lattice, outcome.data() + 1, sizeof lattice);
   return lattice;
 }
@@ -52,6 +60,7 @@ constexpr int kNotStarted = 127;
 // In the child: async-signal-safe calls only.
 [[noreturn]] void become_reader(int answer, pid_t parent, char* const* words) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  leave_signals_to_supervisor();
   if (getppid() != parent) _exit(1);  // it died before this could notice
   constexpr rlimit kNone{0, 0};
   setrlimit(RLIMIT_CORE, &kNone);
@@ -99,9 +108,11 @@ Lattice read_grid_lattice(const std::string& path, const std::string& name) {
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
+  std::optional<HeldSignals> until_child_ignores_them(std::in_place);
   const pid_t process = fork();
   if (process == 0) become_reader(ends[1], parent, arguments.data());
   const int error = errno;
+  until_child_ignores_them.reset();
   close(ends[1]);
   const std::string outcome = process > 0 ? read_to_end(ends[0]) : "";
   close(ends[0]);
@@ -111,7 +122,7 @@ Lattice read_grid_lattice(const std::string& path, const std::string& name) {
   }
   const std::string end = end_of(process);
   if (!end.empty()) throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + end + ")");
-  return lattice_from(outcome);
+  return lattice_from(path, outcome);
 }
 
 }  // namespace raycone

@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 constexpr double kLibraryReserve = 192.0 * 1024 * 1024;
 constexpr double kThreadReserve = 9.0 * 1024 * 1024;
 
+// Others need more memory meanwhile, and a machine without any kills whom it likes.
+constexpr double kShareOfMachine = 7.0 / 8.0;
+
 // The directories of this process's cgroups and of all above them, for a v1 controller ("cpu", "memory") or v2. Inside
 // a container the path may be one of the host that is not mounted here; its ancestors, in the end the mount, are.
 std::vector<fs::path> cgroup_directories(const fs::path& root, const std::string& controller) {
@@ -154,7 +157,7 @@ std::uint64_t available_memory() {
   double bytes = proc_bytes("/proc/meminfo", "MemAvailable").value_or(0x1p62);
   bytes += proc_bytes("/proc/meminfo", "SwapFree").value_or(0.0);
   bytes = std::min(bytes, static_cast<double>(cgroup_memory().value_or(1ULL << 62)));
-  bytes = std::min(bytes, address_space_left().value_or(0x1p62));
+  bytes = std::min(kShareOfMachine * bytes, address_space_left().value_or(0x1p62));
   return static_cast<std::uint64_t>(bytes);
 }
 

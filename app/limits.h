@@ -15,7 +15,7 @@ namespace raycone {
 // Largest number of threads that may be asked for.
 inline constexpr int kMaxThreads = 4096;
 
-// Bytes that the machine, the cgroup and `ulimit -v` leave to this process.
+// Bytes that `ulimit -v` leaves to this process, or seven eighths of those that the machine and the cgroup do.
 [[nodiscard]] std::uint64_t available_memory();
 
 // Makes allocations from here on fail with std::bad_alloc once they exceed `bytes`, not counting what libraries and

@@ -2,7 +2,6 @@
 #include "app/run.h"
 
 #include <memory>
-#include <new>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "app/batch/run_batch.h"
 #include "app/info.h"
 #include "app/json.h"
-#include "app/limits.h"
 #include "app/run_lattice.h"
 #include "app/run_points.h"
 #include "app/run_slice.h"
@@ -30,24 +28,21 @@ void print(const std::string& text) {
   standard_output.commit();
 }
 
-ExitCode run(const LatticeCommand& command) {
-  const RunLimits limits(command.run, command.mesh.path);
+ExitCode run(const LatticeCommand& command, const RunLimits& limits) {
   refuse_to_replace_input(command.output, {command.mesh.path});
   const SideFiles side_files = open_side_files(command.output);
   publish(run_lattice(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
-ExitCode run(const PointsCommand& command) {
-  const RunLimits limits(command.run, command.mesh.path);
+ExitCode run(const PointsCommand& command, const RunLimits& limits) {
   refuse_to_replace_input(command.output, {command.mesh.path, command.points});
   const SideFiles side_files = open_side_files(command.output);
   publish(run_points(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
-ExitCode run(const SliceCommand& command) {
-  const RunLimits limits(command.run, command.mesh.path);
+ExitCode run(const SliceCommand& command, const RunLimits& limits) {
   refuse_to_replace_input(command.output, {command.mesh.path});
   if (command.values) {
     const std::vector<std::string> others{command.mesh.path, command.output.path, command.output.report.value_or("-"),
@@ -59,8 +54,7 @@ ExitCode run(const SliceCommand& command) {
   return ExitCode::kDone;
 }
 
-ExitCode run(const InfoCommand& command) {
-  const RunLimits limits(command.run, command.mesh.path);
+ExitCode run(const InfoCommand& command, const RunLimits& limits) {
   const MeshFile file = read(command.mesh, limits);
   warn(file.parsed.warnings, command.run, command.mesh.path);
   const TriangleMesh mesh = weld(file.parsed.mesh, command.mesh.weld);
@@ -76,24 +70,20 @@ ExitCode run(const InfoCommand& command) {
   return ExitCode::kDone;
 }
 
-// Failed allocations are a limit of the run, so the message names it.
 template <typename MeshCommand>
-ExitCode run_within_limits(const MeshCommand& command) {
-  try {
-    return run(command);
-  } catch (const std::bad_alloc&) {
-    throw LimitError(out_of_memory(command.mesh.path, command.run));
-  }
+ExitCode dispatch(const MeshCommand& command) {
+  return within_limits(command.run, command.mesh.path,
+                       [&command](const RunLimits& limits) { return run(command, limits); });
 }
 
-ExitCode run_within_limits(const BatchCommand& command) { return run_batch(command); }
+ExitCode dispatch(const BatchCommand& command) { return run_batch(command); }
 
-ExitCode run_within_limits(const ReportCommand& command) {
+ExitCode dispatch(const ReportCommand& command) {
   write_report_page(command);
   return ExitCode::kDone;
 }
 
-ExitCode run_within_limits(const PrintCommand& command) {
+ExitCode dispatch(const PrintCommand& command) {
   print(command.text);
   return ExitCode::kDone;
 }
@@ -101,7 +91,7 @@ ExitCode run_within_limits(const PrintCommand& command) {
 }  // namespace
 
 ExitCode run(const Command& command) {
-  return std::visit([](const auto& one) { return run_within_limits(one); }, command);
+  return std::visit([](const auto& one) { return dispatch(one); }, command);
 }
 
 }  // namespace raycone

@@ -1,7 +1,7 @@
 #include "app/run_steps.h"
 
 #include <filesystem>
-#include <optional>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -27,7 +27,18 @@ RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
       memory_(options.memory_limit ? *options.memory_limit : available_memory()),
       thread_limit_(threads_) {
   if (options.timeout) start_timeout(*options.timeout, mesh);
-  if (options.memory_limit) cap_memory(memory_, threads_);
+  cap_memory(memory_, threads_);
+}
+
+void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    const std::string limit = limits ? ", the limit is " + readable_bytes(static_cast<double>(limits->memory())) : "";
+    throw LimitError(mesh + ": out of memory" + limit);
+  } catch (const ThreadsUnavailable& error) {
+    throw LimitError(mesh + ": " + error.what());
+  }
 }
 
 void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::string>& inputs) {
@@ -99,11 +110,6 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 
 TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field) {
   return field.verify > 0 ? mesh : TriangleMesh{};
-}
-
-std::string out_of_memory(const std::string& mesh, const RunOptions& options) {
-  const std::optional<std::uint64_t> limit = options.memory_limit;
-  return mesh + ": out of memory" + (limit ? ", the limit is " + readable_bytes(static_cast<double>(*limit)) : "");
 }
 
 void publish(const RunReport& report, const RunOptions& options, const SideFiles& files) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,22 @@ class RunLimits {
   std::uint64_t memory_;
   ThreadLimit thread_limit_;
 };
+
+// What the machine lacks is a limit of the run: throws LimitError that names `mesh` and the limit (nullptr: unknown
+// yet) where the exception being handled is of memory or threads, and that exception again where it is not.
+[[noreturn]] void rethrow_as_limit(const std::string& mesh, const RunLimits* limits);
+
+// body(limits), which are those of `options`.
+template <typename Body>
+auto within_limits(const RunOptions& options, const std::string& mesh, const Body& body) {
+  std::optional<RunLimits> limits;
+  try {
+    limits.emplace(options, mesh);
+    return body(*limits);
+  } catch (...) {
+    rethrow_as_limit(mesh, limits ? &*limits : nullptr);
+  }
+}
 
 // Throws UsageError where what is written would replace one of `inputs` or another output: a slip of the keyboard must
 // not cost the user an input.
@@ -57,9 +74,6 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 
 // The mesh that verification will need beside the evaluator's own; empty where none is asked for.
 [[nodiscard]] TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field);
-
-// What to tell the user where an allocation failed.
-[[nodiscard]] std::string out_of_memory(const std::string& mesh, const RunOptions& options);
 
 // Writes the `files` about the run, and prints its summary. Throws OutputError.
 void publish(const RunReport& report, const RunOptions& options, const SideFiles& files);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,12 @@ namespace {
 
 // setitimer(2) need not accept more.
 constexpr double kMaxTimeout = 1e8;
+
+// What others send to end a process, or to tell it so before they do (batch systems: SIGUSR1 and SIGUSR2), and what
+// ends it though nobody meant it.
+constexpr std::array kInterruptions{SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUSR2,
+                                    SIGALRM, SIGVTALRM, SIGPROF, SIGPOLL, SIGPWR,  SIGSTKFLT};
+constexpr std::array kFaults{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGSYS, SIGTRAP};
 
 // A handler can reach nothing else; written before the timer starts, constant afterwards.
 char timeout_message[8192];
@@ -44,6 +51,17 @@ extern "C" void clean_up_and_die(int signal) {
   errno = interrupted;
 }
 
+// The same for what only a fault of raycone or its libraries raises; a dump of memory is for whoever looks for it.
+extern "C" void clean_up_and_crash(int signal) {
+  remove_temporary_files();
+  erase_progress_line();
+  write_to_stderr("raycone: internal error, please report: ");
+  const char* const description = sigdescr_np(signal);
+  write_to_stderr(description ? description : "unknown signal");
+  write_to_stderr("\n");
+  raise(signal);
+}
+
 extern "C" void time_out(int /*signal*/) {
   remove_temporary_files();
   erase_progress_line();
@@ -59,9 +77,9 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-bool inherited_as_ignored(int signal) {
+bool is_set_to(int signal, void (*handler)(int)) {
   struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == handler;
 }
 
 // A write to a closed standard output shall fail, not go to whatever file got its number.
@@ -76,8 +94,12 @@ void occupy_standard_descriptors() {
 
 void set_up_process() {
   occupy_standard_descriptors();
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    if (!inherited_as_ignored(signal)) handle(signal, clean_up_and_die);
+  // What the caller ignores stays ignored, and what a preloaded library handles (profilers, sanitizers) stays its own.
+  for (const int signal : kInterruptions) {
+    if (is_set_to(signal, SIG_DFL)) handle(signal, clean_up_and_die);
+  }
+  for (const int signal : kFaults) {
+    if (is_set_to(signal, SIG_DFL)) handle(signal, clean_up_and_crash);
   }
   handle(SIGXCPU, clean_up_and_die);
   handle(SIGPIPE, clean_up_and_die);
@@ -86,6 +108,13 @@ void set_up_process() {
   sigemptyset(&ours);
   for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGPIPE, SIGALRM}) sigaddset(&ours, signal);
   pthread_sigmask(SIG_UNBLOCK, &ours, nullptr);
+}
+
+void leave_signals_to_supervisor() {
+  for (const int signal : kInterruptions) ::signal(signal, SIG_IGN);
+  for (const int signal : kFaults) {
+    if (is_set_to(signal, clean_up_and_crash)) ::signal(signal, SIG_DFL);
+  }
 }
 
 void start_timeout(double seconds, const std::string& name) {
@@ -105,9 +134,11 @@ void start_timeout(double seconds, const std::string& name) {
 HeldSignals::HeldSignals() {
   sigset_t held;
   sigemptyset(&held);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU}) {
-    if (!inherited_as_ignored(signal)) sigaddset(&held, signal);
-  }
+  const auto hold = [&held](int signal) {
+    if (is_set_to(signal, clean_up_and_die)) sigaddset(&held, signal);
+  };
+  for (const int signal : kInterruptions) hold(signal);
+  hold(SIGXCPU);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
   descriptor_ = signalfd(-1, &held, SFD_NONBLOCK | SFD_CLOEXEC);
 }

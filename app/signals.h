@@ -6,10 +6,15 @@
 
 namespace raycone {
 
-// Call once, first thing. SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU and SIGPIPE remove temporary files, then kill the
-// process (the first four stay ignored where they were inherited so, as under nohup); a file-size limit becomes a write
-// error; closed standard descriptors are occupied, so that no file is opened in their place.
+// Call once, first thing. Every signal that ends a process (but SIGKILL and those of real time) removes temporary files
+// first; those of faults say in a line that they are internal errors. Signals that were ignored stay so, as under
+// nohup, but for SIGPIPE and SIGXCPU. A file-size limit becomes a write error; closed standard descriptors are
+// occupied, so that no file is opened in their place.
 void set_up_process();
+
+// For a process whose supervisor decides when it ends, tells how it did, and removes its temporary files.
+// Async-signal-safe.
+void leave_signals_to_supervisor();
 
 // Ends the process with status 4 and a message about `name` after so many seconds.
 void start_timeout(double seconds, const std::string& name);

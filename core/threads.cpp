@@ -6,7 +6,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <new>
 #include <stdexcept>
 #include <string_view>
 
@@ -28,7 +27,7 @@ int thread_count() {
 }
 
 void prime_threads() {
-  tbb::parallel_for(0, 1, [](int) {});
+  parallel_for(1, 1, [](std::size_t, std::size_t) {});
 }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
@@ -39,8 +38,8 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
       body(range.begin(), range.end());
     });
   } catch (const std::runtime_error& error) {
-    // What TBB throws where there is no memory left for the stack of a thread.
-    if (std::string_view(error.what()).starts_with("pthread_create")) throw std::bad_alloc();
+    // All that tells TBB's exception from others.
+    if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
     throw;
   }
 }

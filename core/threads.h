@@ -4,8 +4,15 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 
 namespace raycone {
+
+// The system starts no thread, for want of memory for its stack or by a limit on processes.
+class ThreadsUnavailable : public std::runtime_error {
+ public:
+  ThreadsUnavailable() : std::runtime_error("cannot start threads: too little memory, or a limit on processes") {}
+};
 
 // Caps the threads of this process (ours, Embree's, OpenVDB's: all of them run on TBB) while it lives. Create exactly
 // one, before the first evaluation. count >= 1.
@@ -25,12 +32,13 @@ class ThreadLimit {
 [[nodiscard]] int thread_count();
 
 // Makes TBB start its workers in the floating-point environment of the caller. Call before Embree is first used:
-// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero.
+// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero. Throws
+// ThreadsUnavailable.
 void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
 // floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
-// where count allows. Exceptions of body propagate; std::bad_alloc where a thread cannot be started.
+// where count allows. Exceptions of body propagate. Throws ThreadsUnavailable.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
 }  // namespace raycone

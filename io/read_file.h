@@ -7,8 +7,8 @@
 
 namespace raycone {
 
-// All bytes of a regular file, FIFO or device, or of standard input for "-". Throws InputError, LimitError where the file is
-// larger than `max_bytes`.
+// All bytes of a regular file, FIFO or device, or of standard input for "-". Throws InputError, LimitError where the
+// file is larger than `max_bytes`.
 [[nodiscard]] std::string read_file(const std::string& path, std::uint64_t max_bytes = UINT64_MAX);
 
 // SHA-256 as 64 lower-case hexadecimal digits.

@@ -21,6 +21,10 @@ allow() {
 [ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow 'shared_meshes|accuracy_of_real_meshes|SharedMeshes\..*|ReadGltf\.SharedMeshes.*'
 # Sanitizers reserve terabytes of addresses, and die where memory runs out.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory'
+# They must be loaded before libfaketime, and trace themselves.
+[ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'clock|system_calls'
+# Containers may forbid to trace.
+strace -o /dev/null true 2>/dev/null || allow 'system_calls'
 # ThreadSanitizer has a thread of its own, and core/threads.h another implementation.
 [ "$(setting RAYCONE_SANITIZE)" != thread ] || allow 'BatchInterruption\.NeverMoreThreadsAreBusyThanAllowed'
 # Containers may forbid file systems of one's own.

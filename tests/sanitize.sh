@@ -2,7 +2,7 @@
 # The executable under sanitizers, as continuous integration runs it, behind tests/run.sh: sh tests/sanitize.sh
 # The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and one
 # with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the hostile
-# files and the faults. The whole suite under sanitizers takes an hour: docs/developing.md.
+# files, the faults and the random command lines. The whole suite under sanitizers takes an hour: docs/developing.md.
 set -eu
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
@@ -28,7 +28,7 @@ cmake --preset asan-ubsan
 cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
 black_box asan-ubsan
 ctest --preset asan-ubsan --parallel "$jobs" --output-log build/asan-ubsan/ctest.log \
-  -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|vdb_module)$'
+  -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|vdb_module)$'
 sh tests/check_skipped.sh build/asan-ubsan/ctest.log build/asan-ubsan
 
 export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp

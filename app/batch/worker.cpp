@@ -23,6 +23,8 @@
 #include "app/run_lattice.h"
 #include "app/run_points.h"
 #include "app/run_steps.h"
+#include "app/signals.h"
+#include "core/threads.h"
 #include "io/base64.h"
 
 namespace raycone {
@@ -46,11 +48,6 @@ void return_unused_memory(std::uint64_t used) {
   } catch (...) {
   }
   std::abort();
-}
-
-// The supervisor decides when workers end.
-void leave_signals_to_supervisor() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
 }
 
 // The socket, out of the way of whatever reads standard input or prints.
@@ -175,11 +172,10 @@ template <typename OneCommand>
 JobResult perform(const OneCommand& command) {
   reset_peak_memory();
   try {
-    const RunLimits limits(command.run, command.mesh.path);
-    refuse_to_replace_input(command.output, {command.mesh.path});
-    return evaluate(command, limits);
-  } catch (const std::bad_alloc&) {
-    return result_of(Failure{ExitCode::kLimit, out_of_memory(command.mesh.path, command.run)});
+    return within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
+      refuse_to_replace_input(command.output, {command.mesh.path});
+      return evaluate(command, limits);
+    });
   } catch (...) {
     return result_of(current_failure());
   }

@@ -35,6 +35,13 @@ class Interruption : public testing::Test {
     std::this_thread::sleep_for(milliseconds(100));
   }
 
+  [[nodiscard]] CommandResult long_run_until(int signal) const {
+    Command command(raycone_command(long_run_));
+    wait_for_work(2 + 2);
+    command.send_signal(signal);
+    return command.wait();
+  }
+
   void expect_only_what_was_there() const {
     EXPECT_EQ(file_count(), 2U);
     EXPECT_EQ(read_text(output_), "earlier result");
@@ -48,15 +55,20 @@ class Interruption : public testing::Test {
 };
 
 TEST_F(Interruption, BySignalCleansUpAndDiesOfIt) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    Command command(raycone_command(long_run_));
-    wait_for_work(2 + 2);
-    command.send_signal(signal);
-    const CommandResult result = command.wait();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU, SIGALRM, SIGPROF}) {
+    const CommandResult result = long_run_until(signal);
     EXPECT_EQ(result.signal, signal);
     EXPECT_EQ(result.err, "");
     expect_only_what_was_there();
   }
+}
+
+// As std::terminate() raises it; sanitizers take the other signals of faults for themselves.
+TEST_F(Interruption, ByAFaultCleansUpAndCallsItOne) {
+  const CommandResult result = long_run_until(SIGABRT);
+  EXPECT_EQ(result.signal, SIGABRT);
+  EXPECT_EQ(result.err, "raycone: internal error, please report: Aborted\n");
+  expect_only_what_was_there();
 }
 
 TEST_F(Interruption, SignalsIgnoredByTheCallerStayIgnored) {

@@ -1,12 +1,10 @@
 """Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--memory] [--long]
 
 Signals, a full disk, a file that shrinks; with --memory instead memory that runs out (status 77 where RAYCONE is built with
-a sanitizer, which ends the process then). Whatever happens, a run ends with a documented status and one line, and leaves the earlier outputs as they were
-or replaces them by the complete new ones. --long sweeps more finely.
+a sanitizer, which ends the process then). Whatever happens, a run ends with a documented status and one line, and leaves
+the earlier outputs as they were or replaces them by the complete new ones. --long sweeps more finely.
 """
 
-import hashlib
-import json
 import os
 import random
 import resource
@@ -16,69 +14,19 @@ import sys
 import tempfile
 import time
 
-RAYCONE, MESHES = (os.path.abspath(path) for path in sys.argv[1:3])
+from runs import CLOSED, OPEN, RAYCONE, all_runs, contents, fail, is_sanitized, limit, report
+
 LONG = "--long" in sys.argv
-CLOSED, OPEN = (os.path.join(MESHES, name) for name in ("teapot.obj", "open_box.obj"))
-EARLIER = b"earlier"
-failures = []
-
-
-def fail(what, result, message):
-    failures.append("%s: status %d: %s" % (what, result, message.decode()[:300].strip()))
-
-
-def contents(path):
-    with open(path, "rb") as file:
-        return file.read()
-
-
-# A run's arguments, with earlier outputs, whose fate is checked: -o and those of other options.
-class Run:
-    def __init__(self, name, *arguments, output, **others):
-        self.name, self.outputs = name, [output, *others.values()]
-        self.arguments = [RAYCONE, *arguments, "--threads", "2", "-o", output]
-        for option, path in others.items():
-            self.arguments += ["--" + option, path]
-        subprocess.run(self.arguments, check=True, stderr=subprocess.DEVNULL)
-        self.complete = {path: hashlib.sha256(contents(path)).digest() for path in self.outputs}
-
-    def is_complete(self, path):
-        content = contents(path)
-        if path.endswith(".json"):  # it tells times, which vary
-            return content.endswith(b"}\n") and "seconds" in json.loads(content)
-        return hashlib.sha256(content).digest() == self.complete[path]
-
-    def start(self, **options):
-        for path in self.outputs:
-            with open(path, "wb") as file:
-                file.write(EARLIER)
-        self.before = set(os.listdir())
-        return subprocess.Popen(self.arguments, stderr=subprocess.PIPE, **options)
-
-    # `done`: whether the run said that it was. Of several outputs some may have been completed before a fault.
-    def check(self, what, status, message, done):
-        debris = set(os.listdir()) - self.before
-        if debris:
-            fail("%s, %s left %s" % (self.name, what, debris), status, message)
-        for path in self.outputs:
-            if contents(path) == EARLIER and not done:
-                continue
-            if not self.is_complete(path) or (not done and len(self.outputs) == 1):
-                fail("%s, %s: %s neither the earlier nor the complete one" % (self.name, what, path), status, message)
-
-
-def limit(kind, size):
-    return lambda: resource.setrlimit(kind, (size, size))
 
 
 # From too little for the program to be loaded (127, the dynamic linker's; it dies of no other signal) to enough.
-def sweep_memory(run, step):
-    size, refused, succeeded = 24 << 20, 0, 0
+def sweep_memory(run, kind, of_what, size, step):
+    refused, succeeded = 0, 0
     while succeeded < 3:
-        process = run.start(preexec_fn=limit(resource.RLIMIT_AS, size))
+        process = run.start(preexec_fn=limit(kind, size))
         message = process.communicate(timeout=300)[1]
         status = process.returncode
-        what = "address space of %d MB" % (size >> 20)
+        what = "%s of %d kB" % (of_what, size >> 10)
         if status == 0:
             succeeded += 1
         elif status == 4 and message.startswith(b"raycone: ") and message.count(b"\n") == 1:
@@ -100,16 +48,12 @@ def sweep_signals(run, count):
     duration = time.monotonic() - start
     chance = random.Random(7)
     for i in range(count):
-        kind = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)[i % 3]
+        kind = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2)[i % 5]
         process = run.start()
         time.sleep(chance.uniform(0, 1.1 * duration))
         process.send_signal(kind)
         message = process.communicate(timeout=300)[1]
-        # A signal between the renaming and the end finds the output complete, and perhaps the summary printed.
-        done = run.is_complete(run.outputs[0])
-        if process.returncode not in (0, -kind) or (message and not done):
-            fail("%s, signal %d" % (run.name, kind), process.returncode, message)
-        run.check("signal %d" % kind, process.returncode, message, done and len(run.outputs) == 1)
+        run.check_signal("signal %d" % kind, kind, process.returncode, message)
 
 
 # At any byte the disk may be full.
@@ -166,32 +110,15 @@ def sweep_batch_memory(step):
 
 # Meshes that never end are read until the limit, and no further.
 def read_endless_meshes():
-    for what in ("%s info --memory-limit 100M /dev/zero", "yes 'v 0 0 0' | exec %s info --memory-limit 100M --mesh-format obj -"):
+    for what in (
+        "%s info --memory-limit 100M /dev/zero",
+        "ulimit -v 1000000; exec %s info /dev/zero",
+        "yes 'v 0 0 0' | exec %s info --memory-limit 100M --mesh-format obj -",
+    ):
         process = subprocess.run(["sh", "-c", what % RAYCONE], capture_output=True, timeout=300)
-        if process.returncode != 4 or process.stderr.count(b"\n") != 1 or b"memory" not in process.stderr:
+        message = process.stderr
+        if process.returncode != 4 or message.count(b"\n") != 1 or b"memory" not in message or b"the limit is " not in message:
             fail(what, process.returncode, process.stderr)
-
-
-def all_runs():
-    with open("points.csv", "w") as points:
-        points.writelines("%r,%r,%r\n" % (random.random(), random.random(), random.random()) for _ in range(20000))
-    runs = [
-        Run("closed mesh to VDB", "lattice", CLOSED, "--resolution", "48", output="out.vdb"),
-        Run("open mesh to CSV", "lattice", OPEN, "--resolution", "24", "--diagnostics", output="out.csv"),
-        Run("points to NPY", "points", CLOSED, "points.csv", output="points.npy"),
-        Run("level set to VTI", "lattice", CLOSED, "--field", "sdf", "--resolution", "24", output="out.vti", depfile="out.d"),
-        Run("samples to NPZ", "points", CLOSED, "--sample", "uniform=9000,near=9000:0.01", "--field", "winding,inside,sdf",
-            output="out.npz", report="npz.json"),
-        Run("slice to PNG", "slice", OPEN, "--size", "150", output="out.png", values="values.npy", report="png.json"),
-    ]
-    os.rename("out.vdb", "like.vdb")
-    runs[0] = Run("closed mesh to VDB", "lattice", CLOSED, "--like", "like.vdb", output="out.vdb", report="vdb.json")
-    return runs
-
-
-# Sanitizers reserve terabytes of addresses before the program starts, and die where memory runs out.
-def is_sanitized():
-    return subprocess.run([RAYCONE, "--version"], capture_output=True, preexec_fn=limit(resource.RLIMIT_AS, 8 << 30)).returncode != 0
 
 
 if "--memory" in sys.argv and is_sanitized():
@@ -201,7 +128,8 @@ with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
     for run in all_runs():
         if "--memory" in sys.argv:
-            sweep_memory(run, (1 if LONG else 10) << 20)
+            sweep_memory(run, resource.RLIMIT_AS, "address space", 24 << 20, (1 if LONG else 10) << 20)
+            sweep_memory(run, resource.RLIMIT_DATA, "data", 1 << 20, (256 if LONG else 3 << 10) << 10)
         else:
             sweep_disk(run, 60 if LONG else 6)
             sweep_signals(run, 300 if LONG else 15)
@@ -211,7 +139,4 @@ with tempfile.TemporaryDirectory() as directory:
     else:
         sweep_shrinking(200 if LONG else 10)
     os.chdir("/")
-for failure in failures:
-    print(failure)
-print("%d wrong" % len(failures))
-sys.exit(1 if failures else 0)
+sys.exit(report())

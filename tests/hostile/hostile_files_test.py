@@ -9,9 +9,9 @@ import subprocess
 import sys
 import tempfile
 
-from hostile_files import OFF, TABLE, put
+from hostile_files import OBJ, OFF, TABLE, put
 
-RAYCONE, MESH = sys.argv[1:]
+RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:])
 failures = []
 
 
@@ -46,6 +46,24 @@ def walk_table():
             expect(name, ["points", MESH, name], status, fragment)
         else:
             expect_mesh(name, status, fragment)
+
+
+# Lines of one gigabyte, of zeros that take no space on most disks.
+def walk_longest_lines():
+    for name, beginning, status, fragment in [
+        ("longest_line.obj", OBJ + "# ", 0, ""),
+        ("longest_line.off", "OFF\n4 4 6\n", 2, ":3: expected a coordinate, found '?"),
+        ("longest_line.stl", "solid ", 2, "no triangles"),
+        ("longest_line.csv", "x,y,z\n", 2, ":2: line of more than"),
+    ]:
+        with open(name, "w") as file:
+            file.write(beginning)
+            file.truncate(1 << 30)
+        if name.endswith(".csv"):
+            expect(name, ["points", MESH, name], status, fragment)
+        else:
+            expect_mesh(name, status, fragment)
+        os.unlink(name)
 
 
 # What never ends is read until a limit, and no further; as a mesh: faults_test.py --memory.
@@ -85,6 +103,7 @@ def walk_links():
 with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
     walk_table()
+    walk_longest_lines()
     walk_devices()
     walk_links()
     os.chdir("/")

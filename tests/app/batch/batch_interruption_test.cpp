@@ -123,7 +123,7 @@ TEST_F(BatchInterruption, KilledAtAnyMomentTheLastRunEqualsAnUndisturbedOne) {
 TEST_F(BatchInterruption, BySignalCleansUpAndDiesOfIt) {
   put_long();
   put("c.obj");  // done by the time of the signal
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU}) {
     fs::remove_all(out_);
     Command command(long_run());
     const std::vector<pid_t> workers = wait_for_workers(command);

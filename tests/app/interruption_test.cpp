@@ -30,8 +30,7 @@ class Interruption : public testing::Test {
 
   // Waits until the run has opened its temporary files and is evaluating.
   void wait_for_work(std::size_t files) const {
-    for (int i = 0; i < 500 && file_count() < files; ++i) std::this_thread::sleep_for(milliseconds(10));
-    ASSERT_GE(file_count(), files) << "the run opened no temporary file";
+    ASSERT_TRUE(becomes_true([&] { return file_count() >= files; })) << "the run opened no temporary file";
     std::this_thread::sleep_for(milliseconds(100));
   }
 

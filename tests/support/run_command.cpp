@@ -10,11 +10,12 @@
 
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 
 namespace raycone::test {
 namespace {
 
-constexpr std::chrono::seconds kPatience{60};
+constexpr int kPatienceOfPoll = std::chrono::milliseconds(kPatience).count();
 
 struct Pipe {
   int read_end = -1;
@@ -48,6 +49,14 @@ void close_if_open(int& descriptor) {
 }
 
 }  // namespace
+
+bool becomes_true(const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return condition();
+}
 
 Command::Command(const std::vector<std::string>& arguments, const CommandOptions& options) {
   Pipe input = make_pipe();
@@ -105,10 +114,10 @@ void Command::read_available(int& descriptor, std::string& text) const {
   }
 }
 
-std::optional<std::string> Command::read_bytes(std::size_t count, std::chrono::milliseconds patience) {
+std::optional<std::string> Command::read_bytes(std::size_t count) {
   while (out_.size() < count) {
     pollfd ready{output_, POLLIN, 0};
-    if (output_ < 0 || poll(&ready, 1, static_cast<int>(patience.count())) <= 0) return std::nullopt;
+    if (output_ < 0 || poll(&ready, 1, kPatienceOfPoll) <= 0) return std::nullopt;
     read_available(output_, out_);
   }
   std::string bytes = out_.substr(0, count);
@@ -116,11 +125,11 @@ std::optional<std::string> Command::read_bytes(std::size_t count, std::chrono::m
   return bytes;
 }
 
-std::optional<std::string> Command::read_line(std::chrono::milliseconds patience) {
+std::optional<std::string> Command::read_line() {
   std::size_t end;
   while ((end = out_.find('\n')) == std::string::npos) {
     pollfd ready{output_, POLLIN, 0};
-    if (output_ < 0 || poll(&ready, 1, static_cast<int>(patience.count())) <= 0) return std::nullopt;
+    if (output_ < 0 || poll(&ready, 1, kPatienceOfPoll) <= 0) return std::nullopt;
     read_available(output_, out_);
   }
   std::string line = out_.substr(0, end);

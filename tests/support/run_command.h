@@ -5,12 +5,19 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace raycone::test {
+
+// What takes longer than this hangs, however busy the machine is. Below the time that CTest gives to a test.
+inline constexpr std::chrono::seconds kPatience{300};
+
+// Whether `condition` comes to hold in that time.
+[[nodiscard]] bool becomes_true(const std::function<bool()>& condition);
 
 struct CommandResult {
   int status = -1;  // exit status; -1 if a signal ended it
@@ -40,9 +47,9 @@ class Command {
   void write(const std::string& text) const;
   void close_input();
   // The next line of standard output without its line feed; nothing if none comes in time or ever.
-  [[nodiscard]] std::optional<std::string> read_line(std::chrono::milliseconds patience);
+  [[nodiscard]] std::optional<std::string> read_line();
   // The next `count` bytes of standard output; nothing if they do not come in time or ever.
-  [[nodiscard]] std::optional<std::string> read_bytes(std::size_t count, std::chrono::milliseconds patience);
+  [[nodiscard]] std::optional<std::string> read_bytes(std::size_t count);
   void send_signal(int signal) const;
   [[nodiscard]] pid_t process() const { return process_; }
   // Reads both outputs to their ends.

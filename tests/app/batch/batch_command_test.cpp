@@ -67,14 +67,14 @@ TEST_F(Batch, PoisonIsContained) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // a reader without end
   put("z.obj");
   const CommandResult result = run_raycone(
-      {"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1", "--timeout", "5", "--memory-limit", "8G"});
+      {"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1", "--timeout", "10", "--memory-limit", "8G"});
   EXPECT_EQ(result.status, 5);
   EXPECT_EQ(
       statuses(rows()),
       (Statuses{
           {"a.obj", "ok"}, {"big.obj", "memory"}, {"far.obj", "memory"}, {"pipe.obj", "timeout"}, {"z.obj", "ok"}}));
   for (const char* const mesh : {"big.obj", "far.obj", "pipe.obj"}) EXPECT_EQ(rows().at(mesh).exit, 4) << mesh;
-  EXPECT_NE(result.err.find(pipe + ": not finished within 5 seconds"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(pipe + ": not finished within 10 seconds"), std::string::npos) << result.err;
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
 }
 
@@ -118,15 +118,15 @@ TEST_F(Batch, FailuresAreTriedAgainWhereTheirCauseMayBeGone) {
     words.insert(words.end(), more.begin(), more.end());
     return run_raycone(words).out;
   };
-  const std::vector<std::string> limits{"--timeout", "4", "--memory-limit", "8G"};
+  const std::vector<std::string> limits{"--timeout", "9", "--memory-limit", "8G"};
   batch(limits);
-  EXPECT_EQ(count_lines(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run"})), 0U);
-  EXPECT_EQ(batch({"--timeout", "6", "--memory-limit", "8G", "--dry-run"}), pipe + "\ttime limit changed\n");
-  EXPECT_EQ(batch({"--timeout", "4", "--memory-limit", "9G", "--dry-run"}),
+  EXPECT_EQ(count_lines(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run"})), 0U);
+  EXPECT_EQ(batch({"--timeout", "12", "--memory-limit", "8G", "--dry-run"}), pipe + "\ttime limit changed\n");
+  EXPECT_EQ(batch({"--timeout", "9", "--memory-limit", "9G", "--dry-run"}),
             meshes_ + "/big.obj\tmemory limit changed\n");
-  EXPECT_EQ(count_lines(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run", "--retry-failed"})), 3U);
+  EXPECT_EQ(count_lines(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run", "--retry-failed"})), 3U);
   put("bad.obj");
-  EXPECT_EQ(batch({"--timeout", "4", "--memory-limit", "8G", "--dry-run"}), meshes_ + "/bad.obj\tmesh changed\n");
+  EXPECT_EQ(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run"}), meshes_ + "/bad.obj\tmesh changed\n");
 }
 
 TEST_F(Batch, UnwritableOutputsAreTriedAgain) {

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <random>
@@ -58,11 +57,6 @@ std::map<std::string, int> thread_times(const std::vector<pid_t>& processes) {
   }
   std::erase_if(times, [](const auto& time) { return time.second == 0; });
   return times;
-}
-
-bool becomes_true(const std::function<bool()>& condition) {
-  for (int i = 0; i < 3000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(10));
-  return condition();
 }
 
 class BatchInterruption : public Batch {
@@ -200,9 +194,9 @@ TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {
     fs::remove_all(out_);
     Command command(raycone_command(arguments({"--resolution", "300", "--threads", std::to_string(threads)})));
     const std::vector<pid_t> workers = wait_for_workers(command);
+    EXPECT_TRUE(becomes_true([&workers] { return thread_times(workers).size() >= 2; })) << "two workers";
     std::this_thread::sleep_for(milliseconds(700));
     EXPECT_LE(thread_times(workers).size(), threads);
-    EXPECT_GE(thread_times(workers).size(), 2U) << "two workers";
     const std::map<std::string, int> supervisor = thread_times({command.process()});
     for (const auto& [thread, ticks] : supervisor) EXPECT_LT(ticks, 10) << "it mostly sleeps";
   }

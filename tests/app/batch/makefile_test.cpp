@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include "tests/app/batch/batch_fixture.h"
 
@@ -60,14 +59,10 @@ TEST_F(Makefile, AnInterruptLeavesNoPartialFile) {
   put("a.obj", triangle_soup(2000));
   put("b.obj", triangle_soup(2000));
   Command command(make("300"));
-  for (int i = 0; i < 500 && (!fs::exists(out_) || outputs_in(out_).size() < 2); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ASSERT_EQ(outputs_in(out_).size(), 2U) << "two temporary files";
+  ASSERT_TRUE(becomes_true([this] { return fs::exists(out_) && outputs_in(out_).size() == 2; })) << "temporary files";
   command.send_signal(SIGTERM);
   EXPECT_NE(command.wait().status, 0);
-  for (int i = 0; i < 500 && !outputs_in(out_).empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_TRUE(outputs_in(out_).empty());
+  EXPECT_TRUE(becomes_true([this] { return outputs_in(out_).empty(); }));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Cone {
   void winding_numbers(SampleTile& samples, std::span<Turns> cone) const;
 
   // The same in extended precision with a rigorous bound of its error, by running error analysis (docs/method.md,
-  // "Error bound"). Some ten times slower, and a check of the above: it shares the signs and the order of edges, not
+  // "Error bound"). A hundred times slower, and a check of the above: it shares the signs and the order of edges, not
   // the arithmetic.
   [[nodiscard]] TurnsWithin enclose(const Vec3& q) const;
 

@@ -60,7 +60,7 @@ class WindingNumberEvaluator {
 
   // Winding numbers (turns) of a block of `lattice`, x fastest: values.size() == block.size(). `done`, where given,
   // grows by one per finished sample while the call runs. Uses the threads that ThreadLimit allows; the values depend
-  // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes some ten times
+  // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes a hundred times
   // as long for open meshes. Const calls may run concurrently.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;

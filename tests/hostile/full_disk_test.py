@@ -9,13 +9,11 @@ import subprocess
 import sys
 import tempfile
 
-RAYCONE, MESHES = (os.path.abspath(path) for path in sys.argv[1:3])
-NAMESPACE = ["unshare", "--user", "--map-root-user", "--mount"]
-CLOSED, OPEN = (os.path.join(MESHES, name) for name in ("cube.obj", "open_box.obj"))
-DISK = 4 << 20
-EARLIER = b"earlier"
-failures = []
+from runs import EARLIER, MESHES, OPEN, RAYCONE, contents, fail, failures, report
 
+NAMESPACE = ["unshare", "--user", "--map-root-user", "--mount"]
+CUBE = os.path.join(MESHES, "cube.obj")
+DISK = 4 << 20
 
 # Arguments, and the outputs among them.
 COMMANDS = [
@@ -30,18 +28,9 @@ COMMANDS = [
 ]
 
 
-def contents(path):
-    with open(path, "rb") as file:
-        return file.read()
-
-
 def run(arguments):
     quiet = [] if arguments[0] == "report" else ["--quiet"]
     return subprocess.run([RAYCONE, *arguments, *quiet], capture_output=True, timeout=300)
-
-
-def fail(what, result):
-    failures.append("%s: status %d: %s" % (what, result.returncode, result.stderr.decode()[:300].strip()))
 
 
 def empty():
@@ -62,14 +51,14 @@ def run_once(arguments, outputs, expected):
     result = run(arguments)
     what = " ".join(arguments)
     if set(os.listdir()) != before:
-        fail("%s left %s" % (what, set(os.listdir()) - before), result)
+        fail("%s left %s" % (what, set(os.listdir()) - before), result.returncode, result.stderr)
     if result.returncode == 0:
         return True
     message = result.stderr.decode()
     if result.returncode != 3 or message.count("\n") != 1 or not message.startswith("raycone: ") or expected not in message:
-        fail(what, result)
+        fail(what, result.returncode, result.stderr)
     if contents(outputs[0]) != EARLIER and len(outputs) == 1:
-        fail("%s: not the earlier output" % what, result)
+        fail("%s: not the earlier output" % what, result.returncode, result.stderr)
     return False
 
 
@@ -98,13 +87,13 @@ def sweep_batch():
     while 0 not in statuses:
         subprocess.run(["rm", "-rf", "out"], check=True)
         leave(room)
-        result = run(["batch", CLOSED, OPEN, "--resolution", "12", "--format", "npy", "--out-dir", "out", "--threads", "1"])
+        result = run(["batch", CUBE, OPEN, "--resolution", "12", "--format", "npy", "--out-dir", "out", "--threads", "1"])
         statuses.append(result.returncode)
         if result.returncode not in (0, 3, 5) or not all(line.startswith(b"raycone: ") for line in result.stderr.splitlines()):
-            fail("batch with %d bytes of room" % room, result)
+            fail("batch with %d bytes of room" % room, result.returncode, result.stderr)
         for name in os.listdir("out") if os.path.isdir("out") else []:
             if not name.endswith((".csv", ".npy")) or (name.endswith(".npy") and os.path.getsize("out/" + name) != 128 + 4 * 12**3):
-                fail("batch with %d bytes of room left %s" % (room, name), result)
+                fail("batch with %d bytes of room left %s" % (room, name), result.returncode, result.stderr)
         room += 4096
     if not {3, 5} <= set(statuses):
         failures.append("batch: neither rows nor outputs lacked room: %s" % statuses)
@@ -113,7 +102,7 @@ def sweep_batch():
 def inside(directory):
     subprocess.run(["mount", "-t", "tmpfs", "-o", "size=%d" % DISK, "tmpfs", directory], check=True)
     os.chdir(directory)
-    subprocess.run([RAYCONE, "batch", CLOSED, OPEN, "--resolution", "8", "--out-dir", "batch", "--quiet"], check=True)
+    subprocess.run([RAYCONE, "batch", CUBE, OPEN, "--resolution", "8", "--out-dir", "batch", "--quiet"], check=True)
     for arguments, outputs in COMMANDS:
         sweep_room(arguments, outputs)
     sweep_batch()
@@ -122,12 +111,9 @@ def inside(directory):
     for arguments, outputs in COMMANDS:
         result = run(arguments)
         if result.returncode != 3 or b"Read-only file system" not in result.stderr or result.stderr.count(b"\n") != 1:
-            fail("read-only: " + " ".join(arguments), result)
-    for failure in failures:
-        print(failure)
-    print("%d wrong" % len(failures))
+            fail("read-only: " + " ".join(arguments), result.returncode, result.stderr)
     os.chdir("/")
-    sys.exit(1 if failures else 0)
+    sys.exit(report())
 
 
 if "--inside" in sys.argv:

@@ -6,6 +6,12 @@
 #include "core/exterior_edges.h"
 
 namespace raycone {
+namespace {
+
+// The argument of an edge along the rays is 0 from everywhere, which the kernel would find out by predicates.
+bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.z == b.z; }
+
+}  // namespace
 
 Cone::Cone(const TriangleMesh& mesh, SimdLevel level) : multiply_chains_(cone_kernel(level)) {
   const std::vector<ExteriorEdge> edges = raycone::exterior_edges(mesh);
@@ -19,7 +25,8 @@ Cone::Cone(const TriangleMesh& mesh, SimdLevel level) : multiply_chains_(cone_ke
     }
     std::vector<ChainStep>& steps = groups_.back().steps;
     if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
-    steps.push_back({mesh.vertices[e.to], true, e.multiplicity < 0});
+    const bool has_argument = !projects_to_a_point(mesh.vertices[e.from], mesh.vertices[e.to]);
+    steps.push_back({mesh.vertices[e.to], has_argument, e.multiplicity < 0});
     previous = &e;
   }
 }

@@ -116,29 +116,4 @@ TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, 
   return result;
 }
 
-void RowCrossings::clear() {
-  crossings.clear();
-  ties.clear();
-  on_surface.clear();
-}
-
-void RowCrossings::add(const TriangleCrossing& crossing) {
-  if (crossing.crossed > 0) crossings.push_back({crossing.crossed, crossing.sigma});
-  if (crossing.ties > 0 && crossing.met > 0) ties.push_back({crossing.met, crossing.ties});
-  if (crossing.on_begin < crossing.on_end) on_surface.push_back({crossing.on_begin, crossing.on_end});
-}
-
-void RowCrossings::sum(std::vector<Ending>& endings, std::span<std::int64_t> sums) {
-  std::sort(endings.begin(), endings.end(), [](const Ending& a, const Ending& b) { return a.samples > b.samples; });
-  std::int64_t sum = 0;
-  auto end = sums.end();
-  for (const Ending& e : endings) {
-    const auto begin = sums.begin() + static_cast<std::ptrdiff_t>(e.samples);
-    std::fill(begin, end, sum);
-    sum += e.count;
-    end = begin;
-  }
-  std::fill(sums.begin(), end, sum);
-}
-
 }  // namespace raycone

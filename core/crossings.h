@@ -2,9 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 #include "core/row.h"
 #include "core/triangle_mesh.h"
@@ -34,26 +31,5 @@ struct TriangleCrossing {
 // DefaultFloatingPoint.
 [[nodiscard]] TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,
                                                  const TrianglePlane* plane);
-
-// What all triangles say about a row.
-struct RowCrossings {
-  struct Ending {
-    std::size_t samples;  // counted by the samples [0, samples)
-    int count;
-  };
-  struct Range {
-    std::size_t begin;
-    std::size_t end;
-  };
-  std::vector<Ending> crossings;
-  std::vector<Ending> ties;
-  std::vector<Range> on_surface;
-
-  void clear();
-  void add(const TriangleCrossing& crossing);
-
-  // The sum of the endings' counts at each sample; sorts the endings.
-  static void sum(std::vector<Ending>& endings, std::span<std::int64_t> sums);
-};
 
 }  // namespace raycone

@@ -1,9 +1,8 @@
 #include "core/lattice_scan.h"
 
 #include <algorithm>
-#include <mutex>
-#include <numeric>
-#include <optional>
+#include <array>
+#include <atomic>
 
 #include "core/threads.h"
 #include "core/triangle_sections.h"
@@ -14,6 +13,8 @@ namespace {
 constexpr std::size_t kTrianglesPerTask = 2048;
 
 constexpr std::size_t kVerticesPerTask = 8192;
+
+constexpr std::size_t kGroupsPerTask = 4;
 
 // Where a number lies among ascending values: how many of them are below it, and not above it.
 struct Place {
@@ -62,79 +63,81 @@ void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& 
   }
 }
 
-}  // namespace
-
-struct LatticeScan::VertexPlace {
+struct VertexPlace {
   Place y, z;
 };
 
-LatticeScan::LatticeScan(const TriangleMesh& mesh, const LatticeRows& rows) {
-  // Once per vertex, not per triangle: most triangles of a fine mesh meet no row, and need nothing else.
-  std::vector<VertexPlace> places(mesh.vertices.size());
-  parallel_for(places.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3& v = mesh.vertices[i];
-      places[i] = {place_of(v.y, rows.ys, rows.samples_per_unit.y), place_of(v.z, rows.zs, rows.samples_per_unit.z)};
-    }
-  });
-  std::vector<Found> parts;
-  std::mutex mutex;
-  parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-    Found found;
-    for (std::size_t i = begin; i < end; ++i) scan(mesh, places, mesh.triangles[i], rows, found);
-    const std::lock_guard<std::mutex> lock(mutex);
-    parts.push_back(std::move(found));
-  });
-  sort_by_row(parts, rows.size());
+VertexPlace place_of(const Vec3& v, const LatticeRows& rows) {
+  return {place_of(v.y, rows.ys, rows.samples_per_unit.y), place_of(v.z, rows.zs, rows.samples_per_unit.z)};
 }
 
-void LatticeScan::scan(const TriangleMesh& mesh, const std::vector<VertexPlace>& places, const Triangle& triangle,
-                       const LatticeRows& rows, Found& found) {
-  const VertexPlace &pa = places[triangle[0]], &pb = places[triangle[1]], &pc = places[triangle[2]];
+// One triangle, whose corners are at these places. Returns the ties.
+std::uint64_t scan(const std::array<Vec3, 3>& corners, const std::array<VertexPlace, 3>& places,
+                   const LatticeRows& rows, LatticeSums& sums) {
+  const auto& [pa, pb, pc] = places;
   const Range ks = range_of(pa.z, pb.z, pc.z), js = range_of(pa.y, pb.y, pc.y);
-  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
-  const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]], &c = mesh.vertices[triangle[2]];
-  if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
+  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return 0;
+  const auto& [a, b, c] = corners;
+  if (rows.xs.front() > std::max({a.x, b.x, c.x})) return 0;
   const TrianglePlane plane(a, b, c);
-  const auto visit = [&](std::uint32_t j, std::uint32_t k) {
+  std::uint64_t ties = 0;
+  visit_rows(a, b, c, rows, js, ks, [&](std::uint32_t j, std::uint32_t k) {
     const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
     const TriangleCrossing crossing = triangle_crossing(a, b, c, row, &plane);
-    const auto number = static_cast<std::uint32_t>(k * rows.ys.size() + j);
-    if (crossing.crossed > 0) {
-      found.crossed.push_back({number, static_cast<std::uint32_t>(crossing.crossed), crossing.sigma});
+    sums.add(k * rows.ys.size() + j, crossing);
+    ties += crossing.met * static_cast<std::uint64_t>(crossing.ties);
+  });
+  return ties;
+}
+
+std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+// All of them. Where a vertex lies is looked up once per vertex, not per triangle: most triangles of a fine mesh meet
+// no row, and need nothing else.
+std::uint64_t scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
+  std::vector<VertexPlace> places(mesh.vertices.size());
+  parallel_for(places.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) places[i] = place_of(mesh.vertices[i], rows);
+  });
+  std::atomic<std::uint64_t> ties = 0;
+  parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t here = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle& t = mesh.triangles[i];
+      here += scan(corners_of(mesh, t), {places[t[0]], places[t[1]], places[t[2]]}, rows, sums);
     }
-    if (crossing.met > 0 || crossing.on_begin < crossing.on_end) found.degenerate.push_back({number, crossing});
-  };
-  visit_rows(a, b, c, rows, js, ks, visit);
+    ties += here;
+  });
+  return ties;
 }
 
-void LatticeScan::sort_by_row(const std::vector<Found>& parts, std::size_t rows) {
-  begin_.assign(rows + 2, 0);
-  for (const Found& part : parts) {
-    for (const Crossed& c : part.crossed) ++begin_[c.row + 2];
-    degenerate_.insert(degenerate_.end(), part.degenerate.begin(), part.degenerate.end());
-  }
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  crossings_.resize(begin_.back());
-  // begin_[row + 1] is the row's next free place, and its end when all are filled.
-  for (const Found& part : parts) {
-    for (const Crossed& c : part.crossed) crossings_[begin_[c.row + 1]++] = {c.samples, c.sigma};
-  }
-  std::sort(degenerate_.begin(), degenerate_.end(),
-            [](const Degenerate& a, const Degenerate& b) { return a.row < b.row; });
+std::uint64_t scan_slab(const TriangleMesh& mesh, const LatticeRows& rows, const OrderedSlab& slab, LatticeSums& sums) {
+  const std::vector<double>& across = slab.axis == 1 ? rows.ys : rows.zs;
+  const std::vector<std::uint32_t> groups = slab.order.groups_in(across.front(), across.back());
+  std::atomic<std::uint64_t> ties = 0;
+  parallel_for(groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t here = 0;
+    for (std::size_t n = begin; n < end; ++n) {
+      for (const std::uint32_t i : slab.order[groups[n]]) {
+        const std::array<Vec3, 3> corners = corners_of(mesh, mesh.triangles[i]);
+        const auto [lower, upper] = std::minmax({corners[0][slab.axis], corners[1][slab.axis], corners[2][slab.axis]});
+        if (lower > across.back() || upper < across.front()) continue;
+        here += scan(corners, {place_of(corners[0], rows), place_of(corners[1], rows), place_of(corners[2], rows)},
+                     rows, sums);
+      }
+    }
+    ties += here;
+  });
+  return ties;
 }
 
-void LatticeScan::get(std::size_t row, RowCrossings& crossings) const {
-  crossings.clear();
-  crossings.crossings.assign(crossings_.begin() + static_cast<std::ptrdiff_t>(begin_[row]),
-                             crossings_.begin() + static_cast<std::ptrdiff_t>(begin_[row + 1]));
-  const auto before = [](const Degenerate& d, std::size_t number) { return d.row < number; };
-  auto it = std::lower_bound(degenerate_.begin(), degenerate_.end(), row, before);
-  for (; it != degenerate_.end() && it->row == row; ++it) {
-    TriangleCrossing rest = it->crossing;
-    rest.crossed = 0;  // listed above
-    crossings.add(rest);
-  }
+}  // namespace
+
+std::uint64_t scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                             LatticeSums& sums) {
+  return slab ? scan_slab(mesh, rows, *slab, sums) : scan_all(mesh, rows, sums);
 }
 
 }  // namespace raycone

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "core/crossings.h"
+#include "core/lattice_sums.h"
 #include "core/row.h"
+#include "core/slab_order.h"
 #include "core/triangle_mesh.h"
 
 namespace raycone {
@@ -23,39 +25,16 @@ struct LatticeRows {
   }
 };
 
-// What the triangles of a mesh say about each row.
-class LatticeScan {
- public:
-  // Threaded over triangles. rows.size() < 2^32.
-  LatticeScan(const TriangleMesh& mesh, const LatticeRows& rows);
-
-  // Replaces `crossings` by those of a row; in an order of no meaning.
-  void get(std::size_t row, RowCrossings& crossings) const;
-
- private:
-  struct Crossed {
-    std::uint32_t row;
-    std::uint32_t samples;
-    std::int32_t sigma;
-  };
-  struct Degenerate {  // rare: ties, or samples on the surface
-    std::uint32_t row;
-    TriangleCrossing crossing;
-  };
-  struct Found {
-    std::vector<Crossed> crossed;
-    std::vector<Degenerate> degenerate;
-  };
-
-  struct VertexPlace;
-
-  static void scan(const TriangleMesh& mesh, const std::vector<VertexPlace>& places, const Triangle& triangle,
-                   const LatticeRows& rows, Found& found);
-  void sort_by_row(const std::vector<Found>& parts, std::size_t rows);
-
-  std::vector<std::size_t> begin_;  // per row, into crossings_; and the end
-  std::vector<RowCrossings::Ending> crossings_;
-  std::vector<Degenerate> degenerate_;  // by row
+// The triangles of a mesh in their order along an axis across the slabs, 1 or 2.
+struct OrderedSlab {
+  const SlabOrder& order;
+  int axis;
 };
+
+// Adds what the triangles of a mesh say about each row to `sums`, which is of these rows. `slab`: where
+// the rows are one of many. Threaded over triangles. Fewer than
+// 2^32 coordinates along y and along z. Returns the number of ties: edge sides with D = 0, over all samples.
+std::uint64_t scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                             LatticeSums& sums);
 
 }  // namespace raycone

@@ -14,10 +14,12 @@
 #include "core/crossings.h"
 #include "core/floating_point.h"
 #include "core/lattice_scan.h"
+#include "core/lattice_sums.h"
 #include "core/projected_grid.h"
 #include "core/ray_caster.h"
 #include "core/row.h"
 #include "core/scale.h"
+#include "core/slab_order.h"
 #include "core/solid_angles.h"
 #include "core/threads.h"
 
@@ -49,7 +51,6 @@ class TallySum {
 // Buffers of one thread, reused from row to row.
 struct Scratch {
   std::vector<std::uint32_t> candidates;
-  RowCrossings crossings;
   std::vector<std::int64_t> sums;
   SampleTile tile;
   std::array<Turns, kTile> turns;
@@ -59,20 +60,6 @@ struct Scratch {
 Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
   return {all.crossings.subspan(begin, count), all.degenerate.subspan(begin, count),
           all.on_surface.subspan(begin, count), all.error_bound.subspan(begin, count)};
-}
-
-Tally tally_of(const RowCrossings& crossings, std::size_t samples) {
-  Tally tally;
-  for (const RowCrossings::Ending& e : crossings.ties) {
-    tally.degenerate += e.samples * static_cast<std::uint64_t>(e.count);
-  }
-  if (crossings.on_surface.empty()) return tally;
-  std::vector<bool> on_surface(samples, false);  // a sample counts once, on however many triangles it lies
-  for (const RowCrossings::Range& range : crossings.on_surface) {
-    for (std::size_t i = range.begin; i < range.end; ++i) on_surface[i] = true;
-  }
-  tally.on_surface = static_cast<std::uint64_t>(std::count(on_surface.begin(), on_surface.end(), true));
-  return tally;
 }
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.
@@ -128,6 +115,12 @@ class Engine {
     std::call_once(grid_built_, [this] { grid_.emplace(mesh_); });
     return *grid_;
   }
+  // Along axis 1 or 2.
+  [[nodiscard]] const SlabOrder& slab_order(int axis) const {
+    const auto n = static_cast<std::size_t>(axis - 1);
+    std::call_once(slab_orders_built_[n], [&] { slab_orders_[n].emplace(mesh_, axis); });
+    return *slab_orders_[n];
+  }
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
@@ -151,22 +144,21 @@ class Engine {
     }
   }
 
-  // Sets scratch.crossings to what the candidate triangles say about a row.
-  void find_crossings(const Row& row, Scratch& scratch) const {
-    scratch.crossings.clear();
+  // Adds what the candidate triangles of a row say to `sums`. Returns the ties.
+  std::uint64_t find_crossings(const LatticeRows& rows, std::size_t number, LatticeSums& sums, Scratch& scratch) const {
+    const Row row = rows.row(number);
     rays().find_candidates(row.query(0), scratch.candidates);
-    for (const std::uint32_t triangle : scratch.candidates) scratch.crossings.add(crossing(triangle, row));
+    std::uint64_t ties = 0;
+    for (const std::uint32_t triangle : scratch.candidates) {
+      const TriangleCrossing found = crossing(triangle, row);
+      sums.add(number, found);
+      ties += found.met * static_cast<std::uint64_t>(found.ties);
+    }
+    return ties;
   }
 
-  // w at each sample of a row in the engine's scale, with its crossings in scratch.crossings.
-  Tally evaluate_row(const Row& row, std::span<double> values, const Diagnostics* diagnostics, Scratch& scratch) const {
-    scratch.sums.resize(row.xs.size());
-    RowCrossings::sum(scratch.crossings.crossings, scratch.sums);
-    set_values(
-        scratch.sums, [&](std::size_t i) { return row.query(i); }, values, scratch);
-    if (diagnostics) diagnose(row, values, *diagnostics, scratch);
-    return tally_of(scratch.crossings, row.xs.size());
-  }
+  // Whether values depend on how many triangles a ray crosses.
+  [[nodiscard]] bool counts_crossings() const { return !solid_angles_; }
 
   // w at the points, which are in the engine's scale.
   Tally evaluate_points(std::span<const Vec3> points, std::span<double> values, const Diagnostics* diagnostics,
@@ -189,24 +181,6 @@ class Engine {
       diagnostics->error_bound[i] = error_bound_at(points[i], values[i], n[i]);
     }
     return tally;
-  }
-
- private:
-  [[nodiscard]] PointCrossings crossings_at(const Vec3& q, Scratch& scratch) const {
-    PointCrossings result;
-    const auto decide = [&](std::uint32_t triangle) { result.add(crossing(triangle, {q.y, q.z, {&q.x, 1}})); };
-    if (engine_ == RayEngine::kScan) {
-      result.n += grid().crossings(q, decide);
-    } else {
-      rays().find_candidates(q, scratch.candidates);
-      for (const std::uint32_t triangle : scratch.candidates) decide(triangle);
-    }
-    return result;
-  }
-
-  [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const {
-    const Triangle& t = mesh_.triangles[triangle];
-    return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
   }
 
   // values[i] = w(query(i)), n[i] its crossings.
@@ -237,22 +211,22 @@ class Engine {
     return cone_.exterior_edges() > 0 ? error_bound(w, n, cone_.enclose(q)) : 0.0;
   }
 
-  // Ties and the samples on the surface; sorts the crossings.
-  static void diagnose_crossings(RowCrossings& crossings, const Diagnostics& diagnostics) {
-    RowCrossings::sum(crossings.ties, diagnostics.degenerate);
-    std::fill(diagnostics.on_surface.begin(), diagnostics.on_surface.end(), std::uint8_t{0});
-    for (const RowCrossings::Range& range : crossings.on_surface) {
-      for (std::size_t i = range.begin; i < range.end; ++i) diagnostics.on_surface[i] = 1;
+ private:
+  [[nodiscard]] PointCrossings crossings_at(const Vec3& q, Scratch& scratch) const {
+    PointCrossings result;
+    const auto decide = [&](std::uint32_t triangle) { result.add(crossing(triangle, {q.y, q.z, {&q.x, 1}})); };
+    if (engine_ == RayEngine::kScan) {
+      result.n += grid().crossings(q, decide);
+    } else {
+      rays().find_candidates(q, scratch.candidates);
+      for (const std::uint32_t triangle : scratch.candidates) decide(triangle);
     }
+    return result;
   }
 
-  void diagnose(const Row& row, std::span<const double> values, const Diagnostics& diagnostics,
-                Scratch& scratch) const {
-    diagnose_crossings(scratch.crossings, diagnostics);
-    for (std::size_t i = 0; i < row.xs.size(); ++i) {
-      diagnostics.crossings[i] = scratch.sums[i];
-      diagnostics.error_bound[i] = error_bound_at(row.query(i), values[i], scratch.sums[i]);
-    }
+  [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
   }
 
   PowerOfTwo scale_;
@@ -264,6 +238,8 @@ class Engine {
   Cone cone_;
   std::optional<SolidAngles> solid_angles_;  // where they take the cone's place
   mutable std::once_flag rays_built_, grid_built_;
+  mutable std::array<std::once_flag, 2> slab_orders_built_;
+  mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
 };
@@ -281,36 +257,111 @@ LatticeRows rows_of(const std::array<std::vector<double>, 3>& coordinates, const
   return rows;
 }
 
-// Layers [begin, end) of a block's rows.
-LatticeRows layers(const LatticeRows& rows, std::size_t begin, std::size_t end) {
-  LatticeRows some{rows.xs, rows.ys, {}, rows.samples_per_unit};
-  some.zs.assign(rows.zs.begin() + static_cast<std::ptrdiff_t>(begin),
-                 rows.zs.begin() + static_cast<std::ptrdiff_t>(end));
-  return some;
+// Samples of a lattice that are evaluated together, and where their values belong.
+class LatticeTile {
+ public:
+  [[nodiscard]] bool full() const { return count_ == kTile; }
+
+  void add(std::size_t index, const Vec3& scaled_query) {
+    indices_[count_] = index;
+    queries_[count_++] = scaled_query;
+  }
+
+  // Turns the crossings of the samples, if any, into winding numbers, and forgets them.
+  void evaluate(const Engine& engine, std::span<double> values) {
+    std::array<std::int64_t, kTile> n{};
+    std::array<double, kTile> w;
+    if (engine.counts_crossings()) {
+      for (std::size_t i = 0; i < count_; ++i) n[i] = static_cast<std::int64_t>(values[indices_[i]]);
+    }
+    const auto query = [this](std::size_t i) { return queries_[i]; };
+    engine.set_values({n.data(), count_}, query, {w.data(), count_}, scratch_);
+    for (std::size_t i = 0; i < count_; ++i) values[indices_[i]] = w[i];
+    count_ = 0;
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::array<std::size_t, kTile> indices_;
+  std::array<Vec3, kTile> queries_;
+  Scratch scratch_;
+};
+
+// Turns crossings of the rows [begin, end) into winding numbers. Samples of a row share a ray, which saves work; where
+// a row leaves fewer than fill the lanes, those of several rows are taken together.
+void add_cone(const Engine& engine, const LatticeRows& rows, std::size_t begin, std::size_t end,
+              std::span<double> values) {
+  constexpr std::size_t kAlone = 8;  // samples
+  const std::size_t samples = rows.xs.size();
+  LatticeTile along, across;
+  for (std::size_t number = begin; number < end; ++number) {
+    const Row row = rows.row(number);
+    for (std::size_t first = 0; first < samples; first += kTile) {
+      const std::size_t last = std::min(first + kTile, samples);
+      LatticeTile& tile = last - first >= kAlone ? along : across;
+      for (std::size_t i = first; i < last; ++i) {
+        tile.add(number * samples + i, row.query(i));
+        if (tile.full()) tile.evaluate(engine, values);
+      }
+      along.evaluate(engine, values);
+    }
+  }
+  across.evaluate(engine, values);
 }
 
-// Evaluates rows; those of `scan` where given, else by their candidates.
-Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const LatticeScan* scan, std::span<double> values,
-                    std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+void bound_errors(const Engine& engine, const LatticeRows& rows, std::size_t begin, std::size_t end,
+                  std::span<const double> values, const Diagnostics& diagnostics) {
   const std::size_t samples = rows.xs.size();
-  TallySum total;
+  for (std::size_t n = begin * samples; n < end * samples; ++n) {
+    const Vec3 query = rows.row(n / samples).query(n % samples);
+    diagnostics.error_bound[n] = engine.error_bound_at(query, values[n], diagnostics.crossings[n]);
+  }
+}
+
+// What all triangles say about the rows. Returns the ties.
+std::uint64_t find_crossings(const Engine& engine, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                             LatticeSums& sums) {
+  if (engine.engine() == RayEngine::kScan) return scan_triangles(engine.mesh(), rows, slab, sums);
+  std::atomic<std::uint64_t> ties = 0;
   parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
     Scratch scratch;
-    Tally tally;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Row row = rows.row(i);
-      if (scan) {
-        scan->get(i, scratch.crossings);
-      } else {
-        engine.find_crossings(row, scratch);
-      }
-      const Diagnostics of_row = diagnostics ? part(*diagnostics, i * samples, samples) : Diagnostics{};
-      tally += engine.evaluate_row(row, values.subspan(i * samples, samples), diagnostics ? &of_row : nullptr, scratch);
-      if (done) done->fetch_add(samples, std::memory_order_relaxed);
+    for (std::size_t number = begin; number < end; ++number) {
+      ties += engine.find_crossings(rows, number, sums, scratch);
     }
-    total.add(tally);
   });
-  return total.sum();
+  return ties;
+}
+
+Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const bool counts = engine.counts_crossings() || diagnostics;
+  LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
+  const std::uint64_t ties = find_crossings(engine, rows, slab, sums);
+  std::atomic<std::uint64_t> on_surface = 0;
+  const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
+  parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
+    std::uint64_t here = 0;
+    for (std::size_t begin = first; begin < last; begin += rows_per_task) {
+      const std::size_t end = std::min(begin + rows_per_task, last);
+      for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
+      if (engine.cone().exterior_edges() > 0) add_cone(engine, rows, begin, end, values);
+      if (diagnostics) bound_errors(engine, rows, begin, end, values, *diagnostics);
+      if (done) done->fetch_add((end - begin) * rows.xs.size(), std::memory_order_relaxed);
+    }
+    on_surface += here;
+  });
+  return {ties, on_surface};
+}
+
+// The order of the triangles along the axis across which the block is a thin slab of the lattice, if it is.
+std::optional<OrderedSlab> ordered_slab(const Engine& engine, const Lattice& lattice, const LatticeBlock& block) {
+  constexpr std::int64_t kWorthSorting = 4;  // slabs
+  if (engine.engine() != RayEngine::kScan) return std::nullopt;
+  for (const int axis : {2, 1}) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (block.counts[a] <= lattice.counts[a] / kWorthSorting) return OrderedSlab{engine.slab_order(axis), axis};
+  }
+  return std::nullopt;
 }
 
 // Points in an order in which neighbours share triangles: a radix sort by place that moves the points themselves, so
@@ -481,19 +532,7 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   }
   const Engine& engine = implementation_->engine_for(exact);
   const LatticeRows rows = rows_of(coordinates, engine);
-  if (engine.engine() == RayEngine::kEmbree) return evaluate_rows(engine, rows, nullptr, values, done, diagnostics);
-
-  constexpr std::size_t kRowsPerScan = std::size_t{1} << 20;  // bounds the memory of crossings waiting for their row
-  const std::size_t step = std::max<std::size_t>(1, kRowsPerScan / rows.ys.size());
-  Tally tally;
-  for (std::size_t k = 0; k < rows.zs.size(); k += step) {
-    const LatticeRows some = layers(rows, k, std::min(k + step, rows.zs.size()));
-    const std::size_t first = k * rows.ys.size() * rows.xs.size(), count = some.size() * rows.xs.size();
-    const LatticeScan scan(engine.mesh(), some);
-    const Diagnostics of_layers = diagnostics ? part(*diagnostics, first, count) : Diagnostics{};
-    tally += evaluate_rows(engine, some, &scan, values.subspan(first, count), done, diagnostics ? &of_layers : nullptr);
-  }
-  return tally;
+  return evaluate_rows(engine, rows, ordered_slab(engine, lattice, block), values, done, diagnostics);
 }
 
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,

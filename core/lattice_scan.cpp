@@ -1,8 +1,6 @@
 #include "core/lattice_scan.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 
 #include "core/threads.h"
 #include "core/triangle_sections.h"
@@ -71,73 +69,64 @@ VertexPlace place_of(const Vec3& v, const LatticeRows& rows) {
   return {place_of(v.y, rows.ys, rows.samples_per_unit.y), place_of(v.z, rows.zs, rows.samples_per_unit.z)};
 }
 
-// One triangle, whose corners are at these places. Returns the ties.
-std::uint64_t scan(const std::array<Vec3, 3>& corners, const std::array<VertexPlace, 3>& places,
-                   const LatticeRows& rows, LatticeSums& sums) {
-  const auto& [pa, pb, pc] = places;
+// One triangle, whose corners are at these places. Most meet no row: their corners are not looked at.
+void scan(const TriangleMesh& mesh, const Triangle& t, const VertexPlace& pa, const VertexPlace& pb,
+          const VertexPlace& pc, const LatticeRows& rows, LatticeSums::Collector& collector) {
   const Range ks = range_of(pa.z, pb.z, pc.z), js = range_of(pa.y, pb.y, pc.y);
-  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return 0;
-  const auto& [a, b, c] = corners;
-  if (rows.xs.front() > std::max({a.x, b.x, c.x})) return 0;
+  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
+  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
   const TrianglePlane plane(a, b, c);
-  std::uint64_t ties = 0;
   visit_rows(a, b, c, rows, js, ks, [&](std::uint32_t j, std::uint32_t k) {
     const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
-    const TriangleCrossing crossing = triangle_crossing(a, b, c, row, &plane);
-    sums.add(k * rows.ys.size() + j, crossing);
-    ties += crossing.met * static_cast<std::uint64_t>(crossing.ties);
+    collector.add(k * rows.ys.size() + j, triangle_crossing(a, b, c, row, &plane));
   });
-  return ties;
-}
-
-std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
 // All of them. Where a vertex lies is looked up once per vertex, not per triangle: most triangles of a fine mesh meet
 // no row, and need nothing else.
-std::uint64_t scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
+void scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
   std::vector<VertexPlace> places(mesh.vertices.size());
   parallel_for(places.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) places[i] = place_of(mesh.vertices[i], rows);
   });
-  std::atomic<std::uint64_t> ties = 0;
   parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
+    LatticeSums::Collector collector(sums);
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[i];
-      here += scan(corners_of(mesh, t), {places[t[0]], places[t[1]], places[t[2]]}, rows, sums);
+      scan(mesh, t, places[t[0]], places[t[1]], places[t[2]], rows, collector);
     }
-    ties += here;
+    collector.finish();
   });
-  return ties;
 }
 
-std::uint64_t scan_slab(const TriangleMesh& mesh, const LatticeRows& rows, const OrderedSlab& slab, LatticeSums& sums) {
+void scan_slab(const TriangleMesh& mesh, const LatticeRows& rows, const OrderedSlab& slab, LatticeSums& sums) {
   const std::vector<double>& across = slab.axis == 1 ? rows.ys : rows.zs;
   const std::vector<std::uint32_t> groups = slab.order.groups_in(across.front(), across.back());
-  std::atomic<std::uint64_t> ties = 0;
   parallel_for(groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
+    LatticeSums::Collector collector(sums);
     for (std::size_t n = begin; n < end; ++n) {
       for (const std::uint32_t i : slab.order[groups[n]]) {
-        const std::array<Vec3, 3> corners = corners_of(mesh, mesh.triangles[i]);
-        const auto [lower, upper] = std::minmax({corners[0][slab.axis], corners[1][slab.axis], corners[2][slab.axis]});
+        const Triangle& t = mesh.triangles[i];
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        const auto [lower, upper] = std::minmax({a[slab.axis], b[slab.axis], c[slab.axis]});
         if (lower > across.back() || upper < across.front()) continue;
-        here += scan(corners, {place_of(corners[0], rows), place_of(corners[1], rows), place_of(corners[2], rows)},
-                     rows, sums);
+        scan(mesh, t, place_of(a, rows), place_of(b, rows), place_of(c, rows), rows, collector);
       }
     }
-    ties += here;
+    collector.finish();
   });
-  return ties;
 }
 
 }  // namespace
 
-std::uint64_t scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
-                             LatticeSums& sums) {
-  return slab ? scan_slab(mesh, rows, *slab, sums) : scan_all(mesh, rows, sums);
+void scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                    LatticeSums& sums) {
+  if (slab) {
+    scan_slab(mesh, rows, *slab, sums);
+  } else {
+    scan_all(mesh, rows, sums);
+  }
 }
 
 }  // namespace raycone

@@ -33,8 +33,8 @@ struct OrderedSlab {
 
 // Adds what the triangles of a mesh say about each row to `sums`, which is of these rows. `slab`: where
 // the rows are one of many. Threaded over triangles. Fewer than
-// 2^32 coordinates along y and along z. Returns the number of ties: edge sides with D = 0, over all samples.
-std::uint64_t scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
-                             LatticeSums& sums);
+// 2^32 coordinates along y and along z.
+void scan_triangles(const TriangleMesh& mesh, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                    LatticeSums& sums);
 
 }  // namespace raycone

@@ -144,17 +144,12 @@ class Engine {
     }
   }
 
-  // Adds what the candidate triangles of a row say to `sums`. Returns the ties.
-  std::uint64_t find_crossings(const LatticeRows& rows, std::size_t number, LatticeSums& sums, Scratch& scratch) const {
+  // Collects what the candidate triangles of a row say.
+  void find_crossings(const LatticeRows& rows, std::size_t number, LatticeSums::Collector& collector,
+                      Scratch& scratch) const {
     const Row row = rows.row(number);
     rays().find_candidates(row.query(0), scratch.candidates);
-    std::uint64_t ties = 0;
-    for (const std::uint32_t triangle : scratch.candidates) {
-      const TriangleCrossing found = crossing(triangle, row);
-      sums.add(number, found);
-      ties += found.met * static_cast<std::uint64_t>(found.ties);
-    }
-    return ties;
+    for (const std::uint32_t triangle : scratch.candidates) collector.add(number, crossing(triangle, row));
   }
 
   // Whether values depend on how many triangles a ray crosses.
@@ -318,25 +313,24 @@ void bound_errors(const Engine& engine, const LatticeRows& rows, std::size_t beg
   }
 }
 
-// What all triangles say about the rows. Returns the ties.
-std::uint64_t find_crossings(const Engine& engine, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
-                             LatticeSums& sums) {
+// What all triangles say about the rows.
+void find_crossings(const Engine& engine, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
+                    LatticeSums& sums) {
   if (engine.engine() == RayEngine::kScan) return scan_triangles(engine.mesh(), rows, slab, sums);
-  std::atomic<std::uint64_t> ties = 0;
   parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+    LatticeSums::Collector collector(sums);
     Scratch scratch;
-    for (std::size_t number = begin; number < end; ++number) {
-      ties += engine.find_crossings(rows, number, sums, scratch);
-    }
+    for (std::size_t number = begin; number < end; ++number) engine.find_crossings(rows, number, collector, scratch);
+    collector.finish();
   });
-  return ties;
 }
 
 Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const std::optional<OrderedSlab>& slab,
                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   const bool counts = engine.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
-  const std::uint64_t ties = find_crossings(engine, rows, slab, sums);
+  find_crossings(engine, rows, slab, sums);
+  sums.arrange();
   std::atomic<std::uint64_t> on_surface = 0;
   const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
   parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
@@ -350,7 +344,7 @@ Tally evaluate_rows(const Engine& engine, const LatticeRows& rows, const std::op
     }
     on_surface += here;
   });
-  return {ties, on_surface};
+  return {sums.ties(), on_surface};
 }
 
 // The order of the triangles along the axis across which the block is a thin slab of the lattice, if it is.

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/support/direct_distance.h"
+#include "core/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -54,7 +54,7 @@ TEST(Distance, OfPointsIsThatOfTheOracle) {
   const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     // Some dozens of roundings of numbers below 10.
-    EXPECT_NEAR(distances[n], static_cast<double>(test::direct_distance(mesh, points[n])), 1e-13);
+    EXPECT_NEAR(distances[n], static_cast<double>(direct_distance(mesh, points[n])), 1e-13);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(Distance, OfSamplesIsThatOfTheOracleInTheBand) {
     const std::vector<double> distances = band_of(DistanceEvaluator(mesh), lattice, whole(lattice), band);
     const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
     for (std::size_t n = 0; n < points.size(); ++n) {
-      const double expected = static_cast<double>(test::direct_distance(mesh, points[n]));
+      const double expected = static_cast<double>(direct_distance(mesh, points[n]));
       ASSERT_NEAR(distances[n], std::min(expected, band), 1e-13) << voxels << ' ' << n;
     }
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/direct_distance.h"
+#include "core/direct_distance.h"
 
 namespace raycone {
 namespace {
@@ -18,7 +18,7 @@ class TriangleDistanceTest : public testing::Test {
   // The distance agrees with the oracle within `tolerance`.
   static void expect_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double tolerance) {
     const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}};
-    EXPECT_NEAR(std::sqrt(TriangleDistance(a, b, c).squared(p)), static_cast<double>(test::direct_distance(mesh, p)),
+    EXPECT_NEAR(std::sqrt(TriangleDistance(a, b, c).squared(p)), static_cast<double>(direct_distance(mesh, p)),
                 tolerance);
   }
 

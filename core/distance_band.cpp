@@ -42,7 +42,7 @@ class Neighbourhood {
     const Vec3 sides = box_.upper - box_.lower;
     // More than the roundings of coordinates (1e-16 of their magnitude) and of normals (1e-12 of the sides).
     reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13 * magnitude;
-    if (!triangle_.is_proper()) return;
+    if (!triangle_.has_plane()) return;
     const Vec3 normal = unit(cross(b - a, c - a));
     add_half_space(normal, a);
     add_half_space(-1.0 * normal, a);

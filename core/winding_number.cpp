@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/block_parts.h"
 #include "core/buckets.h"
 #include "core/cone.h"
 #include "core/crossings.h"
@@ -131,10 +132,10 @@ class Engine {
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
-  // Whether scaling a query coordinate loses nothing that a predicate could see.
+  // Whether scaling a query coordinate loses nothing that a predicate could see: scaled down, it may not become
+  // subnormal, even where it would keep its bits; so that on an axis of a lattice few intervals answer alike.
   [[nodiscard]] bool can_take(double x) const {
-    const double y = scale_(x);
-    return inverse_(y) == x || std::abs(y) > kFarthest;  // scaled up, and clamped
+    return scale_.exponent() >= 0 || x == 0.0 || std::abs(scale_(x)) >= std::numeric_limits<double>::min();
   }
   [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
 
@@ -415,7 +416,8 @@ struct WindingNumberEvaluator::Implementation {
       : scaled(std::move(mesh), scale, engine, level, summation) {}
 
   // The engine for queries with these coordinates: where scaling would drop bits of one (a number below 1e-290 mesh
-  // sizes), the mesh as it is, in which predicates are slower. Built when first needed.
+  // sizes), the mesh as it is, in which predicates are slower. A matter of each query alone, since the two may round
+  // differently. Built when first needed.
   [[nodiscard]] const Engine& engine_for(bool scaling_is_exact) const {
     if (scaling_is_exact) return scaled;
     std::call_once(unscaled_built, [this] {
@@ -467,10 +469,27 @@ std::uint64_t WindingNumberEvaluator::exterior_edges() const { return implementa
 
 void WindingNumberEvaluator::prepare_points() const { implementation_->scaled.prepare_points(); }
 
+// Each part as a block of its own.
+static Tally evaluate_parts(const WindingNumberEvaluator& evaluator, const Lattice& lattice, const LatticeBlock& block,
+                            std::span<const LatticeBlock> parts, std::span<double> values,
+                            std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  Tally tally;
+  for (const LatticeBlock& part : parts) {
+    PartSamples samples(static_cast<std::size_t>(part.size()));
+    tally += evaluator.evaluate(lattice, part, samples.values(), done, diagnostics ? &samples.diagnostics() : nullptr);
+    samples.copy_to(block, part, values, diagnostics);
+  }
+  return tally;
+}
+
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == static_cast<std::size_t>(block.size()));
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny
+  const std::vector<LatticeBlock> parts =
+      parts_alike(lattice, block, [this](double x) { return implementation_->scaled.can_take(x); });
+  if (parts.size() != 1) return evaluate_parts(*this, lattice, block, parts, values, done, diagnostics);
+
   std::array<std::vector<double>, 3> coordinates;
   bool exact = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -31,6 +31,8 @@ bool is_long(const Vec3& a, const Vec3& b) {
   return !(std::max({std::abs(side.x), std::abs(side.y), std::abs(side.z)}) < kLongest);
 }
 
+constexpr double kCrowd = 256;  // equal faces
+
 // The same for all orders of the corners but for `orientation`, and for faces that were left unwelded.
 SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
   SolidTriangle t{a, b, c, {}, 1.0};
@@ -70,6 +72,7 @@ SolidAngles::SolidAngles(const TriangleMesh& mesh, SimdLevel level) : multiply_(
     double net = 0.0;
     for (auto it = begin; it != end; ++it) net += it->orientation;
     begin->orientation = std::copysign(1.0, net);
+    has_crowds_ = has_crowds_ || std::abs(net) > kCrowd;
     triangles_.insert(triangles_.end(), static_cast<std::size_t>(std::abs(net)), *begin);
     begin = end;
   }

@@ -77,12 +77,17 @@ Tally tally_of(const RowCrossings& crossings, std::size_t samples) {
 }
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.
-double error_bound(double w, std::int64_t n, const TurnsWithin& enclosure) {
+double error_bound(double w, std::int64_t n, const TurnsWithin<long double>& enclosure) {
   constexpr long double u = std::numeric_limits<long double>::epsilon() / 2;
   const long double w2 = static_cast<long double>(n - enclosure.whole) - enclosure.rest;
   const long double bound = std::abs(w - w2) + enclosure.bound + u * std::abs(w2);
   return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());
 }
+
+// No factor that double precision is trusted with has an argument that is off by more, in turns, its part of the
+// product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
+constexpr double kDoubtPerEdge = 0x1p-41;
+constexpr double kMostDoubt = 0.125;  // as Cone::settle() wants it; met at 10^11 edges
 
 // What all triangles say about one point.
 struct PointCrossings {
@@ -111,6 +116,9 @@ class Engine {
     const bool cheaper = SolidAngles::are_cheaper(mesh_.triangles.size(), cone_.exterior_edges());
     const bool wanted = summation == Summation::kTriangles || (summation == Summation::kCheapest && cheaper);
     if (wanted && cone_.exterior_edges() > 0) solid_angles_.emplace(mesh_, level);
+    if (solid_angles_ && solid_angles_->has_crowds() && summation == Summation::kCheapest) solid_angles_.reset();
+    doubt_ = std::min(kDoubtPerEdge * cone_.total_multiplicity(), kMostDoubt);
+    if (solid_angles_) doubt_ = std::min(3 * kDoubtPerEdge * solid_angles_->triangles(), kMostDoubt);
   }
   Engine(const Engine&) = delete;  // rays_ refers to mesh_
   Engine& operator=(const Engine&) = delete;
@@ -120,6 +128,7 @@ class Engine {
   [[nodiscard]] SimdLevel level() const { return level_; }
   [[nodiscard]] Summation summation() const { return summation_; }
   [[nodiscard]] const Cone& cone() const { return cone_; }
+  [[nodiscard]] double doubt() const { return doubt_; }
   // Built when first needed: lattices may need neither.
   [[nodiscard]] const RayCaster& rays() const {
     std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
@@ -231,6 +240,17 @@ class Engine {
         values[begin + i] = solid_angles_ ? static_cast<double>(turns[i].whole) + turns[i].rest
                                           : static_cast<double>(n[begin + i] - turns[i].whole) - turns[i].rest;
       }
+      settle_halves(scratch.tile, values.subspan(begin, scratch.tile.count));
+    }
+  }
+
+  // A value that may be a half-integer, where rules have their thresholds, is on the right side of it or is it.
+  void settle_halves(const SampleTile& tile, std::span<double> values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double nearest_integer = (values[i] + 0x1.8p52) - 0x1.8p52;
+      if (0.5 - std::abs(values[i] - nearest_integer) > doubt_) continue;
+      const Vec3 q{tile.x[i], tile.y[i], tile.z[i]};
+      values[i] = cone_.settle(q, values[i], std::floor(values[i]) + 0.5);
     }
   }
 
@@ -263,6 +283,7 @@ class Engine {
   Summation summation_;
   TriangleMesh mesh_;
   Cone cone_;
+  double doubt_ = 0.0;                       // no value is off by more
   std::optional<SolidAngles> solid_angles_;  // where they take the cone's place
   mutable std::once_flag rays_built_, grid_built_;
   mutable std::optional<RayCaster> rays_;
@@ -466,6 +487,20 @@ WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcep
 WindingNumberEvaluator& WindingNumberEvaluator::operator=(WindingNumberEvaluator&&) noexcept = default;
 
 std::uint64_t WindingNumberEvaluator::exterior_edges() const { return implementation_->scaled.cone().exterior_edges(); }
+
+double WindingNumberEvaluator::doubt() const { return implementation_->scaled.doubt(); }
+
+double WindingNumberEvaluator::accuracy() const {
+  constexpr double u = 0x1p-53;
+  return std::max(1e-10, u * implementation_->scaled.cone().total_multiplicity());
+}
+
+double WindingNumberEvaluator::settle(const Vec3& point, double value, double critical) const {
+  if (exterior_edges() == 0) return value;
+  const DefaultFloatingPoint guard;
+  const Engine& engine = implementation_->engine_for(implementation_->scaled.can_take(point));
+  return engine.cone().settle(engine.to_scale(point), value, critical);
+}
 
 void WindingNumberEvaluator::prepare_points() const { implementation_->scaled.prepare_points(); }
 

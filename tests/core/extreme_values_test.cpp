@@ -105,6 +105,41 @@ TEST(ExtremeValues, AreRightForTrianglesWithOneMinuteSide) {
   }
 }
 
+// Faces on top of one another, as in meshes that were joined with themselves: an argument is multiplied by their
+// number.
+TEST(ExtremeValues, AreRightForMultiplicitiesOfAHundredThousand) {
+  Random random(4);
+  for (const std::size_t copies : {257U, 1000U, 100'000U}) {
+    const TriangleMesh few = test::soup(random, 3);
+    TriangleMesh many = few;
+    many.triangles.clear();
+    for (std::size_t n = 0; n < copies; ++n) many.triangles.push_back(few.triangles[0]);
+    for (std::size_t n = 0; n < copies / 2; ++n) many.triangles.push_back(few.triangles[1]);
+    many.triangles.push_back(few.triangles[2]);
+    std::vector<Vec3> queries = queries_about(few, random, 20);
+    std::erase_if(queries, [](const Vec3& q) { return !(std::abs(q.x) + std::abs(q.y) + std::abs(q.z) < 10); });
+    for (int n = 0; n < 400; ++n) {  // beside an edge, where factors cancel most before the careful ones take over
+      const double along = test::uniform(random, 0, 1), beside = std::exp2(-test::uniform(random, 3, 7));
+      queries.push_back(along * few.vertices[0] + (1 - along) * few.vertices[1] +
+                        beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+    }
+    const WindingNumberEvaluator evaluator(many);
+    std::vector<double> values(queries.size());
+    evaluator.evaluate(queries, values);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      Quad exact = 0;
+      const std::size_t counts[] = {copies, copies / 2, 1};
+      for (std::size_t t = 0; t < 3; ++t) {
+        exact +=
+            static_cast<Quad>(counts[t]) * perturbed_direct_sum({few.vertices, {few.triangles[t]}}, queries[i]).value;
+      }
+      const auto error = static_cast<double>(values[i] - exact);
+      EXPECT_LT(std::abs(error), 1e-10) << copies << ": " << values[i];
+    }
+    EXPECT_EQ(evaluator.accuracy(), 1e-10);
+  }
+}
+
 // --- Byte equality ---
 
 std::vector<std::uint64_t> bits(const std::vector<double>& values) {

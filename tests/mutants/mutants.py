@@ -84,8 +84,8 @@ MUTANTS = [
         ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
          "store(hn::Set(d, 1.0), t, n);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
-        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, std::abs(bz))) : std::nullopt", "std::nullopt"),
-        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, std::abs(az))) : std::nullopt", "std::nullopt")]),
+        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
+        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
     Mutant("vertex_behind_counts", "an end at or behind the query gives no argument", [
         ("core/tied_factor.h", "return a.x > q.x ?", "return true ?"),
         ("core/tied_factor.h", "return b.x > q.x ?", "return true ?")]),

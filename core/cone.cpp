@@ -1,6 +1,7 @@
 #include "core/cone.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "core/exterior_edges.h"
@@ -10,6 +11,10 @@ namespace {
 
 // The argument of an edge along the rays is 0 from everywhere, which the kernel would find out by predicates.
 bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.z == b.z; }
+
+// A product's argument may be off by 1e-13 in double. Times more than this it would show; edges that so many faces
+// share are rare enough for 64 bits.
+constexpr std::int32_t kLargestInDouble = 256;
 
 }  // namespace
 
@@ -27,7 +32,18 @@ Cone::Cone(const TriangleMesh& mesh, SimdLevel level) : multiply_chains_(cone_ke
     if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
     const bool has_argument = !projects_to_a_point(mesh.vertices[e.from], mesh.vertices[e.to]);
     steps.push_back({mesh.vertices[e.to], has_argument, e.multiplicity < 0});
+    total_multiplicity_ += multiplicity;
     previous = &e;
+  }
+  find_plane();
+}
+
+void Cone::add_enclosed(const Group& group, const SampleTile& samples, std::span<Turns> cone) {
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const TurnsWithin<long double> turns = enclose(group, {samples.x[i], samples.y[i], samples.z[i]});
+    const long double rest = group.multiplicity * turns.rest, whole = std::nearbyint(rest);
+    cone[i].whole += group.multiplicity * turns.whole + static_cast<std::int64_t>(whole);
+    cone[i].rest += static_cast<double>(rest - whole);
   }
 }
 
@@ -36,6 +52,10 @@ void Cone::winding_numbers(SampleTile& samples, std::span<Turns> cone) const {
   std::fill(cone.begin(), cone.end(), Turns{});
   ProductTile products;
   for (const Group& group : groups_) {
+    if (group.multiplicity > kLargestInDouble) {
+      add_enclosed(group, samples, cone);
+      continue;
+    }
     multiply_chains_(group.steps, samples, products);
     for (std::size_t i = 0; i < samples.count; ++i) {
       cone[i].whole += group.multiplicity * static_cast<std::int64_t>(products.turns[i]);

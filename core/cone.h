@@ -6,20 +6,24 @@
 // "Fast and Exact Winding Numbers", eq. 5, with the apex of Martens, Trettner, Bessmeltsev 2026).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/cone_kernel.h"
+#include "core/exact_determinant.h"
 #include "core/triangle_mesh.h"
 
 namespace raycone {
 
-// A sum of angles in turns as Turns, with 64 bits, and how far it may be off.
+// A sum of angles in turns as Turns, with 64 or 113 bits, and how far it may be off.
+template <class Real>
 struct TurnsWithin {
   std::int64_t whole = 0;
-  long double rest = 0.0L;
-  long double bound = 0.0L;  // of |whole + rest - the exact sum|, turns
+  Real rest = 0;
+  Real bound = 0;  // of |whole + rest - the exact sum|, turns
 };
 
 class Cone {
@@ -36,7 +40,15 @@ class Cone {
   // The same in extended precision with a rigorous bound of its error, by running error analysis (docs/method.md,
   // "Error bound"). A hundred times slower, and a check of the above: it shares the signs and the order of edges, not
   // the arithmetic.
-  [[nodiscard]] TurnsWithin enclose(const Vec3& q) const;
+  [[nodiscard]] TurnsWithin<long double> enclose(const Vec3& q) const;
+
+  // The sum of |multiplicities|: no value w is off by more than a fraction of a turn times this.
+  [[nodiscard]] double total_multiplicity() const { return total_multiplicity_; }
+
+  // `w`, a winding number of the mesh at q that is off by less than 1/8, on the side of `critical` on which the true
+  // one is; `critical` itself where 113 bits cannot tell. Takes as long as thousands of winding numbers, but no longer
+  // than two where the answer is a half-integer because all exterior edges lie in one plane with q.
+  [[nodiscard]] double settle(const Vec3& q, double w, double critical) const;
 
  private:
   // Edges of one |multiplicity|: their product is common.
@@ -45,9 +57,17 @@ class Cone {
     std::vector<ChainStep> steps;
   };
 
+  static TurnsWithin<long double> enclose(const Group& group, const Vec3& q);
+  static void add_enclosed(const Group& group, const SampleTile& samples, std::span<Turns> cone);
+  [[nodiscard]] TurnsWithin<Quad> enclose_closely(const Vec3& q) const;
+  void find_plane();
+  [[nodiscard]] bool lies_in_plane_of_edges(const Vec3& q) const;
+
   ConeKernel multiply_chains_;
   std::uint64_t edges_ = 0;
+  double total_multiplicity_ = 0.0;
   std::vector<Group> groups_;
+  std::optional<std::array<Vec3, 3>> plane_;  // through all edges, where there is just one
 };
 
 }  // namespace raycone

@@ -107,29 +107,36 @@ struct Product {
   }
 };
 
-void add(TurnsWithin& cone, std::int32_t multiplicity, const Product& product) {
+// Sums in which nothing has been rounded yet.
+TurnsWithin<Wide> turns_of(const Product& product) {
   const Wide rest = argument_in_turns<Wide>(product.z.re, product.z.im);
   const Wide error = product.error * kSecondOrder / (2 * std::numbers::pi_v<Wide>)+kArgumentError * u * std::abs(rest);
-  cone.whole += multiplicity * product.turns;
-  cone.rest += multiplicity * rest;
-  cone.bound += multiplicity * error + u * (std::abs(multiplicity * rest) + std::abs(cone.rest));
+  return {product.turns, rest, error};
 }
 
 }  // namespace
 
-TurnsWithin Cone::enclose(const Vec3& q) const {
-  TurnsWithin cone;
-  for (const Group& group : groups_) {
-    Product product;
-    Corner previous;
-    for (const ChainStep& step : group.steps) {
-      const Corner here(step.to, q);
-      if (step.joined) {
-        if (const auto f = factor_of(previous, here, step.reversed, q)) product.multiply(*f);
-      }
-      previous = here;
+TurnsWithin<Wide> Cone::enclose(const Group& group, const Vec3& q) {
+  Product product;
+  Corner previous;
+  for (const ChainStep& step : group.steps) {
+    const Corner here(step.to, q);
+    if (step.joined) {
+      if (const auto f = factor_of(previous, here, step.reversed, q)) product.multiply(*f);
     }
-    add(cone, group.multiplicity, product);
+    previous = here;
+  }
+  return turns_of(product);
+}
+
+TurnsWithin<Wide> Cone::enclose(const Vec3& q) const {
+  TurnsWithin<Wide> cone;
+  for (const Group& group : groups_) {
+    const TurnsWithin<Wide> turns = enclose(group, q);
+    const Wide rest = group.multiplicity * turns.rest;
+    cone.whole += group.multiplicity * turns.whole;
+    cone.rest += rest;
+    cone.bound += group.multiplicity * turns.bound + u * (std::abs(rest) + std::abs(cone.rest));
   }
   return cone;
 }

@@ -3,7 +3,6 @@
 // these counts is a matter of signs of integers.
 #include "core/direct_distance.h"
 
-#include <gmpxx.h>
 #include <quadmath.h>
 
 #include <algorithm>
@@ -11,34 +10,12 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/exact_integers.h"
+
 namespace raycone {
 namespace {
 
-constexpr int kDigits = 53;  // of a double
-
-struct IntegerVec3 {
-  mpz_class x, y, z;
-};
-
-IntegerVec3 minus(const IntegerVec3& a, const IntegerVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-mpz_class dot(const IntegerVec3& a, const IntegerVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-IntegerVec3 cross(const IntegerVec3& a, const IntegerVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-// e such that x times 2^e is an integer.
-int exponent_to_integer(double x) {
-  int exponent = 0;
-  std::frexp(x, &exponent);
-  return kDigits - exponent;
-}
-
-// x times 2^exponent, which is an integer.
-mpz_class integer(double x, int exponent) {
-  int own = 0;
-  const double digits = std::ldexp(std::frexp(x, &own), kDigits);
-  return mpz_class(digits) << static_cast<mp_bitcnt_t>(std::max(own - kDigits + exponent, 0));
-}
+using namespace exact;
 
 // Rounded towards zero: off by less than 2^-112.
 Quad rounded(const mpz_class& z) {
@@ -64,8 +41,6 @@ Quad square_to_segment(const IntegerVec3& a, const IntegerVec3& b) {
   return quotient(dot(product, product), square);
 }
 
-using Corners = std::array<IntegerVec3, 3>;
-
 // The square of the distance from the origin to the triangle.
 Quad square_to_triangle(const Corners& corners) {
   const auto& [a, b, c] = corners;
@@ -88,18 +63,8 @@ Points corners_of(const TriangleMesh& mesh, const Triangle& t) {
 }
 
 Quad distance_to_triangle(const Points& points, const Vec3& q) {
-  int exponent = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    exponent = std::max(exponent, exponent_to_integer(q[axis]));
-    for (const Vec3& p : points) exponent = std::max(exponent, exponent_to_integer(p[axis]));
-  }
-  const auto integers = [&](const Vec3& p) {
-    return IntegerVec3{integer(p.x, exponent), integer(p.y, exponent), integer(p.z, exponent)};
-  };
-  const IntegerVec3 origin = integers(q);
-  Corners corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = minus(integers(points[i]), origin);
-  return ldexpq(sqrtq(square_to_triangle(corners)), -exponent);
+  const ScaledTriangle triangle = as_integers(points, q);
+  return ldexpq(sqrtq(square_to_triangle(triangle.corners)), -triangle.exponent);
 }
 
 // In 64 bits and with the exponents of 15 bits: off by less than 1e-18.

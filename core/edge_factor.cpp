@@ -9,17 +9,19 @@
 namespace raycone {
 namespace {
 
-// |P|^2 within these bounds has lost nothing to underflow and cannot overflow, nor can products of two.
+// |P|^2 within these bounds has lost nothing to underflow and cannot overflow, nor can products of two; nor, where
+// |p_x| is below the last one, can x^2 or s, which is above 2^-1002 then.
 constexpr double kSmallest = 0x1p-800;
 constexpr double kLargest = 0x1p800;
+constexpr double kLargestX = 0x1p200;
 
 struct Corner {
-  double y, z, square, s;
-  Corner(const Vec3& v, const Vec3& q) : y(v.y - q.y), z(v.z - q.z), square(y * y + z * z) {
-    const double x = v.x - q.x, norm = std::sqrt(x * x + square);
+  double x, y, z, square, s;
+  Corner(const Vec3& v, const Vec3& q) : x(v.x - q.x), y(v.y - q.y), z(v.z - q.z), square(y * y + z * z) {
+    const double norm = std::sqrt(x * x + square);
     s = x > 0.0 ? square / (norm + x) : norm - x;
   }
-  [[nodiscard]] bool ordinary() const { return square > kSmallest && square < kLargest; }
+  [[nodiscard]] bool ordinary() const { return square > kSmallest && square < kLargest && std::abs(x) < kLargestX; }
 };
 
 Factor<double> scaled(const Factor<double>& f) {

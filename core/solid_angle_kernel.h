@@ -12,7 +12,7 @@ namespace raycone {
 // A triangle of positive area.
 struct SolidTriangle {
   Vec3 a, b, c;
-  Vec3 normal;         // (b - a) x (c - a), each component rounded once
+  Vec3 normal;         // (b - a) x (c - a), each component rounded once; x is NaN where no factor may be trusted
   double orientation;  // 1, or -1 if it is a, c, b
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <limits>
 #include <utility>
 
 #include "core/exact_determinant.h"
@@ -19,6 +20,19 @@ Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {component(1, 2), component(2, 0), component(0, 1)};
 }
 
+// Beyond this length of a side the kernel must not trust a factor: next to one corner |b|^2 may underflow while |a| and
+// |c| make up for it, and a normal that has underflowed may decide a side. Below it |z| < 2^-120, too small for the
+// kernel, where |b| < 2^-450, and the error of n . a is below 2^-1000 next to the triangle. No mesh in scale is so
+// large.
+constexpr double kLongest = 0x1p60;
+
+bool is_long(const Vec3& a, const Vec3& b) {
+  const Vec3 side = b - a;
+  return !(std::max({std::abs(side.x), std::abs(side.y), std::abs(side.z)}) < kLongest);
+}
+
+constexpr double kCrowd = 256;  // equal faces
+
 // The same for all orders of the corners but for `orientation`, and for faces that were left unwelded.
 SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
   SolidTriangle t{a, b, c, {}, 1.0};
@@ -31,6 +45,9 @@ SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
   sort(t.b, t.c);
   sort(t.a, t.b);
   t.normal = normal(t.a, t.b, t.c);
+  if (is_long(t.a, t.b) || is_long(t.b, t.c) || is_long(t.c, t.a)) {
+    t.normal.x = std::numeric_limits<double>::quiet_NaN();
+  }
   return t;
 }
 
@@ -55,6 +72,7 @@ SolidAngles::SolidAngles(const TriangleMesh& mesh, SimdLevel level) : multiply_(
     double net = 0.0;
     for (auto it = begin; it != end; ++it) net += it->orientation;
     begin->orientation = std::copysign(1.0, net);
+    has_crowds_ = has_crowds_ || std::abs(net) > kCrowd;
     triangles_.insert(triangles_.end(), static_cast<std::size_t>(std::abs(net)), *begin);
     begin = end;
   }

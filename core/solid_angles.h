@@ -21,12 +21,18 @@ class SolidAngles {
   // Whether the sum over the triangles is cheaper than the cone over the exterior edges.
   [[nodiscard]] static bool are_cheaper(std::size_t triangles, std::size_t exterior_edges);
 
+  [[nodiscard]] double triangles() const { return static_cast<double>(triangles_.size()); }
+
+  // Whether a face is there so often that its error, multiplied, would show.
+  [[nodiscard]] bool has_crowds() const { return has_crowds_; }
+
   // Sets w[i] to the winding number at sample i. Rounding errors of some u per triangle; needs DefaultFloatingPoint.
   // Thread-safe. w.size() == samples.count, at least 1.
   void winding_numbers(SampleTile& samples, std::span<Turns> w) const;
 
  private:
   SolidAngleKernel multiply_;
+  bool has_crowds_ = false;
   std::vector<SolidTriangle> triangles_;  // those of positive area, in an order that depends on coordinates only
 };
 

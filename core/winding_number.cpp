@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/block_parts.h"
 #include "core/buckets.h"
 #include "core/cone.h"
 #include "core/crossings.h"
@@ -63,12 +64,17 @@ Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
 }
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.
-double error_bound(double w, std::int64_t n, const TurnsWithin& enclosure) {
+double error_bound(double w, std::int64_t n, const TurnsWithin<long double>& enclosure) {
   constexpr long double u = std::numeric_limits<long double>::epsilon() / 2;
   const long double w2 = static_cast<long double>(n - enclosure.whole) - enclosure.rest;
   const long double bound = std::abs(w - w2) + enclosure.bound + u * std::abs(w2);
   return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());
 }
+
+// No factor that double precision is trusted with has an argument that is off by more, in turns, its part of the
+// product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
+constexpr double kDoubtPerEdge = 0x1p-41;
+constexpr double kMostDoubt = 0.125;  // as Cone::settle() wants it; met at 10^11 edges
 
 // What all triangles say about one point.
 struct PointCrossings {
@@ -97,6 +103,9 @@ class Engine {
     const bool cheaper = SolidAngles::are_cheaper(mesh_.triangles.size(), cone_.exterior_edges());
     const bool wanted = summation == Summation::kTriangles || (summation == Summation::kCheapest && cheaper);
     if (wanted && cone_.exterior_edges() > 0) solid_angles_.emplace(mesh_, level);
+    if (solid_angles_ && solid_angles_->has_crowds() && summation == Summation::kCheapest) solid_angles_.reset();
+    doubt_ = std::min(kDoubtPerEdge * cone_.total_multiplicity(), kMostDoubt);
+    if (solid_angles_) doubt_ = std::min(3 * kDoubtPerEdge * solid_angles_->triangles(), kMostDoubt);
   }
   Engine(const Engine&) = delete;  // rays_ refers to mesh_
   Engine& operator=(const Engine&) = delete;
@@ -106,6 +115,7 @@ class Engine {
   [[nodiscard]] SimdLevel level() const { return level_; }
   [[nodiscard]] Summation summation() const { return summation_; }
   [[nodiscard]] const Cone& cone() const { return cone_; }
+  [[nodiscard]] double doubt() const { return doubt_; }
   // Built when first needed: lattices may need neither.
   [[nodiscard]] const RayCaster& rays() const {
     std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
@@ -124,10 +134,10 @@ class Engine {
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
-  // Whether scaling a query coordinate loses nothing that a predicate could see.
+  // Whether scaling a query coordinate loses nothing that a predicate could see: scaled down, it may not become
+  // subnormal, even where it would keep its bits; so that on an axis of a lattice few intervals answer alike.
   [[nodiscard]] bool can_take(double x) const {
-    const double y = scale_(x);
-    return inverse_(y) == x || std::abs(y) > kFarthest;  // scaled up, and clamped
+    return scale_.exponent() >= 0 || x == 0.0 || std::abs(scale_(x)) >= std::numeric_limits<double>::min();
   }
   [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
 
@@ -199,6 +209,17 @@ class Engine {
         values[begin + i] = solid_angles_ ? static_cast<double>(turns[i].whole) + turns[i].rest
                                           : static_cast<double>(n[begin + i] - turns[i].whole) - turns[i].rest;
       }
+      settle_halves(scratch.tile, values.subspan(begin, scratch.tile.count));
+    }
+  }
+
+  // A value that may be a half-integer, where rules have their thresholds, is on the right side of it or is it.
+  void settle_halves(const SampleTile& tile, std::span<double> values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double nearest_integer = (values[i] + 0x1.8p52) - 0x1.8p52;
+      if (0.5 - std::abs(values[i] - nearest_integer) > doubt_) continue;
+      const Vec3 q{tile.x[i], tile.y[i], tile.z[i]};
+      values[i] = cone_.settle(q, values[i], std::floor(values[i]) + 0.5);
     }
   }
 
@@ -231,6 +252,7 @@ class Engine {
   Summation summation_;
   TriangleMesh mesh_;
   Cone cone_;
+  double doubt_ = 0.0;                       // no value is off by more
   std::optional<SolidAngles> solid_angles_;  // where they take the cone's place
   mutable std::once_flag rays_built_, grid_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
@@ -460,7 +482,8 @@ struct WindingNumberEvaluator::Implementation {
       : scaled(std::move(mesh), scale, engine, level, summation) {}
 
   // The engine for queries with these coordinates: where scaling would drop bits of one (a number below 1e-290 mesh
-  // sizes), the mesh as it is, in which predicates are slower. Built when first needed.
+  // sizes), the mesh as it is, in which predicates are slower. A matter of each query alone, since the two may round
+  // differently. Built when first needed.
   [[nodiscard]] const Engine& engine_for(bool scaling_is_exact) const {
     if (scaling_is_exact) return scaled;
     std::call_once(unscaled_built, [this] {
@@ -510,12 +533,43 @@ WindingNumberEvaluator& WindingNumberEvaluator::operator=(WindingNumberEvaluator
 
 std::uint64_t WindingNumberEvaluator::exterior_edges() const { return implementation_->scaled.cone().exterior_edges(); }
 
+double WindingNumberEvaluator::doubt() const { return implementation_->scaled.doubt(); }
+
+double WindingNumberEvaluator::accuracy() const {
+  constexpr double u = 0x1p-53;
+  return std::max(1e-10, u * implementation_->scaled.cone().total_multiplicity());
+}
+
+double WindingNumberEvaluator::settle(const Vec3& point, double value, double critical) const {
+  if (exterior_edges() == 0) return value;
+  const DefaultFloatingPoint guard;
+  const Engine& engine = implementation_->engine_for(implementation_->scaled.can_take(point));
+  return engine.cone().settle(engine.to_scale(point), value, critical);
+}
+
 void WindingNumberEvaluator::prepare_points() const { implementation_->scaled.prepare_points(); }
+
+// Each part as a block of its own.
+static Tally evaluate_parts(const WindingNumberEvaluator& evaluator, const Lattice& lattice, const LatticeBlock& block,
+                            std::span<const LatticeBlock> parts, std::span<double> values,
+                            std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  Tally tally;
+  for (const LatticeBlock& part : parts) {
+    PartSamples samples(static_cast<std::size_t>(part.size()));
+    tally += evaluator.evaluate(lattice, part, samples.values(), done, diagnostics ? &samples.diagnostics() : nullptr);
+    samples.copy_to(block, part, values, diagnostics);
+  }
+  return tally;
+}
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == static_cast<std::size_t>(block.size()));
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny
+  const std::vector<LatticeBlock> parts =
+      parts_alike(lattice, block, [this](double x) { return implementation_->scaled.can_take(x); });
+  if (parts.size() != 1) return evaluate_parts(*this, lattice, block, parts, values, done, diagnostics);
+
   std::array<std::vector<double>, 3> coordinates;
   bool exact = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {

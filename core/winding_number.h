@@ -65,6 +65,17 @@ class WindingNumberEvaluator {
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
+  // |value - w| <= accuracy(), turns: 1e-10, or 2^-53 times the sum of |multiplicities| of exterior edges where that is
+  // more, from a million edges on: doubles of such values can do no better.
+  [[nodiscard]] double accuracy() const;
+
+  // Half-integers are exact: a value is 0.5, 1.5, -0.5 ... where 113 bits cannot tell w from it, and otherwise on the
+  // same side of it as w. For another number settle() says as much: `value`, evaluated at `point`, on the side of
+  // `critical` on which w is, or `critical` itself. It takes a millisecond and more for each thousand exterior edges,
+  // and changes nothing where the two differ by more than doubt() turns, which is 0 for closed meshes. Thread-safe.
+  [[nodiscard]] double doubt() const;
+  [[nodiscard]] double settle(const Vec3& point, double value, double critical) const;
+
   // Builds the acceleration structure that points need and lattices may not; else the first evaluation of points does.
   void prepare_points() const;
 

@@ -84,8 +84,8 @@ MUTANTS = [
         ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
          "store(hn::Set(d, 1.0), t, n);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
-        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, std::abs(bz))) : std::nullopt", "std::nullopt"),
-        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, std::abs(az))) : std::nullopt", "std::nullopt")]),
+        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
+        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
     Mutant("vertex_behind_counts", "an end at or behind the query gives no argument", [
         ("core/tied_factor.h", "return a.x > q.x ?", "return true ?"),
         ("core/tied_factor.h", "return b.x > q.x ?", "return true ?")]),
@@ -105,7 +105,8 @@ MUTANTS = [
     Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
         ("core/cone_kernel.cpp", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
          "return (void)ordinary, square;"),
-        ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest;", "return true;")]),
+        ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest && std::abs(x) < kLargestX;",
+         "return true;")]),
 
     # --- The sum over triangles ---
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
@@ -146,9 +147,15 @@ MUTANTS = [
     Mutant("mesh_scaled_at_a_loss", "no scaling where it would cost a vertex bits", [
         ("core/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
     Mutant("query_scaled_at_a_loss", "no scaling where it would cost a query bits", [
-        ("core/winding_number.cpp", "return inverse_(y) == x || std::abs(y) > kFarthest;", "return y == y;")]),
+        ("core/winding_number.cpp", "return scale_.exponent() >= 0 || x == 0.0 || std::abs(scale_(x)) >= std::numeric_limits<double>::min();",
+         "return x == x;")]),
     Mutant("query_not_clamped", "queries beyond 2^1000 mesh sizes are taken to be there", [
         ("core/winding_number.cpp", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
+
+    Mutant("long_triangles_trusted", "a factor of a triangle with one minute and two huge corners is not trusted", [
+        ("core/solid_angles.cpp", "kLongest = 0x1p60;", "kLongest = HUGE_VAL;")]),
+    Mutant("scale_by_block", "whether a sample is evaluated in scale depends on no other sample", [
+        ("core/winding_number.cpp", "if (parts.size() != 1) return evaluate_parts", "if (parts.empty()) return evaluate_parts")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

@@ -1,0 +1,208 @@
+// Values of meshes whose coordinates span the whole range of double, against direct sums that no magnitude troubles.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/direct_sum.h"
+#include "core/weld.h"
+#include "core/winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+
+constexpr Summation kBoth[] = {Summation::kCone, Summation::kTriangles};
+constexpr RayEngine kEngines[] = {RayEngine::kScan, RayEngine::kEmbree};
+
+// Of all exponents alike: 0, subnormal numbers and the largest ones among them.
+double of_any_magnitude(Random& random) {
+  if (random() % 8 == 0) return 0.0;
+  const double digits = random() % 2 == 0 ? 1.0 : test::uniform(random, 0.5, 1);
+  const double magnitude = std::ldexp(digits, static_cast<int>(random() % 2098) - 1074);
+  return random() % 2 == 0 ? magnitude : -magnitude;
+}
+
+TriangleMesh mesh_of_any_magnitudes(Random& random, int triangles) {
+  TriangleMesh mesh = test::soup(random, triangles);
+  for (Vec3& v : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) v[axis] = of_any_magnitude(random);
+  }
+  return weld(mesh, {});
+}
+
+// Coordinates of vertices, one unit in the last place beside them, between two of them, or anything.
+std::vector<Vec3> queries_about(const TriangleMesh& mesh, Random& random, int count) {
+  const auto vertex = [&] { return mesh.vertices[mesh.triangles[random() % mesh.triangles.size()][random() % 3]]; };
+  std::vector<Vec3> queries;
+  for (int i = 0; i < count; ++i) {
+    Vec3 q = vertex();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = random() % 2 == 0 ? q[axis] : vertex()[axis];
+      const std::array<double, 6> choices{x,
+                                          x,
+                                          std::nextafter(x, HUGE_VAL),
+                                          std::nextafter(x, -HUGE_VAL),
+                                          x / 2 + vertex()[axis] / 2,
+                                          of_any_magnitude(random)};
+      q[axis] = choices[random() % choices.size()];
+      if (!std::isfinite(q[axis])) q[axis] = x;
+    }
+    queries.push_back(q);
+  }
+  return queries;
+}
+
+double largest_error(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine,
+                     Summation summation) {
+  std::vector<double> values(queries.size());
+  WindingNumberEvaluator(mesh, engine, SimdLevel::kBest, summation).evaluate(queries, values);
+  Quad largest = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const QuadWithin exact = perturbed_direct_sum(mesh, queries[i]);
+    EXPECT_LT(exact.error, 1e-18);
+    const Quad difference = values[i] - exact.value;
+    const Quad error = difference < 0 ? -difference : difference;
+    EXPECT_LT(error, 1e-12) << queries[i].x << ' ' << queries[i].y << ' ' << queries[i].z << ": " << values[i]
+                            << " in place of " << static_cast<double>(exact.value);
+    largest = std::max(largest, error);
+  }
+  return static_cast<double>(largest);
+}
+
+// The error near an edge may reach 2e-13 (docs/method.md); of a dozen edges, 1e-12 is enough.
+TEST(ExtremeValues, AreRightForCoordinatesOfAllMagnitudes) {
+  Random random(1);
+  for (int i = 0; i < 24; ++i) {
+    const TriangleMesh mesh = mesh_of_any_magnitudes(random, 1 + i % 4);
+    const std::vector<Vec3> queries = queries_about(mesh, random, 12);
+    for (const Summation summation : kBoth) largest_error(mesh, queries, kEngines[i % 2], summation);
+  }
+}
+
+// Magnitudes that two numbers share, as those of a small part beside a huge one do.
+TEST(ExtremeValues, AreRightForTrianglesWithOneMinuteSide) {
+  Random random(2);
+  for (const int small : {-1070, -900, -520, -300, -40}) {
+    for (const int large : {-20, 200, 400, 500, 900, 1020}) {
+      const double near = std::ldexp(1.0, small), far = std::ldexp(1.0, large);
+      for (int i = 0; i < 4; ++i) {
+        TriangleMesh mesh = test::soup(random, 2);
+        for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+          mesh.vertices[v] = (v % 3 == 0 ? near : far) * (2 * mesh.vertices[v] - Vec3{1, 1, 1});
+        }
+        std::vector<Vec3> queries;
+        for (int n = 0; n < 4; ++n) queries.push_back(near * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+        for (const Summation summation : kBoth) largest_error(mesh, queries, RayEngine::kScan, summation);
+      }
+    }
+  }
+}
+
+// Faces on top of one another, as in meshes that were joined with themselves: an argument is multiplied by their
+// number.
+TEST(ExtremeValues, AreRightForMultiplicitiesOfAHundredThousand) {
+  Random random(4);
+  for (const std::size_t copies : {257U, 1000U, 100'000U}) {
+    const TriangleMesh few = test::soup(random, 3);
+    TriangleMesh many = few;
+    many.triangles.clear();
+    for (std::size_t n = 0; n < copies; ++n) many.triangles.push_back(few.triangles[0]);
+    for (std::size_t n = 0; n < copies / 2; ++n) many.triangles.push_back(few.triangles[1]);
+    many.triangles.push_back(few.triangles[2]);
+    std::vector<Vec3> queries = queries_about(few, random, 20);
+    std::erase_if(queries, [](const Vec3& q) { return !(std::abs(q.x) + std::abs(q.y) + std::abs(q.z) < 10); });
+    for (int n = 0; n < 400; ++n) {  // beside an edge, where factors cancel most before the careful ones take over
+      const double along = test::uniform(random, 0, 1), beside = std::exp2(-test::uniform(random, 3, 7));
+      queries.push_back(along * few.vertices[0] + (1 - along) * few.vertices[1] +
+                        beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+    }
+    const WindingNumberEvaluator evaluator(many);
+    std::vector<double> values(queries.size());
+    evaluator.evaluate(queries, values);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      Quad exact = 0;
+      const std::size_t counts[] = {copies, copies / 2, 1};
+      for (std::size_t t = 0; t < 3; ++t) {
+        exact +=
+            static_cast<Quad>(counts[t]) * perturbed_direct_sum({few.vertices, {few.triangles[t]}}, queries[i]).value;
+      }
+      const auto error = static_cast<double>(values[i] - exact);
+      EXPECT_LT(std::abs(error), 1e-10) << copies << ": " << values[i];
+    }
+    EXPECT_EQ(evaluator.accuracy(), 1e-10);
+  }
+}
+
+// --- Byte equality ---
+
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+std::vector<double> in_slabs(const WindingNumberEvaluator& evaluator, const Lattice& lattice, int axis,
+                             std::int64_t thickness) {
+  const auto a = static_cast<std::size_t>(axis);
+  std::vector<double> values(static_cast<std::size_t>(whole(lattice).size()));
+  for (std::int64_t begin = 0; begin < lattice.counts[a]; begin += thickness) {
+    LatticeBlock slab = whole(lattice);
+    slab.first[a] += begin;
+    slab.counts[a] = std::min(thickness, lattice.counts[a] - begin);
+    std::vector<double> part(static_cast<std::size_t>(slab.size()));
+    evaluator.evaluate(lattice, slab, part);
+    const double* value = part.data();
+    for (std::int64_t k = 0; k < slab.counts[2]; ++k) {
+      for (std::int64_t j = 0; j < slab.counts[1]; ++j) {
+        for (std::int64_t i = 0; i < slab.counts[0]; ++i) {
+          std::array<std::int64_t, 3> place{i, j, k};
+          place[a] += begin;
+          values[static_cast<std::size_t>((place[2] * lattice.counts[1] + place[1]) * lattice.counts[0] + place[0])] =
+              *value++;
+        }
+      }
+    }
+  }
+  return values;
+}
+
+// One coordinate of the lattice is so small that scaling the mesh to 1 would drop its bits: whether a sample is
+// evaluated in scale must be a matter of that sample.
+TEST(ExtremeValues, DoNotDependOnSlabsThatHoldMinuteCoordinates) {
+  Random random(3);
+  for (const double size : {0x1p20, 0x1p100}) {
+    for (const Summation summation : kBoth) {
+      TriangleMesh mesh = test::soup(random, 12);
+      for (Vec3& v : mesh.vertices) v = size * (v - Vec3{0.5, 0.5, 0.5});
+      const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation);
+      const double tiny = 5 * std::numeric_limits<double>::denorm_min();
+      for (int axis = 0; axis < 3; ++axis) {
+        Lattice lattice{{0.01 * size, 0.02 * size, 0.03 * size}, 0.07 * size * Vec3{1, 1, 1}, {-2, -3, -2}, {5, 6, 4}};
+        lattice.origin[axis] = tiny;  // index 0 is at 5 * 2^-1074
+        const std::vector<double> expected = in_slabs(evaluator, lattice, 2, 4);
+        for (int cut = 0; cut < 3; ++cut) {
+          EXPECT_EQ(bits(in_slabs(evaluator, lattice, cut, 1)), bits(expected))
+              << size << " axis " << axis << ' ' << cut;
+        }
+        std::vector<Vec3> points;
+        for (std::int64_t n = 0; n < whole(lattice).size(); ++n) {
+          points.push_back({lattice.coordinate(0, n % 5 - 2), lattice.coordinate(1, n / 5 % 6 - 3),
+                            lattice.coordinate(2, n / 30 - 2)});
+        }
+        std::vector<double> at_points(points.size());
+        evaluator.evaluate(points, at_points);
+        EXPECT_EQ(bits(at_points), bits(expected)) << size << " axis " << axis;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raycone

@@ -9,7 +9,7 @@
 namespace raycone {
 
 // An exterior edge: the boundary of the mesh, as a sum of directed edges, holds from -> to `multiplicity` times (not 0;
-// negative: to -> from). Jacobson, Kavan, Sorkine-Hornung 2013, section 4.2; METHOD section 2.
+// negative: to -> from). Jacobson, Kavan, Sorkine-Hornung 2013, section 4.2.
 struct ExteriorEdge {
   std::uint32_t from = 0;
   std::uint32_t to = 0;

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks who includes what (docs/architecture.md): sh tests/check_layers.sh [SOURCE-DIRECTORY]
-# core knows nothing of io and app; io knows core's data, not its evaluators; each third-party library has its files.
+# core knows nothing of io and app; io knows core's data, not its evaluators; oracles know neither; each third-party
+# library has its files.
 set -eu
 cd "${1:-$(dirname "$0")/..}"
 
@@ -29,6 +30,11 @@ forbid 'io must not include app' '"app/' io/*.h io/*.cpp
 shared='core/(diagnostics|lattice|threads|triangle_mesh|vec3)\.h'
 evaluators=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
 forbid 'io may include only the data headers of core, and threads.h' "\"(${evaluators%|})\"" io/*.h io/*.cpp
+
+# An oracle that shares code with what it judges shares its errors.
+shared='core/(floating_point|triangle_mesh|vec3)\.h'
+judged=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
+forbid 'oracles must not include what they judge' "\"(${judged%|})\"" tests/support/direct_* tests/support/exact_*
 
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/predicates\.cpp'

@@ -7,6 +7,8 @@ sh "$root/tests/check_layers.sh" "$root"
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 cp -RL "$root/core" "$root/io" "$root/app" "$copy"
+mkdir "$copy/tests"
+cp -RL "$root/tests/support" "$copy/tests"
 sh "$root/tests/check_layers.sh" "$copy"
 
 # plant FILE INCLUDE: the check must fail with the line added, and name the file.
@@ -36,3 +38,7 @@ plant app/exit_code.h '#include <openvdb/openvdb.h>'
 plant io/read_mesh.cpp '#include <nlohmann/json.hpp>'
 plant io/read_mesh.cpp '#include <nettle/sha2.h>'
 plant app/exit_code.h '#include <CLI/CLI.hpp>'
+plant app/exit_code.h '#include <zlib.h>'
+plant io/read_mesh.cpp '#include <png.h>'
+plant tests/support/direct_winding_number.cpp '#include "core/predicates.h"'
+plant tests/support/exact_predicates.h '#include "core/direct_sum.h"'

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "core/direct_sum.h"
 #include "core/threads.h"
 #include "core/weld.h"
 #include "core/winding_number.h"
 #include "io/read_mesh.h"
+#include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
@@ -113,16 +113,17 @@ Quality quality_of(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
     for (std::size_t i = begin; i < end; ++i) {
       if (on_surface[i] != 0) continue;
       const Vec3& q = queries[i];
-      const QuadWithin exact = direct_winding_number(mesh, QuadVec3{q.x, q.y, q.z});
+      const test::WithinQuad exact = test::winding_number_within(mesh, q);
+      using Quad = __float128;
       const Quad difference = Quad(values[i]) - exact.value, error = difference < 0 ? -difference : difference;
-      if (error > Quad(bounds[i]) + exact.error) ++violated;
+      if (!(error <= Quad(bounds[i]) + exact.error)) ++violated;  // NaN violates
       if (exact.error > Quad(bounds[i])) ++undecided;
       // A value cannot be better than its own rounding.
       ratios[i] = bounds[i] / std::max(static_cast<double>(error), std::abs(values[i]) * 0x1p-53);
     }
   });
   Quality quality{n, violated, undecided, 0, 0.0, *std::max_element(bounds.begin(), bounds.end())};
-  quality.above = static_cast<std::size_t>(std::ranges::count_if(bounds, [](double b) { return b > 1e-9; }));
+  quality.above = static_cast<std::size_t>(std::ranges::count_if(bounds, [](double b) { return !(b <= 1e-9); }));
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(n / 2), ratios.end());
   quality.median_ratio = ratios[n / 2];
   return quality;
@@ -169,7 +170,7 @@ int check_slice(const char* path) {
   double largest = 0.0;
   for (int i = 0; i < 200; ++i) {
     const std::size_t at = random() % samples;
-    largest = std::max(largest, std::abs(scan[at] - test::direct_winding_number(mesh, points[at])));
+    largest = test::larger_difference(largest, std::abs(scan[at] - test::direct_winding_number(mesh, points[at])));
   }
   const auto [lower, upper] = std::ranges::minmax(scan);
   std::printf(

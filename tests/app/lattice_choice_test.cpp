@@ -1,4 +1,4 @@
-// The lattice rules of the command line, and what was decided where the contract is silent.
+// The lattice rules of the command line, on boxes of every kind.
 #include "app/lattice_choice.h"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
 namespace raycone {
 namespace {
 
@@ -23,6 +26,25 @@ TEST(DirectSum, KnowsWhenItCannotTellTheSideOfATriangle) {
     }
   }
   EXPECT_GE(decided, 4);  // at 1e-20 it can
+}
+
+// The direct sum of --verify and the oracle of the tests are two programs for one definition.
+TEST(DirectSum, IsTheOraclesWithinBothErrors) {
+  test::Random random(2);
+  int close = 0;
+  for (const TriangleMesh& mesh : {test::soup(random, 30), test::fan(9, 6), test::assorted_triangles()}) {
+    for (int i = 0; i < 200; ++i) {
+      Vec3 q = test::uniform_point(random, {{-0.2, -0.2, -0.2}, {1.2, 1.2, 1.2}});
+      const Vec3& v = mesh.vertices[random() % mesh.vertices.size()];
+      if (i % 2 == 0) q = v + std::pow(10.0, -test::uniform(random, 1, 16)) * (q - v);
+      const QuadWithin sum = direct_winding_number(mesh, {q.x, q.y, q.z});
+      const test::WithinQuad oracle = test::winding_number_within(mesh, q);
+      const Quad difference = sum.value > oracle.value ? sum.value - oracle.value : oracle.value - sum.value;
+      EXPECT_LE(static_cast<double>(difference), static_cast<double>(sum.error + oracle.error)) << i;
+      close += static_cast<double>(sum.error + oracle.error) < 1e-20;
+    }
+  }
+  EXPECT_GT(close, 500);
 }
 
 }  // namespace

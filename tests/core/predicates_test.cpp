@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 
 #include "core/floating_point.h"
+#include "tests/support/exact_predicates.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -54,7 +58,8 @@ TEST(EdgeSide, IsExactForQueriesRoundedOntoTheEdge) {
       const Vec3 a = scale * point_of_many_bits(random), b = scale * point_of_many_bits(random);
       const double t = test::uniform(random, 0, 1);
       const Vec3 q{0, a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
-      const int exact = exact_edge_orientation(a, b, q);
+      const int exact = test::exact_edge_side(a, b, q);
+      ASSERT_EQ(exact_edge_orientation(a, b, q), exact) << scale;
       ASSERT_EQ(edge_side(a, b, q).sign, exact != 0 ? exact : broken_tie(a, b).sign) << scale;
       misjudged += sign(edge_determinant(a, b, q).value) != exact;
     }
@@ -130,6 +135,104 @@ TEST(OnTriangle, OfZeroAreaIsASegmentOrAPoint) {
   EXPECT_FALSE(on_triangle(a, b, c, {2, 4, 6.5}));
   EXPECT_TRUE(on_triangle(b, b, b, b));
   EXPECT_FALSE(on_triangle(b, b, b, a));
+}
+
+// Corners and queries that tie as often as not, at every magnitude: coordinates of few bits, or one last bit off.
+class NearTies {
+ public:
+  explicit NearTies(std::uint64_t seed) : random_(seed) {}
+
+  [[nodiscard]] double scale() {
+    constexpr std::array kScales{1.0, 0x1p-340, 0x1p-700, 0x1p-1020, 0x1p340, 0x1p700, 0x1p1018};
+    return kScales[random_() % kScales.size()];
+  }
+  [[nodiscard]] Vec3 point(double scale) {
+    const auto coordinate = [&] {
+      const double x = scale * (static_cast<double>(random_() % 9) - 4);
+      return random_() % 8 == 0 ? std::nextafter(x, random_() % 2 == 0 ? HUGE_VAL : -HUGE_VAL) : x;
+    };
+    const double x = coordinate(), y = coordinate();
+    return {x, y, coordinate()};
+  }
+  [[nodiscard]] std::array<Vec3, 4> points() {
+    const double size = scale();
+    std::array<Vec3, 4> p;
+    for (Vec3& v : p) v = point(size);
+    if (random_() % 8 == 0) p[2] = 0.5 * p[0] + 0.5 * p[1];
+    if (random_() % 4 == 0) p[3] = 0.5 * p[0] + 0.25 * p[1] + 0.25 * p[2];
+    if (random_() % 4 == 0) p[3] = 0.5 * p[0] + 0.5 * p[1];
+    return p;
+  }
+
+ private:
+  test::Random random_;
+};
+
+TEST(Predicates, AreThoseOfIntegerArithmetic) {
+  const DefaultFloatingPoint guard;
+  NearTies ties(1);
+  int on_plane = 0, on_line = 0, on_surface = 0, meeting = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const auto [a, b, c, q] = ties.points();
+    ASSERT_EQ(plane_side(a, b, c, q), test::exact_plane_side(a, b, c, q)) << i;
+    ASSERT_EQ(collinear(a, b, c), test::exactly_collinear(a, b, c)) << i;
+    ASSERT_EQ(on_triangle(a, b, c, q), test::exactly_on_triangle(a, b, c, q)) << i;
+    on_plane += test::exact_plane_side(a, b, c, q) == 0;
+    on_line += test::exactly_collinear(a, b, c);
+    on_surface += test::exactly_on_triangle(a, b, c, q);
+    if (test::exact_edge_side(a, b, q) != 0 || (a.y == b.y && a.z == b.z)) continue;
+    // Where the line meets the edge's line, in 64 bits; sure beyond 1e-12 of the coordinates, all of them of one size.
+    const int axis = a.y != b.y ? 1 : 2;
+    const long double t = (static_cast<long double>(q[axis]) - a[axis]) / (static_cast<long double>(b[axis]) - a[axis]);
+    const long double ahead = a.x + t * (static_cast<long double>(b.x) - a.x) - q.x;
+    const double size = std::abs(a[axis]) + std::abs(b[axis]) + std::abs(a.x) + std::abs(b.x) + std::abs(q.x);
+    const int side = meeting_side(a, b, q);
+    ASSERT_EQ(side == 0, test::exactly_collinear(a, b, q)) << i;
+    if (std::abs(ahead) <= 1e-12L * (1 + std::abs(t)) * size) continue;
+    ASSERT_EQ(side, ahead > 0 ? 1 : -1) << i;
+    ++meeting;
+  }
+  // Else nothing has been tested.
+  EXPECT_GT(on_plane, 5000);
+  EXPECT_GT(on_line, 1000);
+  EXPECT_GT(on_surface, 2000);
+  EXPECT_GT(meeting, 500);
+}
+
+// The oracle itself, where 113 bits are exact: on integers.
+TEST(ExactPredicates, AreWhatSmallIntegersSay) {
+  test::Random random(6);
+  const auto coordinate = [&] { return static_cast<std::int64_t>(random() % 7) - 3; };
+  int inside = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::array<std::array<std::int64_t, 3>, 4> n{};
+    std::array<Vec3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      n[k] = {coordinate(), coordinate(), coordinate()};
+      p[k] = {0.125 * static_cast<double>(n[k][0]), 0.125 * static_cast<double>(n[k][1]),
+              0.125 * static_cast<double>(n[k][2])};
+    }
+    const auto minor = [&](std::size_t from, std::size_t k, std::size_t l, std::size_t x, std::size_t y) {
+      return (n[k][x] - n[from][x]) * (n[l][y] - n[from][y]) - (n[k][y] - n[from][y]) * (n[l][x] - n[from][x]);
+    };
+    const std::int64_t volume = (n[3][0] - n[0][0]) * minor(0, 1, 2, 1, 2) +
+                                (n[3][1] - n[0][1]) * minor(0, 1, 2, 2, 0) + (n[3][2] - n[0][2]) * minor(0, 1, 2, 0, 1);
+    ASSERT_EQ(test::exact_plane_side(p[0], p[1], p[2], p[3]), (volume > 0) - (volume < 0));
+    const std::int64_t side = minor(3, 0, 1, 1, 2);
+    ASSERT_EQ(test::exact_edge_side(p[0], p[1], p[3]), (side > 0) - (side < 0));
+    // On the triangle: the three parts of its area, made with q, add up to the whole, in each projection.
+    const auto areas_agree = [&](std::size_t x, std::size_t y) {
+      const auto area = [&](std::size_t k, std::size_t l, std::size_t m) { return std::abs(minor(k, l, m, x, y)); };
+      return area(0, 1, 2) == area(3, 0, 1) + area(3, 1, 2) + area(3, 2, 0);
+    };
+    const bool flat = minor(0, 1, 2, 0, 1) == 0 && minor(0, 1, 2, 1, 2) == 0 && minor(0, 1, 2, 2, 0) == 0;
+    ASSERT_EQ(test::exactly_collinear(p[0], p[1], p[2]), flat);
+    if (flat) continue;
+    const bool on = volume == 0 && areas_agree(0, 1) && areas_agree(1, 2) && areas_agree(2, 0);
+    ASSERT_EQ(test::exactly_on_triangle(p[0], p[1], p[2], p[3]), on);
+    inside += on;
+  }
+  EXPECT_GT(inside, 200);
 }
 
 TEST(MeetingSide, OfAnEdgeCrossingTheLine) {

@@ -8,10 +8,13 @@
 #include "core/exterior_edges.h"
 #include "core/weld.h"
 #include "core/winding_number.h"
+#include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
+
+using test::largest_difference;
 
 constexpr Summation kBoth[] = {Summation::kCone, Summation::kTriangles};
 
@@ -29,12 +32,6 @@ Lattice half_integers(std::int64_t from, std::int64_t count) {
   lattice.index_min = {from, from, from};
   lattice.counts = {count, count, count};
   return lattice;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 // Each triangle contributes some 50 u / 2^-6 / 2 pi at worst, where the query is just not next to it; 60 of them.

@@ -11,12 +11,14 @@
 #include "core/predicates.h"
 #include "core/threads.h"
 #include "core/weld.h"
+#include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
+using test::largest_difference;
 using test::Random;
 
 // Rounding of some u per exterior edge: for the few hundred edges of these meshes 1e-13 is about ten times the largest
@@ -34,12 +36,6 @@ std::vector<Vec3> random_queries(Random& random, const Box& box, int count) {
   std::vector<Vec3> queries;
   for (int i = 0; i < count; ++i) queries.push_back(test::uniform_point(random, box));
   return queries;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 double largest_error(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {

@@ -6,26 +6,17 @@
 #include <cstdio>
 #include <numbers>
 
-#include "core/direct_sum.h"
 #include "core/floating_point.h"
-#include "core/predicates.h"
-#include "core/weld.h"
 #include "core/winding_number.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/exact_predicates.h"
 
 namespace raycone::test {
 namespace {
 
-struct Sample {
-  Vec3 query;
-  double value;
-  std::int64_t degenerate;
-  bool on_surface;
-  double error_bound;
+using Quad = __float128;
 
-  friend bool operator==(const Sample&, const Sample&) = default;
-};
-
-std::vector<Sample> evaluate(const TriangleMesh& mesh, RayEngine engine, Summation summation,
+std::vector<Answer> evaluate(const TriangleMesh& mesh, RayEngine engine, Summation summation,
                              const std::vector<Vec3>& queries, bool& closed) {
   const std::size_t n = queries.size();
   std::vector<double> values(n), bounds(n);
@@ -35,11 +26,9 @@ std::vector<Sample> evaluate(const TriangleMesh& mesh, RayEngine engine, Summati
   const WindingNumberEvaluator evaluator(mesh, engine, SimdLevel::kBest, summation);
   evaluator.evaluate(queries, values, nullptr, &diagnostics);
   closed = evaluator.exterior_edges() == 0;
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < n; ++i) {
-    samples.push_back({queries[i], values[i], degenerate[i], on_surface[i] != 0, bounds[i]});
-  }
-  return samples;
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < n; ++i) answers.push_back({values[i], degenerate[i], on_surface[i] != 0, bounds[i]});
+  return answers;
 }
 
 template <class Predicate>
@@ -50,7 +39,8 @@ bool any_triangle(const TriangleMesh& mesh, const Predicate& predicate) {
 }
 
 bool is_on_surface(const TriangleMesh& mesh, const Vec3& q) {
-  return any_triangle(mesh, [&](const Vec3& a, const Vec3& b, const Vec3& c) { return on_triangle(a, b, c, q); });
+  return any_triangle(mesh,
+                      [&](const Vec3& a, const Vec3& b, const Vec3& c) { return exactly_on_triangle(a, b, c, q); });
 }
 
 // Ties by definition: per triangle whose closed box meets the closed ray, its edges with D = 0.
@@ -60,8 +50,7 @@ std::int64_t ties(const TriangleMesh& mesh, const Vec3& q) {
     const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
     const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});
     if (low_y <= q.y && q.y <= high_y && low_z <= q.z && q.z <= high_z && q.x <= std::max({a.x, b.x, c.x})) {
-      count += (exact_edge_orientation(a, b, q) == 0) + (exact_edge_orientation(b, c, q) == 0) +
-               (exact_edge_orientation(c, a, q) == 0);
+      count += (exact_edge_side(a, b, q) == 0) + (exact_edge_side(b, c, q) == 0) + (exact_edge_side(c, a, q) == 0);
     }
     return false;
   });
@@ -120,7 +109,7 @@ long double value_by_definition(const TriangleMesh& mesh, const Vec3& q, bool on
   long double sum = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    if (collinear(a, b, c)) continue;
+    if (exactly_collinear(a, b, c)) continue;
     const auto half_angle = half_solid_angle_of<700>(a, b, c, few);
     sum += half_angle ? *half_angle : half_solid_angle_of<3000>(a, b, c, many).value();
   }
@@ -140,28 +129,30 @@ bool too_close_for_a_step(const TriangleMesh& mesh, const Vec3& q) {
   });
 }
 
-std::optional<std::string> wrong_value(const TriangleMesh& mesh, const Sample& s, CheckCounts& counts) {
-  if (s.on_surface && too_close_for_a_step(mesh, s.query)) {
+std::optional<std::string> wrong_value(const TriangleMesh& mesh, const Vec3& q, const Answer& answer,
+                                       CheckCounts& counts) {
+  if (answer.on_surface && too_close_for_a_step(mesh, q)) {
     ++counts.undecided;
     return std::nullopt;
   }
   constexpr double kSure = 1e-20;
   // 113 bits where they do, which is mostly.
-  const QuadWithin quad = direct_winding_number(mesh, {s.query.x, s.query.y, s.query.z});
-  const bool sure = !s.on_surface && quad.error < kSure;
-  const Quad exact = sure ? quad.value : Quad(value_by_definition(mesh, s.query, s.on_surface));
-  const Quad difference = exact > s.value ? exact - s.value : s.value - exact;
+  const WithinQuad quad = winding_number_within(mesh, q);
+  const bool sure = !answer.on_surface && quad.error < kSure;
+  const Quad exact = sure ? quad.value : Quad(value_by_definition(mesh, q, answer.on_surface));
+  const Quad difference = exact > answer.value ? exact - answer.value : answer.value - exact;
   // The sum over triangles itself has 64 bits.
   const Quad error = sure ? Quad(kSure) : Quad(1e-19) * static_cast<double>(mesh.triangles.size() + 1);
-  if (difference <= Quad(s.error_bound) + error) return std::nullopt;
-  return text("value %.17g, by definition %.17g, error bound %g", s.value, static_cast<double>(exact), s.error_bound);
+  if (difference <= Quad(answer.error_bound) + error) return std::nullopt;  // not so for NaN
+  return text("value %.17g, by definition %.17g, error bound %g", answer.value, static_cast<double>(exact),
+              answer.error_bound);
 }
 
 // The promise near exterior edges; elsewhere errors are far smaller.
 constexpr double kPromised = 1e-12;
 
 // The sum over triangles beside that over the cone, which is known to be right within its bound.
-std::optional<std::string> wrong_sum(const Sample& cone, const Sample& triangles) {
+std::optional<std::string> wrong_sum(const Answer& cone, const Answer& triangles) {
   if (std::abs(cone.value - triangles.value) <= cone.error_bound + triangles.error_bound &&
       triangles.error_bound < kPromised) {
     return std::nullopt;
@@ -170,42 +161,57 @@ std::optional<std::string> wrong_sum(const Sample& cone, const Sample& triangles
               triangles.error_bound);
 }
 
-std::optional<std::string> wrong_sample(const TriangleMesh& mesh, bool closed, const Sample& s, CheckCounts& counts) {
-  if (s.on_surface != is_on_surface(mesh, s.query)) {
-    return text("on_surface is %g, by definition %g (value %g)", s.on_surface, !s.on_surface, s.value);
+std::optional<std::string> wrong_answer(const TriangleMesh& mesh, const Vec3& q, bool closed, const Answer& answer,
+                                        CheckCounts& counts) {
+  const double value = answer.value, bound = answer.error_bound;
+  if (answer.on_surface != is_on_surface(mesh, q)) {
+    return text("on_surface is %g, by definition %g (value %g)", answer.on_surface, !answer.on_surface, value);
   }
-  const std::int64_t expected_ties = ties(mesh, s.query);
-  if (s.degenerate != expected_ties) {
-    return text("degenerate is %g, by definition %g (value %g)", static_cast<double>(s.degenerate),
-                static_cast<double>(expected_ties), s.value);
+  const std::int64_t expected_ties = ties(mesh, q);
+  if (answer.degenerate != expected_ties) {
+    return text("degenerate is %g, by definition %g (value %g)", static_cast<double>(answer.degenerate),
+                static_cast<double>(expected_ties), value);
   }
-  if (closed && (s.value != std::nearbyint(s.value) || s.error_bound != 0.0)) {
-    return text("value %.17g of a closed mesh with error bound %g is not an exact integer%.0s", s.value, s.error_bound,
-                0);
+  if (closed && (value != std::nearbyint(value) || bound != 0.0)) {
+    return text("value %.17g of a closed mesh with error bound %g is not an exact integer%.0s", value, bound, 0);
   }
   // A wrong value with an honest bound is still wrong.
-  if (!(s.error_bound < kPromised)) return text("value %.17g has error bound %g%.0s", s.value, s.error_bound, 0);
+  if (!(bound < kPromised)) return text("value %.17g has error bound %g%.0s", value, bound, 0);
   ++counts.values;
-  counts.on_surface += s.on_surface;
-  counts.degenerate += s.degenerate > 0;
-  return wrong_value(mesh, s, counts);
+  counts.on_surface += answer.on_surface;
+  counts.degenerate += answer.degenerate > 0;
+  return wrong_value(mesh, q, answer, counts);
 }
 
 }  // namespace
 
-std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>& queries, CheckCounts* counts) {
+std::vector<Answers> answers_of(const TriangleMesh& welded, const std::vector<Vec3>& queries) {
   const DefaultFloatingPoint guard;
-  CheckCounts unused;
   bool closed = false;
-  const std::vector<Sample> samples = evaluate(welded, RayEngine::kScan, Summation::kCone, queries, closed);
-  const std::vector<Sample> by_embree = evaluate(welded, RayEngine::kEmbree, Summation::kCone, queries, closed);
-  const std::vector<Sample> over_triangles = evaluate(welded, RayEngine::kScan, Summation::kTriangles, queries, closed);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Sample& s = samples[i];
-    if (!(s == by_embree[i]))
-      return Failure{s.query, text("scan gives %.17g, Embree %.17g%.0s", s.value, by_embree[i].value, 0)};
-    if (const auto what = wrong_sample(welded, closed, s, counts ? *counts : unused)) return Failure{s.query, *what};
-    if (const auto what = wrong_sum(s, over_triangles[i])) return Failure{s.query, *what};
+  const std::vector<Answer> scan = evaluate(welded, RayEngine::kScan, Summation::kCone, queries, closed);
+  const std::vector<Answer> embree = evaluate(welded, RayEngine::kEmbree, Summation::kCone, queries, closed);
+  const std::vector<Answer> triangles = evaluate(welded, RayEngine::kScan, Summation::kTriangles, queries, closed);
+  std::vector<Answers> answers;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    answers.push_back({queries[i], scan[i], embree[i], triangles[i], closed});
+  }
+  return answers;
+}
+
+std::optional<std::string> wrong(const TriangleMesh& mesh, const Answers& answers, CheckCounts& counts) {
+  const DefaultFloatingPoint guard;
+  const Answer& scan = answers.scan;
+  if (!(scan == answers.embree)) {
+    return text("scan gives %.17g, Embree %.17g%.0s", scan.value, answers.embree.value, 0);
+  }
+  if (auto what = wrong_answer(mesh, answers.query, answers.closed, scan, counts)) return what;
+  return wrong_sum(scan, answers.over_triangles);
+}
+
+std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>& queries, CheckCounts* counts) {
+  CheckCounts unused;
+  for (const Answers& answers : answers_of(welded, queries)) {
+    if (const auto what = wrong(welded, answers, counts ? *counts : unused)) return Failure{answers.query, *what};
   }
   return std::nullopt;
 }

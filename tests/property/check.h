@@ -22,10 +22,32 @@ struct CheckCounts {
   std::uint64_t undecided = 0;   // on the surface within 1e-30 of another vertex's coordinate: no step tells
 };
 
+// What the evaluator says of one query.
+struct Answer {
+  double value = 0;
+  std::int64_t degenerate = 0;
+  bool on_surface = false;
+  double error_bound = 0;
+
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+// The same query in each of the ways there are.
+struct Answers {
+  Vec3 query;
+  Answer scan, embree, over_triangles;
+  bool closed = false;  // the mesh, for the evaluator
+};
+
+[[nodiscard]] std::vector<Answers> answers_of(const TriangleMesh& welded, const std::vector<Vec3>& queries);
+
+// What is wrong with the answers of a query by their definitions on the mesh, see check().
+[[nodiscard]] std::optional<std::string> wrong(const TriangleMesh& mesh, const Answers& answers, CheckCounts& counts);
+
 // For each query: the value is the direct sum in 113 to 3000 bits within the value's own error bound (on the surface:
 // the sum at the query moved as the symbolic perturbation has it), and that bound is below 1e-12; the value is an
-// integer with bound 0 if the mesh is closed; on_surface and degenerate are what their definitions give. Nothing where
-// all holds.
+// integer with bound 0 if the mesh is closed; on_surface and degenerate are what their definitions give, in integer
+// arithmetic. Embree says the same to the bit, the sum over triangles within both bounds. Nothing where all holds.
 [[nodiscard]] std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>& queries,
                                            CheckCounts* counts = nullptr);
 

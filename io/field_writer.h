@@ -76,7 +76,7 @@ struct FieldTotals {
 class LatticeWriter {
  public:
   virtual ~LatticeWriter() = default;
-  // 2 (VDB, CSV) or 0 (NPY, whose slowest axis is x).
+  // 2; of NPY, whose slowest axis is x, 1, or 0 where the output cannot be gone back in.
   [[nodiscard]] virtual int slab_axis() const = 0;
   // A slab that ends at multiples of this index (but for the last) is written best: 8 for VDB's leaves, else 1.
   [[nodiscard]] virtual std::int64_t slab_alignment() const = 0;

@@ -269,6 +269,11 @@ void OutputFile::write(const void* data, std::size_t size) {
   }
 }
 
+void OutputFile::seek(std::uint64_t offset) {
+  const std::streampos there = static_cast<std::streamoff>(offset);
+  if (state_->buffer->pubseekpos(there, std::ios_base::out) != there) state_->fail_writing(state_->buffer->error());
+}
+
 void OutputFile::overwrite(std::uint64_t offset, const void* data, std::size_t size) {
   FileBuffer& buffer = *state_->buffer;
   const std::streampos end = buffer.pubseekoff(0, std::ios_base::cur, std::ios_base::out);

@@ -20,8 +20,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Appends; throws OutputError (a closed pipe raises SIGPIPE).
+  // Appends, or goes on where seek() went; throws OutputError (a closed pipe raises SIGPIPE).
   void write(const void* data, std::size_t size);
+  // Goes on at `offset`, which may lie behind all that has been written; only where seekable().
+  void seek(std::uint64_t offset);
   // Replaces bytes already written; only where seekable().
   void overwrite(std::uint64_t offset, const void* data, std::size_t size);
   [[nodiscard]] bool seekable() const;

@@ -27,56 +27,96 @@ constexpr const char* kDescriptor<double> = "<f8";
 template <>
 constexpr const char* kDescriptor<std::uint8_t> = "|b1";  // flags: NumPy's bool is a byte
 
-// The elements of an x-fastest block with z fastest instead, -0 as 0.
+// The elements of the samples [x_begin, x_end) along x of an x-fastest block with z fastest instead, -0 as 0.
 template <typename Element, typename Number>
-std::vector<Element> transposed(const LatticeBlock& block, std::span<const Number> values) {
+void transpose(const LatticeBlock& block, std::span<const Number> values, std::size_t x_begin, std::size_t x_end,
+               std::vector<Element>& elements) {
   constexpr std::size_t kTile = 16;  // a tile's cache lines on both sides fit in the first-level cache
   const auto nx = static_cast<std::size_t>(block.counts[0]);
   const auto ny = static_cast<std::size_t>(block.counts[1]);
   const auto nz = static_cast<std::size_t>(block.counts[2]);
-  std::vector<Element> elements(values.size());
+  elements.resize((x_end - x_begin) * ny * nz);
   parallel_for(ny, 1, [&](std::size_t y_begin, std::size_t y_end) {
     for (std::size_t y = y_begin; y < y_end; ++y) {
       for (std::size_t z_tile = 0; z_tile < nz; z_tile += kTile) {
         const std::size_t z_end = std::min(z_tile + kTile, nz);
-        for (std::size_t x_tile = 0; x_tile < nx; x_tile += kTile) {
-          const std::size_t x_end = std::min(x_tile + kTile, nx);
-          for (std::size_t x = x_tile; x < x_end; ++x) {
+        for (std::size_t x_tile = x_begin; x_tile < x_end; x_tile += kTile) {
+          for (std::size_t x = x_tile; x < std::min(x_tile + kTile, x_end); ++x) {
             for (std::size_t z = z_tile; z < z_end; ++z) {
               const auto element = static_cast<Element>(values[(z * ny + y) * nx + x]);
-              elements[(x * ny + y) * nz + z] = static_cast<Element>(element + Element{0});
+              elements[((x - x_begin) * ny + y) * nz + z] = static_cast<Element>(element + Element{0});
             }
           }
         }
       }
     }
   });
-  return elements;
+}
+
+// Slabs across the slowest axis, x, can be appended, but cut all rays, and each slab has to look for crossings again.
+// Slabs across y are pieces of planes across x: long ones, as z is the fastest axis.
+int npy_slab_axis(const Lattice& lattice, bool seekable) {
+  constexpr std::int64_t kSmallPlane = std::int64_t{1} << 16;  // slabs across x then hold rows that are long enough
+  constexpr std::int64_t kLargePlane = std::int64_t{1} << 22;  // takes more memory than any slab has to
+  const auto [nx, ny, nz] = lattice.counts;
+  const std::int64_t across_x = ny * nz, across_y = nx * nz;
+  return seekable && across_x > kSmallPlane && across_y <= std::max(kLargePlane, across_x) ? 1 : 0;
 }
 
 template <typename Element>
 class NpyLatticeWriter final : public LatticeWriter {
  public:
-  NpyLatticeWriter(OutputFile& output, const Lattice& lattice) : output_(output) {
+  NpyLatticeWriter(OutputFile& output, const Lattice& lattice)
+      : output_(output), lattice_(lattice), slab_axis_(npy_slab_axis(lattice, output.seekable())) {
     const std::string shape = '(' + std::to_string(lattice.counts[0]) + ", " + std::to_string(lattice.counts[1]) +
                               ", " + std::to_string(lattice.counts[2]) + ')';
     const std::string header = npy_header(kDescriptor<Element>, shape);
     output_.write(header.data(), header.size());
+    header_size_ = header.size();
   }
 
-  int slab_axis() const override { return 0; }
+  int slab_axis() const override { return slab_axis_; }
   std::int64_t slab_alignment() const override { return 1; }
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
-    const std::vector<Element> elements =
-        std::visit([&](const auto& values) { return transposed<Element>(block, values); }, fields.front());
-    output_.write(elements.data(), elements.size() * sizeof(Element));
+    std::visit([&](const auto& values) { write_planes(block, values); }, fields.front());
   }
 
   void finish(const FieldTotals&) override { output_.commit(); }
 
  private:
+  // A few planes across x at a time.
+  template <typename Number>
+  void write_planes(const LatticeBlock& block, std::span<const Number> values) {
+    constexpr std::size_t kElements = std::size_t{1} << 18, kLeastPlanes = 16;
+    const auto nx = static_cast<std::size_t>(block.counts[0]);
+    const std::size_t plane = values.size() / nx;
+    const std::size_t planes = std::max(kElements / plane, kLeastPlanes);
+    for (std::size_t begin = 0; begin < nx; begin += planes) {
+      const std::size_t end = std::min(begin + planes, nx);
+      transpose<Element>(block, values, begin, end, elements_);
+      write_elements(block, begin, end, plane);
+    }
+  }
+
+  void write_elements(const LatticeBlock& block, std::size_t begin, std::size_t end, std::size_t plane) {
+    if (block.counts[1] == lattice_.counts[1]) {
+      output_.write(elements_.data(), elements_.size() * sizeof(Element));
+      return;
+    }
+    const auto of_lattice = static_cast<std::size_t>(lattice_.counts[1] * lattice_.counts[2]);
+    const auto before = static_cast<std::size_t>((block.first[1] - lattice_.index_min[1]) * lattice_.counts[2]);
+    for (std::size_t x = begin; x < end; ++x) {
+      output_.seek(header_size_ + (x * of_lattice + before) * sizeof(Element));
+      output_.write(&elements_[(x - begin) * plane], plane * sizeof(Element));
+    }
+  }
+
   OutputFile& output_;
+  Lattice lattice_;
+  int slab_axis_;
+  std::size_t header_size_ = 0;
+  std::vector<Element> elements_;
 };
 
 // Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.

@@ -6,8 +6,8 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <optional>
 #include <map>
+#include <optional>
 #include <regex>
 #include <system_error>
 #include <utility>

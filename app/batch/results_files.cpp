@@ -6,10 +6,10 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <regex>
 #include <system_error>
-#include <unordered_map>
 #include <utility>
 
 #include "io/file_error.h"
@@ -63,7 +63,7 @@ std::optional<Shard> shard_of(const std::string& name) {
   return Shard{std::stoull(match[1]), std::stoull(match[2])};
 }
 
-BatchRecord record_of(ResultRow row, const std::unordered_map<std::string, CsvRecord>& origins) {
+BatchRecord record_of(ResultRow row, const std::map<std::string, CsvRecord>& origins) {
   const auto origin = origins.find(row.mesh);
   BatchRecord record{std::move(row), std::nullopt};
   if (origin != origins.end() && is_about(origin->second, csv_line(to_record(record.row)))) {
@@ -127,7 +127,7 @@ ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Sha
       origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const {
-  std::unordered_map<std::string, CsvRecord> origins;  // of each mesh the last one
+  std::map<std::string, CsvRecord> origins;  // of each mesh the last one
   for (CsvRecord& record : origins_.read()) {
     const std::string mesh = record.front();
     origins.insert_or_assign(mesh, std::move(record));

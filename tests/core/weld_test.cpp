@@ -1,6 +1,7 @@
 #include "core/weld.h"
 
 #include <gtest/gtest.h>
+#include <xmmintrin.h>
 
 #include <cmath>
 #include <limits>
@@ -88,6 +89,34 @@ TEST(Weld, LargeMeshesKeepTheFirstOfEachPosition) {
   const TriangleMesh welded = weld(mesh, {});
   EXPECT_EQ(welded.vertices, expected_vertices);
   EXPECT_EQ(welded.triangles, expected_triangles);
+}
+
+// Their hashes were the same for every seed that welding tried: it never ended.
+TEST(Weld, NoTwoVerticesMakeItWaitForEver) {
+  const TriangleMesh floats{{{1, 1.5, 0.25}, {-1, -1.500003814697265625, 0.25}, {0, 0, 1}}, {{0, 1, 2}}};
+  const TriangleMesh integers{{{10, 262144, 5}, {-10, -262145, 5}, {0, 0, 1}}, {{0, 1, 2}}};
+  for (const TriangleMesh& mesh : {floats, integers}) {
+    EXPECT_EQ(weld(mesh, {}).vertices, mesh.vertices);
+    EXPECT_EQ(weld(mesh, {}).triangles, mesh.triangles);
+  }
+}
+
+TEST(Weld, OfNothingIsNothing) {
+  for (const Weld& how : {Weld{}, Weld{WeldMode::kNone}, Weld{WeldMode::kDistance, 0.5}}) {
+    EXPECT_TRUE(weld({}, how).vertices.empty());
+  }
+}
+
+// As a thread is left by Embree.
+TEST(Weld, KeepsTinyCoordinatesWhereTheyWouldBeFlushed) {
+  const unsigned saved = _mm_getcsr();
+  _mm_setcsr(saved | 0x8040U);
+  const TriangleMesh welded = weld({{{5e-324, 0, 0}, {0, 5e-324, 0}, {0, 0, 0}}, {{0, 1, 2}}}, {});
+  const TriangleMesh within =
+      weld({{{5e-324, 0, 0}, {0, 0, 0}, {1e-323, 0, 0}}, {{0, 1, 2}}}, {WeldMode::kDistance, 5e-324});
+  _mm_setcsr(saved);
+  EXPECT_EQ(welded.vertices, (std::vector<Vec3>{{5e-324, 0, 0}, {0, 5e-324, 0}, {0, 0, 0}}));
+  EXPECT_EQ(within.vertices, (std::vector<Vec3>{{0, 0, 0}, {1e-323, 0, 0}}));
 }
 
 TEST(Weld, UnusedNonFiniteVerticesDoNoHarm) {

@@ -10,6 +10,7 @@
 #include "app/limits.h"
 #include "app/signals.h"
 #include "app/usage_error.h"
+#include "core/polygons.h"
 #include "io/file_error.h"
 
 namespace raycone {
@@ -70,7 +71,13 @@ MeshFile read(const MeshOptions& mesh, const RunLimits& limits) {
   std::error_code error;  // what has no size, such as a pipe, is not checked
   const std::uintmax_t size = std::filesystem::file_size(mesh.path, error);
   if (!error && mesh.path != "-") check_memory(mesh.path, static_cast<double>(size), limits.memory());
-  return read_mesh(mesh.path, mesh.reading);
+  MeshFile file = read_mesh(mesh.path, mesh.reading);
+  const std::vector<PolygonFan> polygons = std::move(file.parsed.polygons);
+  if (const std::uint64_t bad = cut_concave_polygons(file.parsed.mesh, polygons)) {
+    file.parsed.warnings.push_back("bad-polygons: " + std::to_string(bad) + (bad == 1 ? " polygon" : " polygons") +
+                                   " that cross themselves, seen along the area vector, fanned from the first corner");
+  }
+  return file;
 }
 
 RunReport report_on(const MeshOptions& mesh, const OutputFiles& output, const RunLimits& limits) {

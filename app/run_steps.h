@@ -58,7 +58,7 @@ struct SideFiles {
 // Throws OutputError.
 [[nodiscard]] SideFiles open_side_files(const OutputFiles& output);
 
-// Throws InputError, LimitError where the file alone is too large for the memory.
+// The mesh file with its concave polygons cut. Throws InputError, LimitError where the file alone is too large for the memory.
 [[nodiscard]] MeshFile read(const MeshOptions& mesh, const RunLimits& limits);
 
 // A report that says what was asked for; what comes out of it is yet to be filled in.

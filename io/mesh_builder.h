@@ -46,7 +46,8 @@ class MeshBuilder {
 
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { parsed_.mesh.triangles.push_back({a, b, c}); }
 
-  // A polygon, corner by corner, becomes a fan of triangles around its first corner.
+  // A polygon, corner by corner, becomes a fan of triangles around its first corner; those of more than three corners
+  // are noted, to be cut later where they are not convex.
   void begin_polygon() { corners_ = 0; }
   void add_corner(std::uint32_t vertex) {
     if (corners_ == 0) first_ = vertex;
@@ -56,6 +57,7 @@ class MeshBuilder {
   }
   void end_polygon() {
     if (corners_ < 3) skip_face();
+    if (corners_ > 3) parsed_.polygons.push_back({parsed_.mesh.triangles.size() - (corners_ - 2), corners_ - 2});
   }
 
   // Counts a face of fewer than three corners.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/polygon_fan.h"
 #include "core/triangle_mesh.h"
 
 namespace raycone {
@@ -31,7 +32,8 @@ struct MeshSource {
 
 // What a format's reader returns.
 struct ParsedMesh {
-  TriangleMesh mesh;
+  TriangleMesh mesh;                  // polygons as fans around their first corners
+  std::vector<PolygonFan> polygons;   // those of more than three corners, which may leave the polygon if it is concave
   std::uint64_t skipped_faces = 0;    // faces of one or two corners
   std::vector<std::string> warnings;  // one per kind, with its count: "3 faces with fewer than three corners skipped"
 };

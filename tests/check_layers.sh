@@ -27,7 +27,7 @@ only_in() {
 forbid 'core must not include io or app' '"(io|app)/' core/*.h core/*.cpp
 forbid 'io must not include app' '"app/' io/*.h io/*.cpp
 
-shared='core/(diagnostics|lattice|threads|triangle_mesh|vec3)\.h'
+shared='core/(diagnostics|lattice|polygon_fan|threads|triangle_mesh|vec3)\.h'
 evaluators=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
 forbid 'io may include only the data headers of core, and threads.h' "\"(${evaluators%|})\"" io/*.h io/*.cpp
 
@@ -37,7 +37,7 @@ judged=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n
 forbid 'oracles must not include what they judge' "\"(${judged%|})\"" tests/support/direct_* tests/support/exact_*
 
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
-only_in CGAL '[<"]CGAL' 'core/predicates\.cpp'
+only_in CGAL '[<"]CGAL' 'core/(polygon_cut|predicates)\.cpp'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/threads\.cpp'
 only_in Highway '[<"]hwy' 'core/(cone_kernel\.cpp|solid_angle_kernel\.cpp|simd\.cpp|product_lanes-inl\.h)'
 only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'

@@ -1,0 +1,199 @@
+#include "core/polygons.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/floating_point.h"
+#include "core/polygon_cut.h"
+#include "core/threads.h"
+
+namespace raycone {
+namespace {
+
+// --- Projection -----------------------------------------------------------------------------------------------------
+
+// What differences and products of doubles round, relative to the sum of the products' absolute values: a handful of
+// roundings of 2^-53 each. Where products underflow, nothing is sure.
+constexpr double kTrust = 0x1p-49;
+constexpr double kUnderflow = 0x1p-960;
+
+double sum(const Vec3& v) { return v.x + v.y + v.z; }
+
+Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+// The components of cross(|a|, |b|) with plus signs.
+Vec3 cross_terms(const Vec3& a, const Vec3& b) {
+  return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
+          std::abs(a.x * b.y) + std::abs(a.y * b.x)};
+}
+
+// The area vector's direction, as good as exact; zero if and only if the area vector is.
+Vec3 area_direction(std::span<const Vec3> corners) {
+  Vec3 area, terms;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vec3 a = corners[i] - corners[0], b = corners[i + 1] - corners[0];
+    area = area + cross(a, b);
+    terms = terms + cross_terms(a, b);
+  }
+  // Far from the exact one only where the terms cancel; a sum that is not finite compares false.
+  constexpr double kCancelled = 0x1p-20;
+  const double size = sum(absolute(area)), whole = sum(terms);
+  const bool sure = size > kCancelled * whole && size > kUnderflow && std::isfinite(whole) &&
+                    static_cast<double>(corners.size()) < 0x1p20;
+  return sure ? area : exact_area_direction(corners);
+}
+
+// The corners of a polygon, seen along its area vector.
+class Polygon {
+ public:
+  // Corners that repeat the one before are left out, and so is a last one that repeats the first.
+  Polygon(const TriangleMesh& mesh, const PolygonFan& fan) {
+    add(mesh, mesh.triangles[fan.first][0]);
+    add(mesh, mesh.triangles[fan.first][1]);
+    for (std::uint64_t i = 0; i < fan.triangles; ++i) add(mesh, mesh.triangles[fan.first + i][2]);
+    while (corners_.size() > 1 && corners_.back() == corners_.front()) {
+      corners_.pop_back();
+      vertices_.pop_back();
+    }
+    direction_ = area_direction(corners_);
+  }
+
+  // No two corners that follow each other are at one place.
+  [[nodiscard]] std::size_t size() const { return corners_.size(); }
+  [[nodiscard]] const std::vector<Vec3>& corners() const { return corners_; }
+  [[nodiscard]] std::uint32_t vertex(std::size_t corner) const { return vertices_[corner]; }
+  [[nodiscard]] const Vec3& direction() const { return direction_; }
+  [[nodiscard]] bool has_area() const { return direction_ != Vec3{}; }
+
+  // 1 where corners i, j, k turn left, -1 where they turn right, 0 where they lie on a line.
+  [[nodiscard]] int turn(std::size_t i, std::size_t j, std::size_t k) const {
+    const Vec3 &a = corners_[i], &b = corners_[j], &c = corners_[k];
+    const Vec3 first = b - a, second = c - a;
+    const double volume = dot(cross(first, second), direction_);
+    const double trust = kTrust * dot(cross_terms(first, second), absolute(direction_)) + kUnderflow;
+    if (volume > trust) return 1;
+    if (volume < -trust) return -1;
+    return exact_turn(direction_, a, b, c);
+  }
+
+  // Starts the polygon at the corner that comes first in space, so that it matters little where a file starts it.
+  void rotate_to_first() {
+    const auto first = std::min_element(corners_.begin(), corners_.end(), [](const Vec3& a, const Vec3& b) {
+      return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+    });
+    const auto shift = first - corners_.begin();
+    std::rotate(corners_.begin(), corners_.begin() + shift, corners_.end());
+    std::rotate(vertices_.begin(), vertices_.begin() + shift, vertices_.end());
+  }
+
+ private:
+  void add(const TriangleMesh& mesh, std::uint32_t vertex) {
+    const Vec3& corner = mesh.vertices[vertex];
+    if (!corners_.empty() && corners_.back() == corner) return;
+    corners_.push_back(corner);
+    vertices_.push_back(vertex);
+  }
+
+  std::vector<Vec3> corners_;
+  std::vector<std::uint32_t> vertices_;  // of the mesh, at the corners
+  Vec3 direction_;
+};
+
+// --- Convexity ------------------------------------------------------------------------------------------------------
+
+bool never_turns_right(const Polygon& polygon) {
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (polygon.turn(i, (i + 1) % n, (i + 2) % n) < 0) return false;
+  return true;
+}
+
+// Whether the fan from the first corner turns around it in one direction by no more than half a turn: no triangle is
+// turned over, those without area are the first ones or the last, and the corner does not come again.
+bool fan_opens_once(const Polygon& polygon) {
+  enum { kBefore, kWithin, kBehind } place = kBefore;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    if (polygon.corners()[i] == polygon.corners()[0]) return false;
+    const int turn = polygon.turn(0, i, i + 1);
+    if (turn < 0 || (turn > 0 && place == kBehind) || polygon.turn(0, 1, i + 1) < 0) return false;
+    if (turn > 0) place = kWithin;
+    if (turn == 0 && place == kWithin) place = kBehind;
+  }
+  return true;
+}
+
+bool is_on_a_line(const Polygon& polygon) {
+  const std::vector<Vec3>& corners = polygon.corners();
+  constexpr std::array kAxes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+    return std::all_of(kAxes.begin(), kAxes.end(),
+                       [&](const Vec3& axis) { return exact_turn(axis, corners[0], corners[1], corner) == 0; });
+  });
+}
+
+// Whether the fan from the first corner is right as it is. A polygon on a line has no inside that a fan could leave.
+bool is_convex(const Polygon& polygon) {
+  if (polygon.size() <= 3) return true;
+  if (!polygon.has_area()) return is_on_a_line(polygon);
+  return never_turns_right(polygon) && fan_opens_once(polygon);
+}
+
+// --- Cutting --------------------------------------------------------------------------------------------------------
+
+// Indices of the fans whose polygons are not convex.
+std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const PolygonFan> fans) {
+  std::vector<char> concave(fans.size());
+  constexpr std::size_t kGrain = 4096;
+  parallel_for(fans.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) concave[i] = !is_convex(Polygon(mesh, fans[i]));
+  });
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < fans.size(); ++i)
+    if (concave[i]) found.push_back(i);
+  return found;
+}
+
+std::optional<std::vector<Triangle>> cut(const TriangleMesh& mesh, const PolygonFan& fan) {
+  Polygon polygon(mesh, fan);
+  if (!polygon.has_area()) return std::nullopt;
+  polygon.rotate_to_first();
+  auto triangles = cut_polygon(polygon.corners(), polygon.direction());
+  if (!triangles) return std::nullopt;
+  for (Triangle& triangle : *triangles)
+    for (std::uint32_t& corner : triangle) corner = polygon.vertex(corner);
+  return triangles;
+}
+
+}  // namespace
+
+std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans) {
+  const DefaultFloatingPoint default_environment;
+  std::uint64_t bad = 0;
+  std::vector<Triangle> result;
+  std::uint64_t taken = 0;  // of the mesh's triangles, into the result
+  const auto take_until = [&](std::uint64_t end) {
+    const auto first = mesh.triangles.begin();
+    result.insert(result.end(), first + static_cast<std::ptrdiff_t>(taken), first + static_cast<std::ptrdiff_t>(end));
+  };
+  for (const std::size_t i : find_concave(mesh, fans)) {
+    const auto triangles = cut(mesh, fans[i]);
+    if (!triangles) {
+      ++bad;
+      continue;
+    }
+    take_until(fans[i].first);
+    result.insert(result.end(), triangles->begin(), triangles->end());
+    taken = fans[i].first + fans[i].triangles;
+  }
+  if (taken == 0) return bad;
+  take_until(mesh.triangles.size());
+  mesh.triangles = std::move(result);
+  return bad;
+}
+
+}  // namespace raycone

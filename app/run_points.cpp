@@ -66,7 +66,10 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
 
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });
-  timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
+  timed(report.seconds.prepare, [&] {
+    prepare_engine(evaluator.winding_number(), command.field, limits);
+    evaluator.prepare_points();
+  });
   report.exterior_edges = evaluator.winding_number().exterior_edges();
   const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size(),
                                                                 description_of(report, command.field, command.output));

@@ -18,14 +18,18 @@ inline constexpr int kMaxThreads = 4096;
 // Bytes that `ulimit -v` leaves to this process, or seven eighths of those that the machine and the cgroup do.
 [[nodiscard]] std::uint64_t available_memory();
 
-// Makes allocations from here on fail with std::bad_alloc once they exceed `bytes`, not counting what libraries and
-// `threads` threads map without using it.
-void cap_memory(std::uint64_t bytes, int threads);
+// Makes allocations fail with std::bad_alloc before more than `bytes` are resident in this process, code and libraries
+// included. What is mapped at the time of the call and was never touched, such as stacks of threads that run, is taken
+// to stay so; so are `untouched` bytes that are yet to be mapped. Never more than `ulimit -d` allowed at the start.
+void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 
 // Largest resident size so far, in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
 
-// Throws LimitError with both numbers if `more` bytes on top of what is in use exceed `limit`. `name`: the file
+// Bytes that are resident now, with what code and stacks will take yet.
+[[nodiscard]] double memory_in_use();
+
+// Throws LimitError with both numbers if `more` bytes on top of memory_in_use() exceed `limit`. `name`: the file
 // concerned.
 void check_memory(const std::string& name, double more, std::uint64_t limit);
 

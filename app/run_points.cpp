@@ -40,6 +40,13 @@ void evaluate_points(const FieldEvaluator& evaluator, PointReader& reader, Point
   }
 }
 
+// Refuses meshes that cannot fit, before any work on them.
+void check_points_memory(const PointsCommand& command, const TriangleMesh& mesh, const RunLimits& limits) {
+  constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
+  if (command.field.engine != RayEngine::kScan) return;
+  check_memory(command.mesh.path, kPerTriangle * static_cast<double>(mesh.triangles.size()), limits.memory());
+}
+
 // Null where points are to be drawn, which takes the mesh.
 std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
   return command.sample ? nullptr : open_points(command.points, command.reading);
@@ -64,9 +71,13 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
     reader = timed(report.seconds.prepare, [&] { return draw_points(report.mesh, mesh, *command.sample); });
   }
 
+  check_points_memory(command, mesh, limits);
   const TriangleMesh original = mesh_to_verify(mesh, command.field);
   const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });
-  timed(report.seconds.prepare, [&] { evaluator.prepare_points(); });
+  timed(report.seconds.prepare, [&] {
+    prepare_engine(evaluator.winding_number(), command.field, limits);
+    evaluator.prepare_points();
+  });
   report.exterior_edges = evaluator.winding_number().exterior_edges();
   const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size(),
                                                                 description_of(report, command.field, command.output));

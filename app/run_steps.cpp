@@ -1,5 +1,8 @@
 #include "app/run_steps.h"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <new>
 #include <system_error>
@@ -21,6 +24,13 @@ bool are_one_regular_file(const std::string& a, const std::string& b) {
   return a != "-" && b != "-" && std::filesystem::is_regular_file(a, error) && std::filesystem::equivalent(a, b, error);
 }
 
+// Each thread may have an arena, and none uses what is free in another one's.
+void share_arenas(std::uint64_t memory) {
+  constexpr std::uint64_t kPerArena = std::uint64_t{64} << 20;
+  constexpr std::uint64_t kMostArenas = 64;
+  mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(memory / kPerArena, 1, kMostArenas)));
+}
+
 }  // namespace
 
 RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
@@ -28,7 +38,10 @@ RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
       memory_(options.memory_limit ? *options.memory_limit : available_memory()),
       thread_limit_(threads_) {
   if (options.timeout) start_timeout(*options.timeout, mesh);
-  cap_memory(memory_, threads_);
+  share_arenas(memory_);
+  prime_threads();  // the cap takes the stacks that are mapped for untouched
+  check_memory(mesh, 0.0, memory_);
+  cap_memory(memory_);
 }
 
 void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
@@ -58,6 +71,14 @@ void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::s
       }
     }
   }
+}
+
+void prepare_engine(const WindingNumberEvaluator& evaluator, const FieldOptions& field, const RunLimits& limits) {
+  constexpr double kMappedByEmbree = 192.0 * 1024 * 1024;
+  if (field.engine != RayEngine::kEmbree) return;
+  cap_memory(limits.memory(), kMappedByEmbree);
+  evaluator.prepare_points();
+  cap_memory(limits.memory());
 }
 
 SideFiles open_side_files(const OutputFiles& output) {

@@ -75,6 +75,9 @@ void warn(const std::vector<std::string>& warnings, const RunOptions& options, c
 // The mesh that verification will need beside the evaluator's own; empty where none is asked for.
 [[nodiscard]] TriangleMesh mesh_to_verify(const TriangleMesh& mesh, const FieldOptions& field);
 
+// Where Embree is asked for, prepares it, which maps much memory and touches little.
+void prepare_engine(const WindingNumberEvaluator& evaluator, const FieldOptions& field, const RunLimits& limits);
+
 // Writes the `files` about the run, and prints its summary. Throws OutputError.
 void publish(const RunReport& report, const RunOptions& options, const SideFiles& files);
 

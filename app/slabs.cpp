@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lattice_sums.h"
+
 namespace raycone {
 namespace {
-
-constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
 
 // OpenVDB stores blocks of 8^3 voxels.
 constexpr double kLeafSide = 8.0;
@@ -42,13 +42,18 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
   return 0.0;
 }
 
+double bytes_per_sample(const FieldOptions& options) {
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample;
+}
+
 }  // namespace
 
-LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first) {
+LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
+                       std::int64_t samples) {
   LatticeBlock slab = whole(lattice);
   const auto a = static_cast<std::size_t>(axis);
   slab.counts[a] = 1;
-  const std::int64_t layers = std::max<std::int64_t>(kSlabSamples / slab.size(), 1);
+  const std::int64_t layers = std::max<std::int64_t>(samples / slab.size(), 1);
   std::int64_t end = floor_to_multiple(first + layers, alignment);
   if (end <= first) end = floor_to_multiple(first, alignment) + alignment;
   slab.first[a] = first;
@@ -56,8 +61,13 @@ LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment,
   return slab;
 }
 
+std::int64_t slab_samples(const FieldOptions& options, double left) {
+  const double samples = left / 3 / bytes_per_sample(options);
+  return static_cast<std::int64_t>(std::clamp(samples, 1.0, static_cast<double>(kSlabSamples)));
+}
+
 double slab_memory(const LatticeBlock& slab, const FieldOptions& options) {
-  return static_cast<double>(FieldSamples::bytes_per_sample(options)) * static_cast<double>(slab.size());
+  return bytes_per_sample(options) * static_cast<double>(slab.size());
 }
 
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {

@@ -9,11 +9,18 @@
 
 namespace raycone {
 
-// The slab of `lattice` that starts at index `first` along `axis`: as many whole layers as make up about 2^22 samples,
-// ending where a multiple of `alignment` begins or at the lattice's end; at least one layer, or one aligned group.
-[[nodiscard]] LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first);
+// Samples of a slab where nothing speaks against it.
+inline constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
 
-// Bytes that the numbers of a slab take.
+// The slab of `lattice` that starts at index `first` along `axis`: as many whole layers as make up about `samples`,
+// ending where a multiple of `alignment` begins or at the lattice's end; at least one layer, or one aligned group.
+[[nodiscard]] LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
+                                     std::int64_t samples = kSlabSamples);
+
+// Samples of slabs that take a third of `left` bytes, at most kSlabSamples.
+[[nodiscard]] std::int64_t slab_samples(const FieldOptions& options, double left);
+
+// Bytes that a slab takes: its numbers, and what is needed to find and to write them.
 [[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options);
 
 // Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding

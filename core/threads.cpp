@@ -6,8 +6,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "core/floating_point.h"
 
@@ -26,10 +29,6 @@ int thread_count() {
   return std::min(static_cast<int>(allowed), tbb::this_task_arena::max_concurrency());
 }
 
-void prime_threads() {
-  parallel_for(1, 1, [](std::size_t, std::size_t) {});
-}
-
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
   try {
@@ -41,6 +40,34 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     // All that tells TBB's exception from others.
     if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
     throw;
+  }
+}
+
+namespace {
+
+constexpr int kPatience = 100'000;  // looks; a system that starts no more threads goes on with fewer
+
+// TBB starts a worker for what is enqueued even where one thread is allowed, and OpenVDB enqueues: where it could not
+// be started then, the process would be terminated.
+void start_worker_for_enqueued() {
+  const auto done = std::make_shared<std::atomic<bool>>(false);
+  tbb::task_arena().enqueue([done] { *done = true; });
+  for (int looks = 0; !*done && looks < kPatience; ++looks) std::this_thread::yield();
+}
+
+}  // namespace
+
+void prime_threads() {
+  const auto count = static_cast<std::size_t>(thread_count());
+  std::atomic<std::size_t> started = 0;
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    started += end - begin;
+    for (int looks = 0; started < count && looks < kPatience; ++looks) std::this_thread::yield();
+  });
+  try {
+    start_worker_for_enqueued();
+  } catch (const std::runtime_error&) {
+    throw ThreadsUnavailable();
   }
 }
 

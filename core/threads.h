@@ -31,9 +31,9 @@ class ThreadLimit {
 // Threads that parallel_for() may use, at least 1.
 [[nodiscard]] int thread_count();
 
-// Makes TBB start its workers in the floating-point environment of the caller. Call before Embree is first used:
-// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero. Throws
-// ThreadsUnavailable.
+// Starts all of TBB's workers, in the floating-point environment of the caller. Call before Embree is first used:
+// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero; and before memory is
+// capped, so that none lacks a stack later. Throws ThreadsUnavailable.
 void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default

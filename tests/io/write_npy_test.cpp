@@ -90,6 +90,34 @@ TEST(WriteNpy, LatticesDoNotDependOnTheSlabs) {
   EXPECT_EQ(lattice_npy(lattice, values, false, 1), lattice_npy(lattice, values, false, 19));
 }
 
+TEST(WriteNpy, LatticesWithLargePlanesComeInSlabsAcrossYToFilesAndAcrossXToPipes) {
+  const Lattice lattice = lattice_of(5, 300, 301);
+  const std::vector<double> values = random_values(5 * 300 * 301);
+  const TemporaryDirectory directory;
+  OutputFile file(directory / "unused.npy"), other("/dev/null");
+  EXPECT_EQ(make_lattice_writer(FieldFormat::kNpy, file, lattice, {})->slab_axis(), 1);
+  EXPECT_EQ(make_lattice_writer(FieldFormat::kNpy, other, lattice, {})->slab_axis(), 0);
+  const std::string expected = lattice_npy(lattice, values, false, 300);
+  for (const std::int64_t thickness : {1, 7, 299}) EXPECT_EQ(lattice_npy(lattice, values, false, thickness), expected);
+  const auto actual = elements<float>(expected);
+  ASSERT_EQ(actual.size(), values.size());
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const std::size_t i = n % 5, j = n / 5 % 300, k = n / 1500;
+    ASSERT_EQ(actual[(i * 300 + j) * 301 + k], static_cast<float>(values[n])) << n;
+  }
+}
+
+TEST(WriteNpy, LatticesOfOneLayerAreCutWhereThatIsPossible) {
+  const TemporaryDirectory directory;
+  OutputFile file(directory / "unused.npy");
+  const auto axis = [&](const Lattice& lattice) {
+    return make_lattice_writer(FieldFormat::kNpy, file, lattice, {})->slab_axis();
+  };
+  EXPECT_EQ(axis(lattice_of(100'000, 1, 100'000)), 0) << "one slab across y would be all of it";
+  EXPECT_EQ(axis(lattice_of(2048, 2048, 2048)), 1);
+  EXPECT_EQ(axis(lattice_of(1000, 50, 50)), 0) << "slabs across x hold long rows";
+}
+
 // Writes `values` as points to `name`, announcing their number or not.
 void write_points(const std::string& name, const std::vector<double>& values, bool announce) {
   OutputFile output(name);

@@ -31,8 +31,8 @@ MUTANTS = [
     Mutant("on_surface_not_at_ties", "on the surface: also where the line meets an edge or vertex", [
         ("core/crossings.cpp", "  } else {\n    find_samples_on(a, b, c, row, result);\n", "")]),
     Mutant("on_surface_cancels", "on the surface: duplicated faces that cancel are surface, too", [
-        ("core/winding_number.cpp", "on_surface[i] = true;", "on_surface[i] = !on_surface[i];"),
-        ("core/winding_number.cpp", "diagnostics.on_surface[i] = 1;", "diagnostics.on_surface[i] ^= 1;")]),
+        ("core/lattice_sums.cpp", "std::atomic_ref(flags[first + i]).store(1, std::memory_order_relaxed);",
+         "flags[first + i] ^= 1;")]),
     Mutant("degenerate_without_box", "ties count for triangles whose closed box meets the closed ray", [
         ("core/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle\n", "")]),
 
@@ -72,6 +72,16 @@ MUTANTS = [
         ("core/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
         ("core/threads.cpp", "    const DefaultFloatingPoint guard;\n", "")]),
+
+    # --- Slabs and sums ---
+    Mutant("slabs_miss_triangles", "a slab looks at all triangles that meet it", [
+        ("core/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
+    Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
+        ("core/lattice_sums.cpp", "  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);\n", "")]),
+    Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [
+        ("core/winding_number.cpp", "  across.evaluate(engine, values);\n", "")]),
+    Mutant("level_edges_dropped", "only an edge along the rays has no argument anywhere", [
+        ("core/cone.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
 
     # --- The cone's factors ---
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [

@@ -191,12 +191,6 @@ MUTANTS = [
          "return square(rest);")]),
     Mutant("inside_of_two_edges", "a point is inside of a thin triangle within all three edges", [
         ("core/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
-    Mutant("needles_of_rounded_edges", "the plane of a needle takes more digits than its edges' doubles", [
-        ("core/double_double.h", "return {exact_sum(a.x, -b.x), exact_sum(a.y, -b.y), exact_sum(a.z, -b.z)};",
-         "return {{a.x - b.x}, {a.y - b.y}, {a.z - b.z}};")]),
-    Mutant("needles_of_rounded_products", "nor do doubles' products do", [
-        ("core/double_double.h", "return exact_sum_of_ordered(product.high, product.low + (a.high * b.low + a.low * b.high));",
-         "return {product.high};")]),
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 ]

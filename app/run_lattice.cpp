@@ -76,7 +76,7 @@ void evaluate_lattice(const FieldEvaluator& evaluator, LatticeWriter& writer, Fi
   for (LatticeBlock slab = first_slab(lattice, writer); slab.size() > 0; slab = slab_behind(slab, lattice, writer)) {
     report.tally +=
         timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, samples, progress.done()); });
-    draw.offer(lattice, slab, samples.winding_numbers());
+    draw.offer(lattice, slab, samples.numbers());
     if (observe) observe(lattice, slab, samples.winding_numbers());
     timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
   }
@@ -108,8 +108,10 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
   FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_lattice(evaluator, *writer, samples, draw, observe, progress, report);
-  if (command.field.verify > 0)
-    report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
+  if (command.field.verify > 0) {
+    report.verification = verify(report.mesh, original, evaluator, command.field,
+                                 command.field.band * report.lattice->spacing.x, draw.samples());
+  }
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   progress.stop();
   total.reset();

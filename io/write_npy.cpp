@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/threads.h"
 #include "io/format_writers.h"
 #include "io/interleaved.h"
+#include "io/narrowing.h"
 #include "io/npy_header.h"
 #include "io/spool_file.h"
 #include "io/write_npy.h"
@@ -57,7 +59,8 @@ std::vector<Element> transposed(const LatticeBlock& block, std::span<const Numbe
 template <typename Element>
 class NpyLatticeWriter final : public LatticeWriter {
  public:
-  NpyLatticeWriter(OutputFile& output, const Lattice& lattice) : output_(output) {
+  NpyLatticeWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& field)
+      : output_(output), narrowing_(field) {
     const std::string shape = '(' + std::to_string(lattice.counts[0]) + ", " + std::to_string(lattice.counts[1]) +
                               ", " + std::to_string(lattice.counts[2]) + ')';
     const std::string header = npy_header(kDescriptor<Element>, shape);
@@ -68,8 +71,11 @@ class NpyLatticeWriter final : public LatticeWriter {
   std::int64_t slab_alignment() const override { return 1; }
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
+    const auto* const reals = std::get_if<std::span<const double>>(&fields.front());
     const std::vector<Element> elements =
-        std::visit([&](const auto& values) { return transposed<Element>(block, values); }, fields.front());
+        std::is_same_v<Element, float> && reals
+            ? transposed<Element>(block, std::span<const float>(narrowed(narrowing_, *reals)))
+            : std::visit([&](const auto& values) { return transposed<Element>(block, values); }, fields.front());
     output_.write(elements.data(), elements.size() * sizeof(Element));
   }
 
@@ -77,6 +83,7 @@ class NpyLatticeWriter final : public LatticeWriter {
 
  private:
   OutputFile& output_;
+  Narrowing narrowing_;
 };
 
 // Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.
@@ -141,11 +148,10 @@ class NpyPointWriter final : public PointWriter {
 std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                        const OutputDescription& description) {
   if (description.fields.size() != 1) throw std::logic_error("NPY holds one field of a lattice");
-  if (description.fields.front().kind == FieldKind::kFlag) {
-    return std::make_unique<NpyLatticeWriter<std::uint8_t>>(output, lattice);
-  }
-  if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice);
-  return std::make_unique<NpyLatticeWriter<float>>(output, lattice);
+  const FieldDescription& field = description.fields.front();
+  if (field.kind == FieldKind::kFlag) return std::make_unique<NpyLatticeWriter<std::uint8_t>>(output, lattice, field);
+  if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice, field);
+  return std::make_unique<NpyLatticeWriter<float>>(output, lattice, field);
 }
 
 void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values) {

@@ -198,6 +198,36 @@ TEST(HalfIntegers, AreNotThoseOfTheRim) {
   }
 }
 
+// One corner of the rim is 2^-43 out of the plane of the others.
+TEST(HalfIntegers, AreNotThoseOfARimThatIsNearlyFlat) {
+  Random random(7);
+  const TriangleMesh upright = cup(random, 12);
+  for (std::size_t corner = 0; corner < 12; ++corner) {
+    for (const double by : {0x1p-43, -0x1p-43}) {
+      TriangleMesh bent = upright;
+      bent.vertices[corner].z = by;
+      for (const Symmetry& symmetry : {symmetries().front(), symmetries()[9], symmetries()[18]}) {
+        const double w = evaluate(transformed(bent, symmetry), {symmetry({0.1, 0.2, 0})})[0];
+        EXPECT_EQ(w > 0.5, by > 0) << corner;
+        EXPECT_EQ(w < 0.5, by < 0) << corner;
+      }
+    }
+  }
+}
+
+// From the rim of a sheet that rises by 2^-43 along the rays, the perturbed query sees it under that angle: the value
+// misses 1/2 by it.
+TEST(HalfIntegers, AreMissedByTheAngleOfASheetAtItsRim) {
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0x1p-43, 0}, {1, 0x1p-43, 1}, {0, 0, 1}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const TriangleMesh& mesh : {sheet, test::reversed(sheet)}) {
+    const double w = evaluate(mesh, {{0, 0, 0.5}})[0];
+    EXPECT_NEAR(std::abs(w), 0.5 - 0x1p-43 / (2 * 3.14159265358979), 1e-16);
+    EXPECT_NEAR(w, static_cast<double>(perturbed_direct_sum(mesh, {0, 0, 0.5}).value), 1e-16);
+  }
+}
+
 // The bound that decides which values are looked at again holds, for a soup's and a sheet's edges alike.
 TEST(HalfIntegers, AreLookedForWithinABoundThatHolds) {
   Random random(6);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "app/fields.h"
 #include "core/distance.h"
@@ -32,7 +33,13 @@ class FieldEvaluator {
   Tally evaluate(std::span<const Vec3> points, FieldSamples& samples, std::atomic<std::uint64_t>* done) const;
 
  private:
+  // Where a rule is asked for: winding numbers on the side of its threshold on which the true ones are. `point` gives
+  // that of a sample's number.
+  template <class Point>
+  void settle(const Point& point, FieldSamples& samples) const;
+
   double band_;
+  std::vector<double> thresholds_;             // that values may have to be settled for
   std::optional<DistanceEvaluator> distance_;  // where wanted
   WindingNumberEvaluator winding_number_;
 };

@@ -52,7 +52,7 @@ OptionGroup field_group() {
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--band", "B", "Voxels on either side of the surface where sdf is not cut off (default: 3)"},
            {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value; slow if open"},
-           {"--verify", "N", "Check N samples against direct sums in 113 bits: 2.7 us per triangle and sample"},
+           {"--verify", "N", "Check N samples by definition in 113 bits, all fields: 2.7 us per triangle and sample"},
            {"--engine", "auto|scan|embree", "How crossings are found; for tests, values do not depend on it"},
            {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, values do not depend on them"}}};
 }

@@ -28,6 +28,8 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
       description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
       break;
   }
+  description.threshold = rule.threshold;
+  description.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
   return description;
 }
 

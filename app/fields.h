@@ -36,7 +36,7 @@ struct FieldOptions {
   Rule rule;
   double band = 3.0;  // voxels; of distances on lattices
   bool diagnostics = false;
-  std::uint64_t verify = 0;             // samples to be computed again as direct sums
+  std::uint64_t verify = 0;             // samples to be computed again by definition
   RayEngine engine = RayEngine::kScan;  // no value depends on these two
   SimdLevel simd = SimdLevel::kBest;
 
@@ -49,6 +49,14 @@ struct FieldOptions {
 
 // The latter part of that list alone.
 [[nodiscard]] std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options);
+
+// Numbers of some samples; those of fields that are not wanted are missing.
+struct SampleNumbers {
+  std::span<const double> winding{};
+  std::span<const std::uint8_t> inside{};
+  std::span<const double> density{};
+  std::span<const double> distance{};  // signed
+};
 
 // Room for all numbers of a slab or batch of samples.
 class FieldSamples {
@@ -70,6 +78,9 @@ class FieldSamples {
 
   // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
   void derive();
+
+  // After derive().
+  [[nodiscard]] SampleNumbers numbers() const { return {winding_numbers_, inside_, density_, distances_}; }
 
   // As describe_fields() lists them.
   [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }

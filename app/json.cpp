@@ -28,11 +28,15 @@ Json to_object(const Seconds& seconds) {
 }
 
 Json to_object(const Verification& verification) {
-  return {{"samples", verification.samples},
-          {"on_surface", verification.on_surface},
-          {"unresolved", verification.unresolved},
-          {"largest_difference", verification.largest_difference},
-          {"largest_bound", verification.largest_bound}};
+  Json object = {{"samples", verification.samples},
+                 {"on_surface", verification.on_surface},
+                 {"unresolved", verification.unresolved},
+                 {"largest_difference", verification.largest_difference},
+                 {"largest_bound", verification.largest_bound}};
+  if (verification.largest_distance_difference) {
+    object["largest_distance_difference"] = *verification.largest_distance_difference;
+  }
+  return object;
 }
 
 // File names may hold any bytes; JSON is UTF-8.

@@ -19,9 +19,13 @@ std::string counted(std::uint64_t count, const std::string& singular) {
 std::string verification_clause(const Verification& verification) {
   char difference[64];
   std::snprintf(difference, sizeof difference, ", largest difference %.2g", verification.largest_difference);
-  const std::uint64_t skipped = verification.on_surface + verification.unresolved;
-  return ", verified " + counted(verification.samples, "sample") + difference +
-         (skipped > 0 ? ", skipped " + std::to_string(skipped) + " at the surface" : "");
+  std::string clause = ", verified " + counted(verification.samples, "sample") + difference;
+  if (verification.largest_distance_difference) {
+    std::snprintf(difference, sizeof difference, " (of distances %.2g)", *verification.largest_distance_difference);
+    clause += difference;
+  }
+  if (verification.unresolved > 0) clause += ", skipped " + std::to_string(verification.unresolved) + " unresolved";
+  return clause;
 }
 
 }  // namespace

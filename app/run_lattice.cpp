@@ -112,7 +112,7 @@ void evaluate_lattice(const FieldEvaluator& evaluator, const Slabs& slabs, Latti
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
     report.tally +=
         timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, samples, progress.done()); });
-    draw.offer(lattice, slab, samples.winding_numbers());
+    draw.offer(lattice, slab, samples.numbers());
     if (observe) observe(lattice, slab, samples.winding_numbers());
     timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
   }
@@ -146,8 +146,10 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
   SampleDraw draw(command.field.verify);
   const Slabs slabs = slabs_of(command, *writer, report, limits);
   evaluate_lattice(evaluator, slabs, *writer, samples, draw, observe, progress, report);
-  if (command.field.verify > 0)
-    report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
+  if (command.field.verify > 0) {
+    report.verification = verify(report.mesh, original, evaluator, command.field,
+                                 command.field.band * report.lattice->spacing.x, draw.samples());
+  }
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   progress.stop();
   total.reset();

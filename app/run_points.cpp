@@ -2,6 +2,7 @@
 #include "app/run_points.h"
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -34,7 +35,7 @@ void evaluate_points(const FieldEvaluator& evaluator, PointReader& reader, Point
     if (!timed(report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
     report.tally +=
         timed(report.seconds.evaluate, [&] { return evaluator.evaluate(points, samples, progress.done()); });
-    draw.offer(points, samples.winding_numbers());
+    draw.offer(points, samples.numbers());
     timed(report.seconds.write, [&] { writer.write(points, samples.fields()); });
     report.samples += points.size();
   }
@@ -86,8 +87,10 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   FieldSamples samples(command.field);
   SampleDraw draw(command.field.verify);
   evaluate_points(evaluator, *reader, *writer, samples, draw, progress, report);
-  if (command.field.verify > 0)
-    report.verification = verify(report.mesh, original, evaluator.winding_number(), draw.samples());
+  if (command.field.verify > 0) {
+    report.verification = verify(report.mesh, original, evaluator, command.field,
+                                 std::numeric_limits<double>::infinity(), draw.samples());
+  }
   timed(report.seconds.write, [&] { writer->finish(); });
   progress.stop();
   total.reset();

@@ -46,7 +46,7 @@ class Cone {
   [[nodiscard]] double total_multiplicity() const { return total_multiplicity_; }
 
   // `w`, a winding number of the mesh at q that is off by less than 1/8, on the side of `critical` on which the true
-  // one is; `critical` itself where 113 bits cannot tell. Takes as long as thousands of winding numbers, but no longer
+  // one is; `critical` itself where that cannot be told. Takes as long as thousands of winding numbers, but no longer
   // than two where the answer is a half-integer because all exterior edges lie in one plane with q.
   [[nodiscard]] double settle(const Vec3& q, double w, double critical) const;
 

@@ -11,6 +11,7 @@
 #include "core/near_edge.h"
 #include "core/predicates.h"
 #include "core/tied_factor.h"
+#include "core/winding_number.h"
 
 namespace raycone {
 namespace {
@@ -61,7 +62,8 @@ int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real r
   const Real w = whole - cone.rest;
   const Real difference = w - static_cast<Real>(critical);
   const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
-  const Real error = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
+  const Real bound = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
+  const Real error = bound > Real(kIndistinguishable) ? bound : Real(kIndistinguishable);
   return static_cast<int>(difference > error) - static_cast<int>(difference < -error);
 }
 

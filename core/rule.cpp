@@ -13,6 +13,13 @@ double nearest_integer(double w) {
 
 }  // namespace
 
+std::vector<double> thresholds_to_settle(const Rule& rule) {
+  const bool has_threshold = rule.kind == RuleKind::kThreshold || rule.kind == RuleKind::kAbs;
+  if (!has_threshold || std::abs(std::fmod(rule.threshold, 1.0)) == 0.5) return {};
+  if (rule.kind == RuleKind::kThreshold) return {rule.threshold};
+  return rule.threshold > 0.0 ? std::vector{rule.threshold, -rule.threshold} : std::vector<double>{};
+}
+
 bool holds(const Rule& rule, double w) {
   switch (rule.kind) {
     case RuleKind::kThreshold:

@@ -1,6 +1,8 @@
 // Rules that turn a winding number into inside or outside.
 #pragma once
 
+#include <vector>
+
 namespace raycone {
 
 enum class RuleKind {
@@ -15,6 +17,10 @@ struct Rule {
   RuleKind kind = RuleKind::kThreshold;
   double threshold = 0.5;  // finite
 };
+
+// Where the rule changes its mind, but for half-integers, which values are exactly where they are meant
+// (core/winding_number.h): to be settled before holds() is asked.
+[[nodiscard]] std::vector<double> thresholds_to_settle(const Rule& rule);
 
 // Whether a point of winding number `w` (finite) is inside. Exact.
 [[nodiscard]] bool holds(const Rule& rule, double w);

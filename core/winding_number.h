@@ -45,6 +45,10 @@ enum class Summation {
   kTriangles,  // the solid angles of all triangles
 };
 
+// Numbers of turns that differ by less count as equal where rules decide, so that no decision depends on how well 113
+// bits tell them apart: of meshes and samples that are not next to 0, values that differ at all differ by more.
+inline constexpr double kIndistinguishable = 1e-24;
+
 class WindingNumberEvaluator {
  public:
   // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/weld.h); vertices used
@@ -60,8 +64,8 @@ class WindingNumberEvaluator {
 
   // Winding numbers (turns) of a block of `lattice`, x fastest: values.size() == block.size(). `done`, where given,
   // grows by one per finished sample while the call runs. Uses the threads that ThreadLimit allows; the values depend
-  // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes a hundred times
-  // as long for open meshes. Const calls may run concurrently.
+  // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes a hundred
+  // times as long for open meshes. Const calls may run concurrently.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
@@ -69,10 +73,11 @@ class WindingNumberEvaluator {
   // more, from a million edges on: doubles of such values can do no better.
   [[nodiscard]] double accuracy() const;
 
-  // Half-integers are exact: a value is 0.5, 1.5, -0.5 ... where 113 bits cannot tell w from it, and otherwise on the
-  // same side of it as w. For another number settle() says as much: `value`, evaluated at `point`, on the side of
-  // `critical` on which w is, or `critical` itself. It takes a millisecond and more for each thousand exterior edges,
-  // and changes nothing where the two differ by more than doubt() turns, which is 0 for closed meshes. Thread-safe.
+  // Half-integers are exact: a value is 0.5, 1.5, -0.5 ... where w cannot be told from it (kIndistinguishable), and
+  // otherwise on the same side of it as w. For another number settle() says as much: `value`, evaluated at `point`, on
+  // the side of `critical` on which w is, or `critical` itself. It takes a millisecond and more for each thousand
+  // exterior edges, and changes nothing where the two differ by more than doubt() turns, which is 0 for closed meshes.
+  // Thread-safe.
   [[nodiscard]] double doubt() const;
   [[nodiscard]] double settle(const Vec3& point, double value, double critical) const;
 

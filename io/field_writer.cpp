@@ -71,9 +71,9 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
     case FieldFormat::kNpz:
       return make_npz_point_writer(output, size.value(), description);
     case FieldFormat::kRawDouble:
-      return make_raw_point_writer(output, RawPrecision::kDouble);
+      return make_raw_point_writer(output, RawPrecision::kDouble, description);
     case FieldFormat::kRawFloat:
-      return make_raw_point_writer(output, RawPrecision::kFloat);
+      return make_raw_point_writer(output, RawPrecision::kFloat, description);
     case FieldFormat::kNone:
       return std::make_unique<NoPointWriter>();
     case FieldFormat::kVdb:

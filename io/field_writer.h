@@ -49,6 +49,8 @@ struct FieldDescription {
   FieldKind kind = FieldKind::kReal;
   double background = 0.0;  // the value far away, where grids hold nothing
   std::string rule;         // empty where the field has none: not written then
+  double threshold = 0.5;   // fewer digits keep numbers on its side (io/narrowing.h); for kReal and kDensity
+  bool threshold_of_magnitude = false;  // and so their magnitudes
 };
 
 // What a file holds and says about itself.

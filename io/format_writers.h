@@ -28,6 +28,7 @@ namespace raycone {
 
 [[nodiscard]] std::unique_ptr<PointWriter> make_npz_point_writer(OutputFile& output, std::uint64_t size,
                                                                  const OutputDescription& description);
-[[nodiscard]] std::unique_ptr<PointWriter> make_raw_point_writer(OutputFile& output, RawPrecision precision);
+[[nodiscard]] std::unique_ptr<PointWriter> make_raw_point_writer(OutputFile& output, RawPrecision precision,
+                                                                 const OutputDescription& description);
 
 }  // namespace raycone

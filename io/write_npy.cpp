@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/threads.h"
 #include "io/format_writers.h"
 #include "io/interleaved.h"
+#include "io/narrowing.h"
 #include "io/npy_header.h"
 #include "io/spool_file.h"
 #include "io/write_npy.h"
@@ -27,10 +29,16 @@ constexpr const char* kDescriptor<double> = "<f8";
 template <>
 constexpr const char* kDescriptor<std::uint8_t> = "|b1";  // flags: NumPy's bool is a byte
 
+template <typename Element, typename Number>
+Element stored(const Narrowing& narrowing, Number value) {
+  if constexpr (std::is_same_v<Element, float> && std::is_same_v<Number, double>) return narrowing(value);
+  return static_cast<Element>(value);
+}
+
 // The elements of the samples [x_begin, x_end) along x of an x-fastest block with z fastest instead, -0 as 0.
 template <typename Element, typename Number>
-void transpose(const LatticeBlock& block, std::span<const Number> values, std::size_t x_begin, std::size_t x_end,
-               std::vector<Element>& elements) {
+void transpose(const Narrowing& narrowing, const LatticeBlock& block, std::span<const Number> values,
+               std::size_t x_begin, std::size_t x_end, std::vector<Element>& elements) {
   constexpr std::size_t kTile = 16;  // a tile's cache lines on both sides fit in the first-level cache
   const auto nx = static_cast<std::size_t>(block.counts[0]);
   const auto ny = static_cast<std::size_t>(block.counts[1]);
@@ -43,7 +51,7 @@ void transpose(const LatticeBlock& block, std::span<const Number> values, std::s
         for (std::size_t x_tile = x_begin; x_tile < x_end; x_tile += kTile) {
           for (std::size_t x = x_tile; x < std::min(x_tile + kTile, x_end); ++x) {
             for (std::size_t z = z_tile; z < z_end; ++z) {
-              const auto element = static_cast<Element>(values[(z * ny + y) * nx + x]);
+              const auto element = stored<Element>(narrowing, values[(z * ny + y) * nx + x]);
               elements[((x - x_begin) * ny + y) * nz + z] = static_cast<Element>(element + Element{0});
             }
           }
@@ -66,8 +74,11 @@ int npy_slab_axis(const Lattice& lattice, bool seekable) {
 template <typename Element>
 class NpyLatticeWriter final : public LatticeWriter {
  public:
-  NpyLatticeWriter(OutputFile& output, const Lattice& lattice)
-      : output_(output), lattice_(lattice), slab_axis_(npy_slab_axis(lattice, output.seekable())) {
+  NpyLatticeWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& field)
+      : output_(output),
+        lattice_(lattice),
+        narrowing_(field),
+        slab_axis_(npy_slab_axis(lattice, output.seekable())) {
     const std::string shape = '(' + std::to_string(lattice.counts[0]) + ", " + std::to_string(lattice.counts[1]) +
                               ", " + std::to_string(lattice.counts[2]) + ')';
     const std::string header = npy_header(kDescriptor<Element>, shape);
@@ -94,7 +105,7 @@ class NpyLatticeWriter final : public LatticeWriter {
     const std::size_t planes = std::max(kElements / plane, kLeastPlanes);
     for (std::size_t begin = 0; begin < nx; begin += planes) {
       const std::size_t end = std::min(begin + planes, nx);
-      transpose<Element>(block, values, begin, end, elements_);
+      transpose<Element>(narrowing_, block, values, begin, end, elements_);
       write_elements(block, begin, end, plane);
     }
   }
@@ -114,6 +125,7 @@ class NpyLatticeWriter final : public LatticeWriter {
 
   OutputFile& output_;
   Lattice lattice_;
+  Narrowing narrowing_;
   int slab_axis_;
   std::size_t header_size_ = 0;
   std::vector<Element> elements_;
@@ -181,11 +193,10 @@ class NpyPointWriter final : public PointWriter {
 std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                        const OutputDescription& description) {
   if (description.fields.size() != 1) throw std::logic_error("NPY holds one field of a lattice");
-  if (description.fields.front().kind == FieldKind::kFlag) {
-    return std::make_unique<NpyLatticeWriter<std::uint8_t>>(output, lattice);
-  }
-  if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice);
-  return std::make_unique<NpyLatticeWriter<float>>(output, lattice);
+  const FieldDescription& field = description.fields.front();
+  if (field.kind == FieldKind::kFlag) return std::make_unique<NpyLatticeWriter<std::uint8_t>>(output, lattice, field);
+  if (description.double_precision) return std::make_unique<NpyLatticeWriter<double>>(output, lattice, field);
+  return std::make_unique<NpyLatticeWriter<float>>(output, lattice, field);
 }
 
 void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values) {

@@ -20,6 +20,7 @@
 
 #include "core/threads.h"
 #include "io/file_error.h"
+#include "io/narrowing.h"
 #include "io/read_file.h"
 #include "io/seekable_output.h"
 #include "io/vdb_module.h"
@@ -352,6 +353,21 @@ float as_half(float value) {
   return openvdb::io::truncateRealToHalf(std::clamp(value, -largest, largest));
 }
 
+// The next value of 16 bits, upwards.
+float next_half(float value) {
+  openvdb::math::half half(value);
+  const unsigned short bits = half.bits();
+  constexpr unsigned short kSign = 0x8000;
+  const bool negative = (bits & kSign) != 0 && bits != kSign;
+  half.setBits(static_cast<unsigned short>(negative ? bits - 1 : (bits & ~kSign) + 1));
+  return half;
+}
+
+Narrowing narrowing_of(const FieldDescription& field, bool half) {
+  if (!half) return Narrowing(field);
+  return {field, [](double value) { return as_half(static_cast<float>(value)); }, &next_half};
+}
+
 // The least value that is no narrower than the band, also as checkLevelSet measures it: in voxels.
 template <typename Value>
 Value level_set_background(double band_width, double voxel, bool half) {
@@ -402,6 +418,7 @@ class TypedGridBuilder final : public GridBuilder {
       : field_(field),
         lattice_(lattice),
         half_(description.half_precision && is_value(field.kind)),
+        narrowing_(narrowing_of(field, half_)),
         background_(background_of<Value>(field, lattice, half_)),
         layer_(lattice, background_, field.kind == FieldKind::kDistance),
         grid_(Grid::create(background_)) {
@@ -434,8 +451,9 @@ class TypedGridBuilder final : public GridBuilder {
     } else {
       // Adding 0 turns -0 into 0.
       gather(slab, numbers, [this](Number number) {
-        const Value value = static_cast<Value>(number) + Value{0};
-        return half_ ? static_cast<Value>(as_half(static_cast<float>(value))) : value;
+        const bool is_float = std::is_same_v<Value, float>;
+        const auto value = static_cast<double>(number);
+        return (is_float ? static_cast<Value>(narrowing_(value)) : static_cast<Value>(value)) + Value{0};
       });
     }
   }
@@ -456,6 +474,7 @@ class TypedGridBuilder final : public GridBuilder {
   FieldDescription field_;
   Lattice lattice_;
   bool half_;  // 16 bits in the file
+  Narrowing narrowing_;
   Value background_;
   LeafLayer<typename Grid::TreeType> layer_;
   typename Grid::Ptr grid_;

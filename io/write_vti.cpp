@@ -13,6 +13,7 @@
 
 #include "io/file_error.h"
 #include "io/format_writers.h"
+#include "io/narrowing.h"
 #include "io/seekable_output.h"
 
 namespace raycone {
@@ -85,7 +86,7 @@ class VtiWriter final : public LatticeWriter {
       const ElementType type = element_type(field.kind, description.double_precision);
       declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name +
                       "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-      arrays_.push_back({type.size, offset, samples * type.size});
+      arrays_.push_back({type.size, offset, samples * type.size, Narrowing(field)});
       offset += sizeof(ArraySize) + arrays_.back().bytes;
     }
     const std::string extent = extent_of(lattice);
@@ -125,6 +126,7 @@ class VtiWriter final : public LatticeWriter {
     std::size_t element_size;
     std::uint64_t next;  // where in the file its next bytes go
     ArraySize bytes;
+    Narrowing narrowing;
   };
 
   void append(Array& array, const void* data, std::size_t size) {
@@ -150,7 +152,9 @@ class VtiWriter final : public LatticeWriter {
     for (std::size_t begin = 0; begin < numbers.size(); begin += kPiece) {
       elements.clear();
       for (const double number : numbers.subspan(begin, std::min(kPiece, numbers.size() - begin))) {
-        elements.push_back(static_cast<Element>(number) + Element{0});
+        const bool is_float = std::is_same_v<Element, float>;
+        elements.push_back((is_float ? static_cast<Element>(array.narrowing(number)) : static_cast<Element>(number)) +
+                           Element{0});
       }
       append(array, elements.data(), elements.size() * sizeof(Element));
     }

@@ -163,13 +163,13 @@ TEST(HalfIntegers, AreNotTakenForOthers) {
     for (const Symmetry& symmetry : symmetries()) {
       const TriangleMesh mesh = transformed(upright, symmetry);
       std::vector<Vec3> below, above;
-      for (const double distance : {5e-324, 1e-200, 1e-40, 1e-25, 1e-18, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-6}) {
+      for (const double distance : {5e-324, 1e-200, 1e-26, 1e-22, 1e-18, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-6}) {
         below.push_back(symmetry({0.1, 0.2, -distance}));
         above.push_back(symmetry({0.1, 0.2, distance}));
       }
       const std::vector<double> inside = evaluate(mesh, below), outside = evaluate(mesh, above);
       for (std::size_t i = 0; i < inside.size(); ++i) {
-        const bool told = i >= 3;  // 1e-40 is beyond 113 bits
+        const bool told = i >= 3;  // 1e-26 is below kIndistinguishable
         EXPECT_EQ(inside[i] > 0.5, told) << i;
         EXPECT_EQ(outside[i] < 0.5, told) << i;
         EXPECT_GE(inside[i], 0.5);
@@ -195,6 +195,36 @@ TEST(HalfIntegers, AreNotThoseOfTheRim) {
     for (std::size_t i = 0; i < queries.size(); ++i) {
       EXPECT_NEAR(values[i], static_cast<double>(perturbed_direct_sum(mesh, queries[i]).value), 1e-15);
     }
+  }
+}
+
+// One corner of the rim is 2^-43 out of the plane of the others.
+TEST(HalfIntegers, AreNotThoseOfARimThatIsNearlyFlat) {
+  Random random(7);
+  const TriangleMesh upright = cup(random, 12);
+  for (std::size_t corner = 0; corner < 12; ++corner) {
+    for (const double by : {0x1p-43, -0x1p-43}) {
+      TriangleMesh bent = upright;
+      bent.vertices[corner].z = by;
+      for (const Symmetry& symmetry : {symmetries().front(), symmetries()[9], symmetries()[18]}) {
+        const double w = evaluate(transformed(bent, symmetry), {symmetry({0.1, 0.2, 0})})[0];
+        EXPECT_EQ(w > 0.5, by > 0) << corner;
+        EXPECT_EQ(w < 0.5, by < 0) << corner;
+      }
+    }
+  }
+}
+
+// From the rim of a sheet that rises by 2^-43 along the rays, the perturbed query sees it under that angle: the value
+// misses 1/2 by it.
+TEST(HalfIntegers, AreMissedByTheAngleOfASheetAtItsRim) {
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0x1p-43, 0}, {1, 0x1p-43, 1}, {0, 0, 1}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const TriangleMesh& mesh : {sheet, test::reversed(sheet)}) {
+    const double w = evaluate(mesh, {{0, 0, 0.5}})[0];
+    EXPECT_NEAR(std::abs(w), 0.5 - 0x1p-43 / (2 * 3.14159265358979), 1e-16);
+    EXPECT_NEAR(w, static_cast<double>(perturbed_direct_sum(mesh, {0, 0, 0.5}).value), 1e-16);
   }
 }
 

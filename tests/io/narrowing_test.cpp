@@ -1,0 +1,131 @@
+#include "io/narrowing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/rule.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+
+FieldDescription winding_of(const Rule& rule) {
+  FieldDescription field;
+  field.threshold = rule.threshold;
+  field.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
+  return field;
+}
+
+// Values about each number where a rule may change its mind: within some steps of double, and of float.
+std::vector<double> values_about(const std::vector<double>& numbers) {
+  std::vector<double> values;
+  for (const double number : numbers) {
+    for (const double sign : {1.0, -1.0}) {
+      double up = sign * number, down = sign * number;
+      for (int step = 0; step < 3; ++step) {
+        values.insert(values.end(), {up, down});
+        up = std::nextafter(up, HUGE_VAL);
+        down = std::nextafter(down, -HUGE_VAL);
+      }
+      for (const double by : {1e-15, 1e-12, 1e-9, 1e-8, 5.9e-8, 6e-8, 1.2e-7, 1e-6, 2.4e-4, 4.9e-4, 1e-3}) {
+        values.insert(values.end(), {sign * number + by, sign * number - by});
+      }
+    }
+  }
+  return values;
+}
+
+const std::vector<Rule> kRules = {
+    {},
+    {RuleKind::kThreshold, 0.3},
+    {RuleKind::kThreshold, 0.7},
+    {RuleKind::kThreshold, -0.1},
+    {RuleKind::kThreshold, 0.0},
+    {RuleKind::kThreshold, 1.0},
+    {RuleKind::kThreshold, 1.0 / 3},
+    {RuleKind::kThreshold, 1e-30},
+    {RuleKind::kAbs, 0.3},
+    {RuleKind::kAbs, 0.7},
+    {RuleKind::kAbs, 0.5},
+    {RuleKind::kNonzero, 0.5},
+    {RuleKind::kPositive, 0.5},
+    {RuleKind::kOdd, 0.5},
+};
+const std::vector<double> kCritical = {0.5, 1.5, 2.5, 7.5, 0.3, 0.7, 0.1, 0.0, 1.0, 1.0 / 3, 1e-30};
+
+// As readers compare: a float with the threshold as double, or as float.
+bool holds_as_float(const Rule& rule, float value) {
+  return holds({rule.kind, static_cast<double>(static_cast<float>(rule.threshold))}, value);
+}
+
+TEST(Narrowing, ChangesNoRulesMind) {
+  Random random(1);
+  std::vector<double> values = values_about(kCritical);
+  for (int n = 0; n < 2000; ++n) values.push_back(test::uniform(random, -4, 4));
+  int moved = 0;
+  for (const Rule& rule : kRules) {
+    const Narrowing narrowing(winding_of(rule));
+    for (const double value : values) {
+      const float stored = narrowing(value);
+      EXPECT_EQ(holds(rule, static_cast<double>(stored)), holds(rule, value)) << value << " as " << stored;
+      EXPECT_EQ(holds_as_float(rule, stored), holds(rule, value)) << value << " as " << stored;
+      EXPECT_LE(std::abs(static_cast<double>(stored) - value), 2e-7 * std::max(1.0, std::abs(value)));
+      moved += stored != static_cast<float>(value);
+    }
+  }
+  EXPECT_GT(moved, 100);  // the nearest float would have been wrong
+}
+
+TEST(Narrowing, IsTheNearestFloatElsewhere) {
+  Random random(2);
+  const Narrowing narrowing(winding_of({}));
+  for (int n = 0; n < 10000; ++n) {
+    const double value = test::uniform(random, -0.49, 0.49);
+    EXPECT_EQ(narrowing(value), static_cast<float>(value));
+  }
+  for (const double value : {0.5, -0.5, 1.0, 0.0, 12.5, 0x1p100, -0x1p60 - 0.5}) {
+    EXPECT_EQ(narrowing(value), static_cast<float>(value));
+  }
+}
+
+TEST(Narrowing, LeavesOtherFieldsAlone) {
+  FieldDescription field = winding_of({});
+  for (const FieldKind kind : {FieldKind::kDistance, FieldKind::kCount, FieldKind::kBound}) {
+    field.kind = kind;
+    const double below = std::nextafter(0.5, 0.0);
+    EXPECT_EQ(Narrowing(field)(below), 0.5F);
+  }
+}
+
+// Eleven binary digits, as halves between 2^-14 and 65504 have.
+float nearest_short(double value) {
+  if (value == 0.0) return 0.0F;
+  const int exponent = std::ilogb(value) - 10;
+  return static_cast<float>(std::scalbn(std::nearbyint(std::scalbn(value, -exponent)), exponent));
+}
+float next_short(float value) {
+  const float step = std::scalbn(1.0F, (value == 0.0F ? -14 : std::ilogb(value)) - 10);
+  const float power = std::scalbn(1.0F, value == 0.0F ? -14 : std::ilogb(value));
+  return value == -power ? value + step / 2 : value + step;
+}
+
+TEST(Narrowing, TakesAnyNumberOfDigits) {
+  for (const Rule& rule : kRules) {
+    if (rule.threshold == 1e-30) continue;  // beyond their range
+    const Narrowing narrowing(winding_of(rule), &nearest_short, &next_short);
+    for (const double value : values_about({0.5, 1.5, 2.5, 7.5, 0.3, 0.7, 1.0, 1.0 / 3})) {
+      const float stored = narrowing(value);
+      EXPECT_EQ(nearest_short(stored), stored);
+      EXPECT_EQ(holds(rule, static_cast<double>(stored)), holds(rule, value)) << value << " as " << stored;
+      EXPECT_LE(std::abs(static_cast<double>(stored) - value), 2e-3 * std::max(1.0, std::abs(value)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raycone

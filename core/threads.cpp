@@ -30,7 +30,7 @@ void prime_threads() {
   parallel_for(1, 1, [](std::size_t, std::size_t) {});
 }
 
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+static void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
   try {
     tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
@@ -43,5 +43,11 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     throw;
   }
 }
+
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  isolated([&] { run_loop(count, grain, body); });
+}
+
+void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
 
 }  // namespace raycone

@@ -178,6 +178,11 @@ std::uint64_t sample_count(const Lattice& lattice) {
   const auto [x, y, z] = lattice.counts;
   const double samples = static_cast<double>(x) * static_cast<double>(y) * static_cast<double>(z);
   if (!(samples < 0x1p62)) throw LimitError("the lattice would have " + printed(samples) + " samples");
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (lattice.counts[a] <= kMaxBlockSide) continue;
+    throw LimitError("the lattice would have " + std::to_string(lattice.counts[a]) + " samples along " + "xyz"[a] +
+                     ", expected at most " + std::to_string(kMaxBlockSide));
+  }
   return static_cast<std::uint64_t>(x) * static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(z);
 }
 

@@ -48,7 +48,7 @@ struct LatticeRequest {
 // Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, double width);
 
-// Number of samples. Throws LimitError, with the number, where it exceeds 64 bits.
+// Number of samples. Throws LimitError, with the number, where it exceeds 64 bits, or kMaxBlockSide along an axis.
 [[nodiscard]] std::uint64_t sample_count(const Lattice& lattice);
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/check_counts.h"
 #include "core/distance_band.h"
 #include "core/distance_tree.h"
 #include "core/floating_point.h"
@@ -143,6 +144,7 @@ struct DistanceEvaluator::Implementation {
 };
 
 DistanceEvaluator::DistanceEvaluator(const TriangleMesh& mesh) {
+  check_counts(mesh);
   const DefaultFloatingPoint guard;
   implementation_ = std::make_unique<Implementation>(mesh);
 }
@@ -153,7 +155,12 @@ DistanceEvaluator& DistanceEvaluator::operator=(DistanceEvaluator&&) noexcept = 
 void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, double band,
                                  std::span<double> distances) const {
   assert(distances.size() == static_cast<std::size_t>(block.size()));
+  check_counts(block);
   if (distances.empty()) return;
+  if (implementation_->mesh.triangles.empty()) {
+    std::ranges::fill(distances, band);
+    return;
+  }
   const DefaultFloatingPoint guard;
   band = std::min(band, kLargest);
   const LatticeBlock near = implementation_->near_part(lattice, block);
@@ -168,10 +175,16 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
   });
 }
 
-void DistanceEvaluator::prepare_points() const { (void)implementation_->nearest(); }
+void DistanceEvaluator::prepare_points() const {
+  if (!implementation_->mesh.triangles.empty()) (void)implementation_->nearest();
+}
 
 void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double> distances) const {
   assert(distances.size() == points.size());
+  if (implementation_->mesh.triangles.empty()) {
+    std::ranges::fill(distances, std::numeric_limits<double>::infinity());
+    return;
+  }
   prepare_points();  // not within the loop, whose threads would wait for one another
   parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) distances[n] = implementation_->distance_at(points[n]);

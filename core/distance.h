@@ -12,7 +12,8 @@ namespace raycone {
 
 class DistanceEvaluator {
  public:
-  // `mesh` has at least one triangle; vertices used by triangles are finite.
+  // Vertices used by triangles are finite. A mesh without triangles is infinitely far away. Throws std::length_error
+  // for more than kMaxTriangles.
   explicit DistanceEvaluator(const TriangleMesh& mesh);
   ~DistanceEvaluator();
   DistanceEvaluator(DistanceEvaluator&&) noexcept;
@@ -20,7 +21,8 @@ class DistanceEvaluator {
 
   // Distances (world units) of a block of `lattice`, x fastest: to the bit those of points, cut off at `band`;
   // distances.size() == block.size(). Uses the threads that ThreadLimit allows; the distances depend on neither their
-  // number nor the block's extent. Const calls may run concurrently.
+  // number nor the block's extent. Const calls may run concurrently. Throws std::length_error for more than
+  // kMaxBlockSide samples along an axis.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
   // Builds the search tree that points need and lattices do not; else the first evaluation of points does.

@@ -54,7 +54,7 @@ void sort(std::span<Traversal> traversals) {
 
 // By lower vertex, then higher one: a counting sort, then one sort per lower vertex.
 std::vector<Traversal> sorted(std::span<const Traversal> bucket) {
-  std::array<std::uint32_t, kBucketMask + 3> begin{};
+  std::array<std::size_t, kBucketMask + 3> begin{};  // one vertex may have more than 2^32
   for (const Traversal t : bucket) ++begin[low_in_bucket(t) + 2];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<Traversal> all(bucket.size());

@@ -26,6 +26,9 @@ struct Lattice {
   }
 };
 
+// Evaluators count the samples along an axis of a block in 32 bits.
+inline constexpr std::int64_t kMaxBlockSide = 0xFFFFFFFF;
+
 // A box of samples: along axis a those with indices first[a] <= index < first[a] + counts[a] (first in the lattice's
 // own indices, so first >= index_min). Values of a block are stored x fastest, then y, then z.
 struct LatticeBlock {

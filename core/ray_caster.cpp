@@ -127,7 +127,7 @@ void RayCaster::Scene::build() {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
+  isolated([this] { rtcCommitScene(scene); });
   throw_on_error(device);
 }
 

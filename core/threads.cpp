@@ -29,7 +29,7 @@ int thread_count() {
   return std::min(static_cast<int>(allowed), tbb::this_task_arena::max_concurrency());
 }
 
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+static void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
   try {
     tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
@@ -42,6 +42,12 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     throw;
   }
 }
+
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  isolated([&] { run_loop(count, grain, body); });
+}
+
+void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
 
 namespace {
 

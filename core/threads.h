@@ -38,7 +38,12 @@ void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
 // floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
-// where count allows. Exceptions of body propagate. Throws ThreadsUnavailable.
+// where count allows. While the caller waits for other threads it takes no part in other loops: one within the body of
+// another may hold a lock. A lock for which bodies of one loop wait makes them wait in vain, so that what many need is
+// to be built before the loop. Exceptions of body propagate. Throws ThreadsUnavailable.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+// Calls work(), which uses threads by other means than parallel_for(), likewise: it takes no part in loops outside.
+void isolated(const std::function<void()>& work);
 
 }  // namespace raycone

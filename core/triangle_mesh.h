@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace raycone {
 
 // Corners of a triangle as indices into TriangleMesh::vertices; the front side sees them counter-clockwise.
 using Triangle = std::array<std::uint32_t, 3>;
+
+// Evaluators count the triangles at an edge and along a ray in 32 bits, with a sign.
+inline constexpr std::size_t kMaxTriangles = 0x7FFFFFFF;
 
 struct TriangleMesh {
   std::vector<Vec3> vertices;  // some may be unused; an unused one may be non-finite

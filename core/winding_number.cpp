@@ -11,6 +11,7 @@
 
 #include "core/block_parts.h"
 #include "core/buckets.h"
+#include "core/check_counts.h"
 #include "core/cone.h"
 #include "core/crossings.h"
 #include "core/floating_point.h"
@@ -475,6 +476,20 @@ class PointTile {
 
 }  // namespace
 
+// Whether the mesh has triangles; where it has none, all values are set to 0.
+static bool has_values(const TriangleMesh& mesh, std::span<double> values, std::atomic<std::uint64_t>* done,
+                       const Diagnostics* diagnostics) {
+  if (!mesh.triangles.empty()) return true;
+  std::ranges::fill(values, 0.0);
+  if (done) done->fetch_add(values.size(), std::memory_order_relaxed);
+  if (!diagnostics) return false;
+  std::ranges::fill(diagnostics->crossings, 0);
+  std::ranges::fill(diagnostics->degenerate, 0);
+  std::ranges::fill(diagnostics->on_surface, std::uint8_t{0});
+  std::ranges::fill(diagnostics->error_bound, 0.0);
+  return false;
+}
+
 struct WindingNumberEvaluator::Implementation {
   Engine scaled;
 
@@ -492,8 +507,21 @@ struct WindingNumberEvaluator::Implementation {
     return *unscaled;
   }
 
+  // Builds what the points need before the loops over them, within which threads would wait for one another.
+  void prepare_for(std::span<const Vec3> points) const {
+    scaled.prepare_points();
+    std::atomic<bool> exact = true;
+    constexpr std::size_t kPointsPerTask = 4096;
+    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      const auto some = points.subspan(begin, end - begin);
+      if (!std::ranges::all_of(some, [this](const Vec3& p) { return scaled.can_take(p); })) exact = false;
+    });
+    if (!exact) engine_for(false).prepare_points();
+  }
+
   Tally evaluate_batch(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done,
                        const Diagnostics* diagnostics) const {
+    prepare_for(points);
     const CoherentOrder order(scaled, points);
     TallySum total;
     parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
@@ -523,6 +551,7 @@ struct WindingNumberEvaluator::Implementation {
 
 WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level,
                                                Summation summation) {
+  check_counts(mesh);
   const DefaultFloatingPoint guard;
   const PowerOfTwo scale = unit_scale(mesh);
   implementation_ = std::make_unique<Implementation>(std::move(mesh), scale, engine, level, summation);
@@ -547,7 +576,9 @@ double WindingNumberEvaluator::settle(const Vec3& point, double value, double cr
   return engine.cone().settle(engine.to_scale(point), value, critical);
 }
 
-void WindingNumberEvaluator::prepare_points() const { implementation_->scaled.prepare_points(); }
+void WindingNumberEvaluator::prepare_points() const {
+  if (!implementation_->scaled.mesh().triangles.empty()) implementation_->scaled.prepare_points();
+}
 
 // Each part as a block of its own.
 static Tally evaluate_parts(const WindingNumberEvaluator& evaluator, const Lattice& lattice, const LatticeBlock& block,
@@ -564,7 +595,10 @@ static Tally evaluate_parts(const WindingNumberEvaluator& evaluator, const Latti
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
+  check_counts(block);
   assert(values.size() == static_cast<std::size_t>(block.size()));
+  if (block.size() == 0) return {};
+  if (!has_values(implementation_->scaled.mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny
   const std::vector<LatticeBlock> parts =
       parts_alike(lattice, block, [this](double x) { return implementation_->scaled.can_take(x); });
@@ -579,6 +613,7 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
     }
   }
   const Engine& engine = implementation_->engine_for(exact);
+  if (engine.engine() == RayEngine::kEmbree) engine.prepare_points();
   const LatticeRows rows = rows_of(coordinates, engine);
   return evaluate_rows(engine, rows, ordered_slab(engine, lattice, block), values, done, diagnostics);
 }
@@ -586,6 +621,7 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
+  if (!has_values(implementation_->scaled.mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;
   TallySum total;
   constexpr std::size_t kBatch = std::size_t{1} << 17;  // bounds the memory; points enough that neighbours are near

@@ -52,7 +52,8 @@ inline constexpr double kIndistinguishable = 1e-24;
 class WindingNumberEvaluator {
  public:
   // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/weld.h); vertices used
-  // by triangles are finite. Throws std::bad_alloc.
+  // by triangles are finite. The values of a mesh without triangles are 0. Throws std::bad_alloc, and std::length_error
+  // for more than kMaxTriangles.
   explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
                                   SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest);
   ~WindingNumberEvaluator();
@@ -65,7 +66,8 @@ class WindingNumberEvaluator {
   // Winding numbers (turns) of a block of `lattice`, x fastest: values.size() == block.size(). `done`, where given,
   // grows by one per finished sample while the call runs. Uses the threads that ThreadLimit allows; the values depend
   // on neither their number nor the block's extent, nor on whether `diagnostics` are wanted, which takes a hundred
-  // times as long for open meshes. Const calls may run concurrently.
+  // times as long for open meshes. Const calls may run concurrently. Throws std::length_error for more than
+  // kMaxBlockSide samples along an axis.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 

@@ -102,6 +102,10 @@ MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
     if (end == 2) file.sha256 = sha256(bytes);
   });
   if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");
+  if (file.parsed.mesh.triangles.size() > kMaxTriangles) {
+    throw LimitError(path + ": " + std::to_string(file.parsed.mesh.triangles.size()) + " triangles, expected at most " +
+                     std::to_string(kMaxTriangles));
+  }
   transform(file.parsed.mesh.vertices, options);
   if (options.scale != 1.0) check_finite(file.parsed.mesh, path);
   return file;

@@ -229,5 +229,21 @@ TEST(SampleCount, BeyondSixtyFourBitsIsALimitWithTheNumber) {
   }
 }
 
+TEST(SampleCount, BeyondThirtyTwoBitsAlongAnAxisIsALimitWithTheAxis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Lattice lattice;
+    lattice.counts[axis] = 4'294'967'295;
+    EXPECT_EQ(sample_count(lattice), 4'294'967'295U);
+    ++lattice.counts[axis];
+    try {
+      static_cast<void>(sample_count(lattice));
+      FAIL() << "no exception";
+    } catch (const LimitError& error) {
+      EXPECT_EQ(error.what(), std::string("the lattice would have 4294967296 samples along ") + "xyz"[axis] +
+                                  ", expected at most 4294967295");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raycone::test

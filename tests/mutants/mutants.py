@@ -194,6 +194,14 @@ MUTANTS = [
         ("core/exterior_edges.cpp", "return order != 0 ? order < 0 : i < j;", "return order == 0 ? false : i < j;")]),
     Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
         ("core/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
+    Mutant("equal_hashes_are_equal", "vertices are merged by their coordinates, never by a hash alone", [
+        ("core/equal_vertices.cpp", "if (all_equal(vertices, first)) return first;", "return first;")]),
+    Mutant("near_within_a_run", "a vertex joins a representative within the distance, also across runs of coordinates", [
+        ("core/near_vertices.cpp", "runs_[run + 1].first - x <= distance_;", "runs_[run + 1].first - x < 0;")]),
+    Mutant("near_any_representative", "of several representatives within the distance the first is joined", [
+        ("core/near_vertices.cpp", "first = std::min(first, r);", "first = r;")]),
+    Mutant("loops_take_part_in_others", "who waits for a loop within a loop takes no part in the outer one", [
+        ("core/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
     Mutant("error_bound_too_small", "the error bound is rigorous", [
         ("core/winding_number.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -44,11 +45,20 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     }
   };
   std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < thread_count; ++i) threads.emplace_back(work, i);
+  bool available = true;
+  try {
+    for (std::size_t i = 0; i < thread_count; ++i) threads.emplace_back(work, i);
+  } catch (const std::system_error&) {
+    available = false;
+  }
   for (std::thread& thread : threads) thread.join();
+  if (!available) throw ThreadsUnavailable();
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }
 }
+
+// Who waits for these threads does nothing else.
+void isolated(const std::function<void()>& work) { work(); }
 
 }  // namespace raycone

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kTrianglesPerTask = 2048;
 constexpr std::size_t kStrip = 8;  // values of y per task
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
 std::size_t strip_count(const LatticeRows& rows) { return (rows.ys.size() + kStrip - 1) / kStrip; }
 
@@ -33,16 +34,15 @@ class Neighbourhood {
  public:
   Neighbourhood(const Vec3& a, const Vec3& b, const Vec3& c, double band) : triangle_(a, b, c) {
     const std::array<Vec3, 3> corners{a, b, c};
-    double magnitude = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       box_.lower[axis] = std::min({a[axis], b[axis], c[axis]});
       box_.upper[axis] = std::max({a[axis], b[axis], c[axis]});
-      magnitude = std::max({magnitude, std::abs(box_.lower[axis]), std::abs(box_.upper[axis])});
     }
     const Vec3 sides = box_.upper - box_.lower;
-    // More than the roundings of coordinates (1e-16 of their magnitude) and of normals (1e-12 of the sides).
-    reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13 * magnitude;
-    if (!triangle_.is_proper()) return;
+    // More than the roundings of coordinates and distances (1e-15, of coordinates up to 1), and of normals (1e-11 of
+    // the sides).
+    reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13;
+    if (!triangle_.has_plane()) return;
     const Vec3 normal = unit(cross(b - a, c - a));
     add_half_space(normal, a);
     add_half_space(-1.0 * normal, a);
@@ -90,7 +90,7 @@ class Neighbourhood {
 
   TriangleDistance triangle_;
   Box box_;
-  double reach_;  // the band, and more than rounding takes
+  double reach_;  // the band, and more than roundings take
   std::size_t half_spaces_ = 0;
   std::array<Vec3, 5> normals_;
   std::array<double, 5> most_;  // of normal . p
@@ -114,7 +114,7 @@ class Rasterization {
       : mesh_(mesh), rows_(rows), band_(band) {}
 
   void fill(std::span<double> squares) const {
-    std::fill(squares.begin(), squares.end(), std::numeric_limits<double>::infinity());
+    std::fill(squares.begin(), squares.end(), kNowhere);
     const Visitors visitors = visitors_of_strips();
     parallel_for(strip_count(rows_), 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t strip = first; strip < last; ++strip) {
@@ -223,7 +223,7 @@ class Descent {
     const double radius = length(center - corner_of(block));
     const double reach = std::min(band_ + radius, distance + length(center - from)) * kSlack;
     const double square = tree_.squared_distance(center, reach * reach);
-    if (square == std::numeric_limits<double>::infinity()) return;  // no sample is within the band
+    if (square == kNowhere) return;  // no sample is within the band
     const std::size_t axis = block.longest_axis();
     if (block.side(axis) <= kSmall) return fill_rows(block, center, std::sqrt(square));
     const std::size_t middle = block.begin[axis] + (block.side(axis) + 1) / 2;
@@ -236,7 +236,7 @@ class Descent {
 
  private:
   static constexpr std::size_t kSmall = 4;
-  static constexpr double kSlack = 1 + 1e-9;  // more than roundings of distances and coordinates take
+  static constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; the tree adds those of distances
 
   [[nodiscard]] Vec3 corner_of(const Block& block) const {
     return {rows_.xs[block.begin[0]], rows_.ys[block.begin[1]], rows_.zs[block.begin[2]]};
@@ -272,7 +272,6 @@ void rasterize_distances(const TriangleMesh& mesh, const LatticeRows& rows, doub
 }
 
 void descend_to_distances(const DistanceTree& tree, const LatticeRows& rows, double band, std::span<double> squares) {
-  constexpr double kNowhere = std::numeric_limits<double>::infinity();
   std::fill(squares.begin(), squares.end(), kNowhere);
   const Descent descent(tree, rows, band, squares);
   parallel_for(strip_count(rows), 1, [&](std::size_t first, std::size_t last) {

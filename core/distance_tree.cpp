@@ -106,8 +106,6 @@ Box DistanceTree::Node::box() const {
 }
 
 std::array<double, DistanceTree::kWidth> DistanceTree::Node::bounds(const Vec3& p) const {
-  // More than the roundings of the bound and of a triangle's own distance.
-  constexpr double kSlack = 1 - 1e-14;
   std::array<double, kWidth> squares{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double x = p[static_cast<int>(axis)];
@@ -117,7 +115,6 @@ std::array<double, DistanceTree::kWidth> DistanceTree::Node::bounds(const Vec3& 
       squares[i] += outside * outside;
     }
   }
-  for (double& square : squares) square *= kSlack;
   return squares;
 }
 
@@ -142,27 +139,31 @@ double DistanceTree::squared_distance(const Vec3& p, double limit) const {
   std::array<Place, 12 * kWidth> stack;  // at most 7 siblings wait per level, of 11 levels for 2^32 triangles
   std::size_t waiting = 0;
   stack[waiting++] = {0.0, static_cast<std::uint32_t>(levels_.size()), 0};
-  double least = limit;
+  double least = kInfinity;
+  // What a triangle's own distance may be below that of its box, it may be below the least so far.
+  double reach = beyond_error(limit);
   while (waiting > 0) {
     const Place here = stack[--waiting];
-    if (here.bound >= least) continue;
+    if (here.bound >= reach) continue;
     if (here.level == 0) {
       const Triangle& t = mesh_.triangles[triangles_[here.index]];
       const TriangleDistance distance(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
       least = std::min(least, distance.squared(p));
+      if (least == 0.0) return least;
+      reach = std::min(reach, beyond_error(least));
       continue;
     }
     const std::array<double, kWidth> bounds = levels_[here.level - 1][here.index].bounds(p);
     const std::size_t first = waiting;
     for (std::size_t i = 0; i < kWidth; ++i) {
-      if (!(bounds[i] < least)) continue;
+      if (!(bounds[i] < reach)) continue;
       // The farthest first: the nearest is on top of the stack.
       std::size_t at = waiting++;
       for (; at > first && stack[at - 1].bound < bounds[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {bounds[i], here.level - 1, static_cast<std::uint32_t>(here.index * kWidth + i)};
     }
   }
-  return least < limit ? least : kInfinity;
+  return least;
 }
 
 }  // namespace raycone

@@ -15,11 +15,11 @@ namespace raycone {
 // queries are in single precision; this is in double throughout.
 class DistanceTree {
  public:
-  // `mesh` has at least one triangle and outlives the tree; coordinates of its triangles are below 2^500.
+  // `mesh` has at least one triangle and outlives the tree; the largest coordinate of its triangles is in [1/2, 1].
   explicit DistanceTree(const TriangleMesh& mesh);
 
-  // The square of the distance from p to the nearest triangle where that is below `limit`, else infinity. A limit
-  // spares work and does not change the result. Thread-safe.
+  // The least of the triangles' squared distances (core/triangle_distance.h) where that is not above `limit`, nor
+  // beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
   [[nodiscard]] double squared_distance(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const;
 
  private:
@@ -31,7 +31,7 @@ class DistanceTree {
     Node();
     void set(std::size_t child, const Box& box);
     [[nodiscard]] Box box() const;
-    // Squared distances from p, rounded down.
+    // Squared distances from p, but for rounding.
     [[nodiscard]] std::array<double, kWidth> bounds(const Vec3& p) const;
   };
   // Child i of node n of a level is node 8 n + i of the level before it; of the first level, triangle 8 n + i of

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "core/direct_distance.h"
 #include "io/read_mesh.h"
 #include "tests/app/meshes.h"
-#include "tests/support/direct_distance.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
 #include "tests/support/shapes.h"

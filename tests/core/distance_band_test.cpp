@@ -73,11 +73,13 @@ TEST(DistanceBand, OfSlabsOfEveryDirection) {
 // Where coordinates are large beside the triangles, roundings are too.
 TEST(DistanceBand, FarFromTheOrigin) {
   const Vec3 far{4096, 65536, -1048576};
+  const double unit = 0x1p-21;
   LatticeRows rows = rows_of(25, 21, 27, 0.05);
-  for (double& x : rows.xs) x += far.x;
-  for (double& y : rows.ys) y += far.y;
-  for (double& z : rows.zs) z += far.z;
-  expect_both_right(test::moved(test::assorted_triangles(), {1, 1, 1}, far), rows, 0.15);
+  for (double& x : rows.xs) x = unit * (x + far.x);
+  for (double& y : rows.ys) y = unit * (y + far.y);
+  for (double& z : rows.zs) z = unit * (z + far.z);
+  rows.samples_per_unit = 1 / unit * rows.samples_per_unit;
+  expect_both_right(test::moved(test::assorted_triangles(), {unit, unit, unit}, unit * far), rows, 0.15 * unit);
 }
 
 TEST(DistanceBand, SmallTrianglesAreSearchedLargeOnesRasterized) {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/support/direct_distance.h"
+#include "core/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -54,7 +54,7 @@ TEST(Distance, OfPointsIsThatOfTheOracle) {
   const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     // Some dozens of roundings of numbers below 10.
-    EXPECT_NEAR(distances[n], static_cast<double>(test::direct_distance(mesh, points[n])), 1e-13);
+    EXPECT_NEAR(distances[n], static_cast<double>(direct_distance(mesh, points[n])), 1e-13);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(Distance, OfSamplesIsThatOfTheOracleInTheBand) {
     const std::vector<double> distances = band_of(DistanceEvaluator(mesh), lattice, whole(lattice), band);
     const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
     for (std::size_t n = 0; n < points.size(); ++n) {
-      const double expected = static_cast<double>(test::direct_distance(mesh, points[n]));
+      const double expected = static_cast<double>(direct_distance(mesh, points[n]));
       ASSERT_NEAR(distances[n], std::min(expected, band), 1e-13) << voxels << ' ' << n;
     }
   }
@@ -89,6 +89,127 @@ TEST(Distance, OfSamplesAndPointsAgreeBitByBit) {
     EXPECT_GT(in_band, samples.size() / 20);
     EXPECT_LT(in_band, samples.size());
   }
+}
+
+// A cube of the given corners with `cells` x `cells` squares of two triangles on each side.
+TriangleMesh fine_cube(double lower, double upper, int cells) {
+  TriangleMesh mesh;
+  const auto vertex = [&](int axis, double level, int i, int j) {
+    const auto at = [&](int n) { return n == cells ? upper : lower + n * ((upper - lower) / cells); };
+    Vec3 v;
+    v[axis] = level;
+    v[(axis + 1) % 3] = at(i);
+    v[(axis + 2) % 3] = at(j);
+    mesh.vertices.push_back(v);
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double level : {lower, upper}) {
+      for (int i = 0; i < cells; ++i) {
+        for (int j = 0; j < cells; ++j) {
+          const auto a = vertex(axis, level, i, j), b = vertex(axis, level, i + 1, j);
+          const auto c = vertex(axis, level, i + 1, j + 1), d = vertex(axis, level, i, j + 1);
+          mesh.triangles.push_back({a, b, c});
+          mesh.triangles.push_back({a, c, d});
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+// The samples of the lattice are the points' to the bit, whatever the band. Returns how many lie on the surface.
+int expect_points_bit_by_bit(const TriangleMesh& mesh, const Lattice& lattice) {
+  const DistanceEvaluator distance(mesh);
+  const std::vector<double> points = at_points(distance, samples_of(lattice, whole(lattice)));
+  for (const double voxels : {1e-30, 0.5, 1.0, 3.0, 1e30}) {
+    const double band = voxels * lattice.spacing.x;
+    const std::vector<double> samples = band_of(distance, lattice, whole(lattice), band);
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      EXPECT_EQ(samples[n], std::min(points[n], band)) << "sample " << n << " of " << samples.size();
+      if (samples[n] != std::min(points[n], band)) return 0;
+    }
+  }
+  return static_cast<int>(std::ranges::count(points, 0.0));
+}
+
+// Blocks are halved at every remainder, and their middles are samples on faces, edges and vertices.
+TEST(Distance, OfSamplesOnTheSurfaceOfFineMeshes) {
+  const TriangleMesh mesh = fine_cube(0, 1, 16);
+  int on_surface = 0;
+  for (std::int64_t n = 9; n <= 24; ++n) {
+    const double spacing = n % 2 == 0 ? 1.0 / 8 : 1.0 / 12;  // through the vertices of the mesh, or beside them
+    on_surface +=
+        expect_points_bit_by_bit(mesh, {{0, 0, 0}, {spacing, spacing, spacing}, {-3, -n / 2, 1}, {n, n, n / 2}});
+    on_surface +=
+        expect_points_bit_by_bit(mesh, {{0, 0, 0}, {spacing, spacing, spacing}, {0, 0, 0}, {n % 8 + 1, n, 1}});
+  }
+  EXPECT_GT(on_surface, 3000);
+}
+
+// The example of issue 13.
+TEST(Distance, OfTheSidesOfACubeIsZero) {
+  const DistanceEvaluator distance(fine_cube(0, 1, 64));
+  const double h = 1.0 / 45;
+  const Lattice lattice{{0, 0, 0}, {h, h, h}, {-4, -4, -4}, {54, 54, 54}};
+  const std::vector<double> distances = band_of(distance, lattice, whole(lattice), 3 * h);
+  const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+  int on_sides = 0;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const auto [least, most] = std::minmax({points[n].x, points[n].y, points[n].z});
+    if (least < 0 || most > 1 || (least > 0 && most < 1)) continue;
+    ASSERT_EQ(distances[n], 0) << n;
+    ++on_sides;
+  }
+  EXPECT_GT(on_sides, 6 * 44 * 44);
+}
+
+// The mesh is a speck in the middle of the lattice, or lies beyond its last sample.
+TEST(Distance, OfSamplesFarAway) {
+  const double kEverywhere = std::numeric_limits<double>::infinity();
+  const TriangleMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  for (const double size : {1e-290, 1e-150, 1.0, 1e150}) {
+    const TriangleMesh mesh = test::moved(cube, {size, size, size}, {});
+    for (const double reach : {1e3, 3e15, 7e16, 1e20, 1e100, 1e150}) {
+      const double h = reach * size;
+      for (const std::int64_t first : {-1, 0, 1}) {
+        const Lattice lattice{{0, 0, 0}, {h, h, h}, {first, -1, -1}, {3, 3, 3}};
+        expect_points_bit_by_bit(mesh, lattice);
+        const std::vector<double> distances = band_of(DistanceEvaluator(mesh), lattice, whole(lattice), kEverywhere);
+        const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+        for (std::size_t n = 0; n < points.size(); ++n) {
+          const double expected = static_cast<double>(direct_distance(mesh, points[n]));
+          ASSERT_LE(std::abs(distances[n] - expected), 1e-12 * expected) << size << ' ' << reach << ' ' << n;
+        }
+      }
+    }
+  }
+}
+
+TEST(Distance, IsCutOffAtTheBandFarAway) {
+  const DistanceEvaluator distance(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  const Lattice lattice{{0, 0, 0}, {1e20, 1e20, 1e20}, {-1, -1, -1}, {3, 3, 3}};
+  const std::vector<double> distances = band_of(distance, lattice, whole(lattice), 1.5e20);
+  EXPECT_EQ(distances[0], 1.5e20) << "a corner of the lattice, at 1.73e20";
+  EXPECT_DOUBLE_EQ(distances[1], std::sqrt(2.0) * 1e20);
+  EXPECT_EQ(distances[13], 0);
+  EXPECT_EQ(distances[14], 1e20);
+}
+
+TEST(Distance, ToTheOriginAlone) {
+  const TriangleMesh origin{{{0, 0, 0}}, {{0, 0, 0}}};
+  for (const double size : {1e-300, 1e-200, 1.0, 1e300}) {
+    EXPECT_DOUBLE_EQ(at_points(DistanceEvaluator(origin), {{3 * size, 4 * size, 0}})[0], 5 * size);
+    expect_points_bit_by_bit(origin, {{0, 0, 0}, {size, size, size}, {-1, -1, -1}, {3, 3, 3}});
+  }
+}
+
+TEST(Distance, OfNoSamplesIsNothing) {
+  const DistanceEvaluator distance(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  const Lattice lattice = unit_lattice(4);
+  std::vector<double> none;
+  distance.evaluate(lattice, {{0, 0, 0}, {0, 3, 3}}, 1.0, none);
+  distance.evaluate(std::vector<Vec3>{}, none);
 }
 
 TEST(Distance, DoesNotDependOnTheBlock) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/direct_distance.h"
+#include "core/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -43,7 +43,7 @@ TEST(PointSampler, SurfacePointsAreSpreadByArea) {
   const auto points = all(PointSampler(mesh, kBox, {NearSamples{20000, 0.0}}, 1));
   int caps = 0, left_half = 0;
   for (const Vec3& p : points) {
-    EXPECT_LT(test::direct_distance(mesh, p), 1e-15);
+    EXPECT_LT(direct_distance(mesh, p), 1e-15);
     caps += p.z == 0 || p.z == 0.25;
     left_half += p.x < 0.5;
   }

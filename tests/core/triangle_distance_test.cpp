@@ -5,7 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/direct_distance.h"
+#include "core/direct_distance.h"
+#include "tests/property/triangle_cases.h"
 
 namespace raycone {
 namespace {
@@ -18,7 +19,7 @@ class TriangleDistanceTest : public testing::Test {
   // The distance agrees with the oracle within `tolerance`.
   static void expect_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double tolerance) {
     const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}};
-    EXPECT_NEAR(std::sqrt(TriangleDistance(a, b, c).squared(p)), static_cast<double>(test::direct_distance(mesh, p)),
+    EXPECT_NEAR(std::sqrt(TriangleDistance(a, b, c).squared(p)), static_cast<double>(direct_distance(mesh, p)),
                 tolerance);
   }
 
@@ -53,14 +54,40 @@ TEST_F(TriangleDistanceTest, AgreesWithTheOracleNearTheTriangle) {
   }
 }
 
-TEST_F(TriangleDistanceTest, TakesNeedles) {
-  for (int n = 0; n < 20000; ++n) {
-    const Vec3 a = point(), b = point();
-    const double width = std::pow(10.0, -16 * std::abs(number()));
-    const Vec3 c = a + std::abs(number()) * (b - a) + width * point();
-    // Where the angle is s, an error of 1e-16 / s of the place, at most s: never above 1e-8.
-    expect_distance(a, b, c, a + std::abs(number()) * (b - a) + 0.01 * point(), 3e-8);
+TEST_F(TriangleDistanceTest, IsRightForEveryShape) {
+  test::Random random(1);
+  for (int family = 0; family < test::triangle_family_count(); ++family) {
+    for (int n = 0; n < 20000; ++n) {
+      const test::TriangleCase c = test::make_triangle_case(family, random);
+      const double squared = TriangleDistance(c.corners[0], c.corners[1], c.corners[2]).squared(c.query);
+      const test::DistanceError error = error_of(c, std::sqrt(squared));
+      ASSERT_TRUE(error.is_small()) << "family " << family << ", case " << n << ": off by " << error.relative
+                                    << " of itself, by " << error.absolute << " u of the coordinates";
+    }
   }
+}
+
+// The examples of issue 13.
+TEST_F(TriangleDistanceTest, IsRightNextToNeedles) {
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0.75, 1e-5, 0};
+  for (const double height : {1e-17, 4.8e-14, 1e-10, 1e-7}) {
+    for (const double x : {0.25, 0.5, 0.7, 0.9}) expect_distance(a, b, c, {x, 2e-6, height}, 4.5e-16);
+  }
+  const double k = 1.0 / 512;  // a sliver of 300 x 0.006 in its scale
+  const Vec3 d{13 * k, 1 * k, 7 * k}, e{300 * k, 40 * k, 20 * k}, f{150 * k, 20.503 * k, 13.5 * k};
+  const Vec3 normal = cross(e - d, f - d);
+  const Vec3 up = (1e-7 * k / std::sqrt(dot(normal, normal))) * normal;
+  for (const double s : {0.2, 0.3, 0.4}) expect_distance(d, e, f, d + s * (e - d) + s * (f - d) + up, 4.5e-16);
+}
+
+// A control: what is a little wrong is found wrong.
+TEST_F(TriangleDistanceTest, ErrorsAreFound) {
+  test::TriangleCase c{0, {Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0}}, {0.125, 0.125, 0.25}};
+  EXPECT_TRUE(error_of(c, 0.25).is_small());
+  EXPECT_FALSE(error_of(c, 0.25 * (1 + 2e-12)).is_small());
+  c.query.z = 0;
+  EXPECT_TRUE(error_of(c, 1.9 * 0x1p-53).is_small());
+  EXPECT_FALSE(error_of(c, 2.1 * 0x1p-53).is_small());
 }
 
 TEST_F(TriangleDistanceTest, TakesSegmentsAndPoints) {

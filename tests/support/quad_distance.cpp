@@ -30,7 +30,7 @@ Real to_segment(const Vector& p, const Vector& a, const Vector& b) {
 Real to_triangle(const Vector& p, const std::array<Vector, 3>& corners) {
   const Vector normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
   bool above = dot(normal, normal) > 0;
-  Real least = to_segment(p, corners[2], corners[0]);
+  Real least = HUGE_VAL;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector &a = corners[i], &b = corners[(i + 1) % 3];
     least = std::min(least, to_segment(p, a, b));

@@ -23,7 +23,7 @@ struct SampleRequest {
 };
 
 // `name`: the file that `mesh` is from. Throws UsageError where the padding leaves nothing of the box, InputError where
-// points near the surface are asked for and there is none.
+// points near the surface are asked for and there is none, LimitError where points would not be finite.
 [[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
                                                        const SampleRequest& request);
 

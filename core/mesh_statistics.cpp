@@ -1,6 +1,7 @@
 #include "core/mesh_statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "core/edge_uses.h"
@@ -57,12 +58,17 @@ std::uint64_t count_components(const TriangleMesh& mesh) {
 
 // Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
 double signed_volume(const TriangleMesh& mesh) {
+  using Wide = long double;  // for its exponents, too: no product of three coordinates leaves them
   const Box box = bounding_box(mesh);
   const Vec3 centre = 0.5 * box.lower + 0.5 * box.upper;
-  long double sum = 0;
+  const auto from_centre = [&](std::uint32_t v) {
+    const Vec3& p = mesh.vertices[v];
+    return std::array<Wide, 3>{Wide(p.x) - centre.x, Wide(p.y) - centre.y, Wide(p.z) - centre.z};
+  };
+  Wide sum = 0;
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - centre, b = mesh.vertices[t[1]] - centre, c = mesh.vertices[t[2]] - centre;
-    sum += static_cast<long double>(dot(a, cross(b, c)));
+    const auto a = from_centre(t[0]), b = from_centre(t[1]), c = from_centre(t[2]);
+    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
   return static_cast<double>(sum / 6);
 }

@@ -12,7 +12,7 @@
 namespace raycone {
 
 struct UniformSamples {
-  std::uint64_t count = 0;  // in the box
+  std::uint64_t count = 0;  // in the closed box
 };
 struct NearSamples {
   std::uint64_t count = 0;  // on the surface by area, each coordinate then moved by normal noise
@@ -20,22 +20,28 @@ struct NearSamples {
 };
 using SampleGroup = std::variant<UniformSamples, NearSamples>;
 
-// Group after group; each point depends on the mesh, the box, the group, the seed and its number alone.
+// Group after group; each point depends on the mesh, the box, the group, the seed and its number alone. Thread-safe.
 class PointSampler {
  public:
+  // Precondition: at least one triangle.
   PointSampler(const TriangleMesh& mesh, const Box& box, std::vector<SampleGroup> groups, std::uint64_t seed);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   // Whether there is a surface to draw from: not all triangles are degenerate.
-  [[nodiscard]] bool has_area() const { return !areas_.empty() && areas_.back() > 0.0; }
+  [[nodiscard]] bool has_area() const { return areas_.back() > 0.0; }
 
-  // The points number first to first + points.size() - 1. Points near a surface need has_area(). Uses the threads that
-  // ThreadLimit allows.
+  // Whether every point is finite: no box and no noise is so large that coordinates overflow.
+  [[nodiscard]] bool is_finite() const;
+
+  // The points number first to first + points.size() - 1, up to size(). Needs is_finite(), and has_area() for points
+  // near a surface. With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its coordinates.
+  // Faces without area have no points. Uses the threads that ThreadLimit allows.
   void draw(std::uint64_t first, std::span<Vec3> points) const;
 
  private:
   [[nodiscard]] Vec3 point(std::uint64_t number) const;
   [[nodiscard]] Vec3 on_surface(Random& random) const;
+  [[nodiscard]] double noise_of(const NearSamples& near) const;
 
   TriangleMesh mesh_;
   Box box_;

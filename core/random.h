@@ -14,7 +14,8 @@ class Random {
   [[nodiscard]] std::uint64_t bits();
   // In [0, 1), a multiple of 2^-53.
   [[nodiscard]] double uniform();
-  // Of mean 0 and variance 1.
+  // Of mean 0 and variance 1; never farther from 0 than kLargestNormal.
+  static constexpr double kLargestNormal = 12.1;  // sqrt(2 log 2^104): 2^-104 is the least square of the polar method
   [[nodiscard]] double normal();
 
  private:

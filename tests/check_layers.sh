@@ -34,7 +34,7 @@ forbid 'io may include only the data headers of core, and threads.h' "\"(${evalu
 # An oracle that shares code with what it judges shares its errors.
 shared='core/(floating_point|triangle_mesh|vec3)\.h'
 judged=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
-forbid 'oracles must not include what they judge' "\"(${judged%|})\"" tests/support/direct_* tests/support/exact_*
+forbid 'oracles must not include what they judge' "\"(${judged%|})\"" tests/support/direct_* tests/support/exact_* tests/support/quad_*
 
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/(polygon_cut|predicates)\.cpp'

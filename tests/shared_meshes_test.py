@@ -113,4 +113,4 @@ with tempfile.TemporaryDirectory() as scratch, open(manifest, encoding="utf-8") 
         count += 1
 print("\n".join(failures))
 print(f"{count} meshes, {len(failures)} failures")
-sys.exit(1 if failures else 0)
+sys.exit(1 if failures or count == 0 else 0)

@@ -106,39 +106,60 @@ TEST_F(DiagnosticsOption, AnswersEachLineOfAReaderThatWaits) {
   EXPECT_EQ(command.wait().status, 0);
 }
 
-TEST_F(DiagnosticsOption, GridsOfAVdbAreTheColumnsOfTheCsv) {
-  const std::string path = dir_ / "out.vdb";
+// How many rows of a CSV with diagnostics have something to compare.
+struct Compared {
+  int rows = 0, crossed = 0, ties = 0, on_surface = 0, bounded = 0;
+};
+
+Compared compare_grids_with_csv(const std::string& mesh, const std::string& path) {
   const std::vector<std::string> more{"--resolution", "12", "--diagnostics"};
-  std::vector<std::string> to_vdb{"lattice", soup_, "-o", path}, to_csv{"lattice", soup_, "-o", "-"};
+  std::vector<std::string> to_vdb{"lattice", mesh, "-o", path}, to_csv{"lattice", mesh, "-o", "-"};
   to_vdb.insert(to_vdb.end(), more.begin(), more.end());
   to_csv.insert(to_csv.end(), more.begin(), more.end());
-  ASSERT_EQ(run_raycone(to_vdb).status, 0);
+  EXPECT_EQ(run_raycone(to_vdb).status, 0);
   std::istringstream csv(run_raycone(to_csv).out);
   openvdb::initialize();
   openvdb::io::File file(path);
   file.open();
   const auto crossings = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("crossings"));
+  const auto degenerate = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("degenerate"));
   const auto on_surface = openvdb::gridPtrCast<openvdb::BoolGrid>(file.readGrid("on_surface"));
   const auto error_bound = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("error_bound"));
+  Compared compared;
   std::string line;
   std::getline(csv, line);
-  int rows = 0, crossed = 0;
-  for (; std::getline(csv, line); ++rows) {
+  for (; std::getline(csv, line); ++compared.rows) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream row(line);
     openvdb::Coord at;
-    double x, y, z, w, crossings_in_csv, degenerate, on_surface_in_csv, bound;
-    row >> at[0] >> at[1] >> at[2] >> x >> y >> z >> w >> crossings_in_csv >> degenerate >> on_surface_in_csv >> bound;
-    ASSERT_FALSE(row.fail()) << line;
+    double x, y, z, w, crossings_in_csv, degenerate_in_csv, on_surface_in_csv, bound;
+    row >> at[0] >> at[1] >> at[2] >> x >> y >> z >> w >> crossings_in_csv >> degenerate_in_csv >> on_surface_in_csv >>
+        bound;
+    EXPECT_FALSE(row.fail()) << line;
     EXPECT_EQ(static_cast<double>(crossings->tree().getValue(at)), crossings_in_csv);
+    EXPECT_EQ(static_cast<double>(degenerate->tree().getValue(at)), degenerate_in_csv);
     EXPECT_EQ(on_surface->tree().getValue(at), on_surface_in_csv != 0);
-    EXPECT_GE(static_cast<double>(error_bound->tree().getValue(at)), bound);
-    EXPECT_GT(bound, 0.0);
+    const double stored = error_bound->tree().getValue(at);
+    EXPECT_TRUE(stored >= bound && stored <= bound * (1 + 0x1p-22)) << stored << " for " << bound;  // rounded up
     EXPECT_LT(bound, 1e-12);
-    crossed += crossings_in_csv != 0;
+    compared.crossed += crossings_in_csv != 0;
+    compared.ties += degenerate_in_csv != 0;
+    compared.on_surface += on_surface_in_csv != 0;
+    compared.bounded += bound > 0;
   }
-  EXPECT_GT(rows, 1000);
-  EXPECT_GT(crossed, 0);
+  return compared;
+}
+
+TEST_F(DiagnosticsOption, GridsOfAVdbAreTheColumnsOfTheCsv) {
+  const Compared soup = compare_grids_with_csv(soup_, dir_ / "soup.vdb");
+  EXPECT_GT(soup.rows, 1000);
+  EXPECT_GT(soup.crossed, 0);
+  EXPECT_EQ(soup.bounded, soup.rows);
+  const Compared cube = compare_grids_with_csv(cube_, dir_ / "cube.vdb");  // samples on faces, edges and corners
+  EXPECT_EQ(cube.rows, 12 * 12 * 12);
+  EXPECT_EQ(cube.on_surface, 12 * 12 * 12 - 10 * 10 * 10);
+  EXPECT_GT(cube.ties, 100);
+  EXPECT_EQ(cube.bounded, 0);
 }
 
 TEST_F(DiagnosticsOption, NpyOfALatticeIsAUsageErrorThatNamesTheFormats) {

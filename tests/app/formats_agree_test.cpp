@@ -106,6 +106,18 @@ std::string values_of(const std::string& mesh) {
   return result.out;
 }
 
+// Of i,j,k,x,y,z,w,crossings,degenerate,on_surface,error_bound.
+int rows_on_surface(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  int count = 0;
+  while (std::getline(lines, line)) {
+    const std::string until_bound = line.substr(0, line.rfind(','));
+    count += until_bound.ends_with(",1");
+  }
+  return count;
+}
+
 TEST(Formats, GiveTheSameValuesAndFlagsOnTheSurface) {
   const TemporaryDirectory dir;
   Random random(5);
@@ -118,7 +130,7 @@ TEST(Formats, GiveTheSameValuesAndFlagsOnTheSurface) {
   write_text(dir / "mesh.stl", as_stl(mesh));
   write_text(dir / "mesh.gltf", as_gltf(mesh, dir / "mesh.bin"));
   const std::string expected = values_of(dir / "mesh.obj");
-  EXPECT_NE(expected.find(",1,"), std::string::npos) << "no sample on the surface";
+  EXPECT_GT(rows_on_surface(expected), 100);
   for (const char* const file : {"shuffled.obj", "mesh.off", "mesh.ply", "mesh.stl", "mesh.gltf"}) {
     EXPECT_TRUE(values_of(dir / file) == expected) << file;
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -100,6 +101,53 @@ TEST_F(SampleOption, VerifiesAndReports) {
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.err.find(" 50 samples in "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("verified 10 samples"), std::string::npos) << result.err;
+}
+
+// No points that are infinite or no number, with values of which the same holds.
+TEST_F(SampleOption, RefusesWhatDoublesCannotHold) {
+  const std::string huge = dir_ / "huge.obj";
+  write_text(huge, "v -1.7e308 -1.7e308 -1.7e308\nv 1.7e308 0 0\nv 0 1.7e308 1.7e308\nf 1 2 3\n");
+  const std::vector<std::vector<std::string>> commands{{mesh_, "near=3:1e308"},
+                                                       {mesh_, "uniform=3", "--padding", "1.7e308"},
+                                                       {mesh_, "uniform=3", "--bounds", "-1.7e308,0,0,1.7e308,1,1"},
+                                                       {huge, "uniform=3"},
+                                                       {huge, "near=3:0.001"}};
+  for (const std::vector<std::string>& command : commands) {
+    std::vector<std::string> arguments{"points", command[0], "--sample"};
+    arguments.insert(arguments.end(), command.begin() + 1, command.end());
+    const CommandResult result = run_raycone(arguments);
+    EXPECT_EQ(result.status, 4) << command[1];
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find("too large for double precision"), std::string::npos) << result.err;
+  }
+  const CommandResult still = run_raycone({"points", huge, "--sample", "near=3:0", "--field", "winding", "--quiet"});
+  EXPECT_EQ(still.status, 0) << still.err;
+  EXPECT_EQ(std::ranges::count(still.out, '\n'), 4);
+  EXPECT_EQ(still.out.find_first_of("ni"), std::string::npos) << still.out;  // nan, inf
+}
+
+// The head of a longer drawing is a shorter one; a group that comes twice is drawn twice, with other numbers.
+TEST_F(SampleOption, GroupsFollowEachOther) {
+  const std::string twice = sample({"uniform=40,uniform=40"}).out, once = sample({"uniform=80"}).out;
+  EXPECT_EQ(std::ranges::count(once, '\n'), 81);
+  EXPECT_EQ(twice, once);
+  const std::string head = sample({"uniform=40"}).out;
+  EXPECT_EQ(once.substr(0, head.size()), head);
+  EXPECT_EQ(sample({"uniform=40,near=9:0"}).out.substr(0, head.size()), head);
+  EXPECT_NE(sample({"near=9:0,uniform=40"}).out.substr(0, head.size()), head);
+}
+
+TEST_F(SampleOption, SeedsAreWholeNumbersFromZero) {
+  std::set<std::string> drawn;
+  for (const char* const seed : {"0", "1", "2", "9223372036854775807"}) {
+    const CommandResult result = sample({"uniform=3", "--seed", seed});
+    EXPECT_EQ(result.status, 0) << result.err;
+    drawn.insert(result.out);
+  }
+  EXPECT_EQ(drawn.size(), 4U);
+  for (const char* const seed : {"-1", "9223372036854775808", "18446744073709551616", "1.5", "x", ""}) {
+    EXPECT_EQ(sample({"uniform=3", "--seed", seed}).status, 1) << seed;
+  }
 }
 
 TEST_F(SampleOption, RefusesWhatMakesNoSense) {

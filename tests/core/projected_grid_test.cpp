@@ -133,7 +133,11 @@ TEST(ProjectedGrid, FindsWhatAllTrianglesSayAtAnyMagnitude) {
                                                                        {Vec3{0, 0, 0}, Vec3{1, 2, 3}}}) {
     SCOPED_TRACE(std::to_string(std::log10(factors.y)) + " at " + std::to_string(shift.y));
     const TriangleMesh mesh = test::moved(test::sphere(8), factors, shift);
-    (void)check(mesh, queries_about(mesh, random, 60));
+    const Totals totals = check(mesh, queries_about(mesh, random, 60));
+    EXPECT_GT(totals.ties, 50U);
+    if (factors.z != 0) {
+      EXPECT_GT(totals.crossed, 10U);
+    }
   }
 }
 

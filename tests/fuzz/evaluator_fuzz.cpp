@@ -1,6 +1,7 @@
 // libFuzzer target of the evaluator: bytes become a small mesh, queries and a lattice. Every engine must give each
 // query the value of its definition (tests/property/check.h), and each sample of the lattice what it gives it as a
-// point. Distances likewise (tests/property/distance_check.h).
+// point. Distances likewise (tests/property/distance_check.h). Rules hold for these values as their definitions say, and
+// points drawn from the mesh lie on it (tests/property/check_samples.h).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,6 +18,7 @@
 #include "core/weld.h"
 #include "core/winding_number.h"
 #include "tests/property/check.h"
+#include "tests/property/check_samples.h"
 #include "tests/property/distance_check.h"
 
 namespace raycone {
@@ -113,11 +115,17 @@ std::vector<Vec3> points_of(const Lattice& lattice) {
   std::abort();
 }
 
+void check_rules(const TriangleMesh& mesh, const Vec3& point, double value) {
+  if (const auto rule = test::check_rules(value))
+    report(mesh, {point, *rule + " does not hold as its definition says"});
+}
+
 void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
   const std::vector<Vec3> points = points_of(lattice);
   std::vector<double> expected(points.size()), values(points.size());
   for (const Summation summation : {Summation::kCone, Summation::kTriangles}) {
     WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation).evaluate(points, expected);
+    for (std::size_t i = 0; i < points.size(); ++i) check_rules(mesh, points[i], expected[i]);
     for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
       WindingNumberEvaluator(mesh, engine, SimdLevel::kBest, summation).evaluate(lattice, whole(lattice), values);
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -149,5 +157,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Lattice lattice = any_lattice(choices);
   check_lattice(mesh, lattice);
   check_distances(mesh, queries, lattice);
+  if (const auto failure = test::check_samples(mesh, choices.below(256), 4)) report(mesh, *failure);
   return 0;
 }

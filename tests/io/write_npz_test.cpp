@@ -76,11 +76,12 @@ void write_npz(const std::string& path) {
       points.push_back({first + static_cast<double>(i), 0.5, -1});
       w.push_back(0.25 * static_cast<double>(i));
     }
-    const std::vector<std::int64_t> counts(n, -7);
-    const std::vector<std::uint8_t> flags(n, 1);
+    const std::vector<std::int64_t> crossings(n, -7), degenerate(n, 3);
+    const std::vector<std::uint8_t> on_surface(n, 1), inside(n, 0);
     const std::vector<double> bounds(n, 1e-15);
-    writer->write(points, std::vector<FieldValues>{std::span(std::as_const(w)), std::span(counts), std::span(counts),
-                                                   std::span(flags), std::span(bounds), std::span(flags)});
+    writer->write(points,
+                  std::vector<FieldValues>{std::span(std::as_const(w)), std::span(crossings), std::span(degenerate),
+                                           std::span(on_surface), std::span(bounds), std::span(inside)});
   }
   writer->finish();
 }
@@ -97,7 +98,9 @@ TEST(WriteNpz, NumpyLoadsPointsAndFields) {
                              "assert (z['points'] == [[n, 0.5, -1] for n in range(7)]).all()\n"
                              "assert z['w'].tolist() == [0, .25, .5, .75, 0, .25, .5]\n"
                              "assert z['crossings'].dtype == 'i8' and z['crossings'].tolist() == [-7] * 7\n"
-                             "assert z['inside'].dtype == bool and z['inside'].all()\n"
+                             "assert z['degenerate'].dtype == 'i8' and z['degenerate'].tolist() == [3] * 7\n"
+                             "assert z['on_surface'].dtype == bool and z['on_surface'].all()\n"
+                             "assert z['inside'].dtype == bool and not z['inside'].any() and len(z['inside']) == 7\n"
                              "assert z['error_bound'].tolist() == [1e-15] * 7\n",
                              {directory / "out.npz"}),
             "");

@@ -8,6 +8,7 @@
 
 #include "tests/property/cases.h"
 #include "tests/property/check.h"
+#include "tests/property/check_samples.h"
 
 namespace raycone::test {
 namespace {
@@ -24,6 +25,31 @@ TEST_P(Property, HoldsForGeneratedMeshes) {
   EXPECT_GT(counts.degenerate, 100U);  // else the generator has lost its point
   EXPECT_EQ(counts.values, 30U * 64);
   EXPECT_LT(counts.undecided, 20U);  // else a hundredth of the values has been compared with nothing
+}
+
+TEST_P(Property, PointsDrawnFromGeneratedMeshesLieOnThem) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Case c = make_case(GetParam(), seed);
+    const auto failure = check_samples(c.mesh, seed, 10);
+    ASSERT_FALSE(failure) << "seed " << seed << "\n" << describe(c.mesh, *failure);
+  }
+}
+
+// At halves, integers and their neighbours, and anywhere.
+TEST(PropertyOfRules, HoldAsTheirDefinitionsSay) {
+  for (int n = -40; n <= 40; ++n) {
+    const double half = 0.5 * n;
+    for (const double w : {half, std::nextafter(half, 99), std::nextafter(half, -99), half + 0x1p-40, half - 0x1p-30}) {
+      const auto wrong_rule = check_rules(w);
+      ASSERT_FALSE(wrong_rule) << *wrong_rule << " at " << w;
+    }
+  }
+  for (const double w : {5e-324, 0x1p-1000, 1e15 + 0.5, 0x1p52 + 1, 0x1p53, 0x1p53 + 2, 1e300}) {
+    for (const double signed_w : {w, -w}) {
+      const auto wrong_rule = check_rules(signed_w);
+      ASSERT_FALSE(wrong_rule) << *wrong_rule << " at " << w;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, Property, testing::Range(std::size_t{0}, family_count()),

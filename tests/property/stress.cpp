@@ -11,6 +11,7 @@
 
 #include "tests/property/cases.h"
 #include "tests/property/check.h"
+#include "tests/property/check_samples.h"
 
 namespace {
 
@@ -21,6 +22,11 @@ using namespace raycone::test;
 bool run_cases(std::uint64_t seed, CheckCounts& counts) {
   for (std::size_t family = 0; family < family_count(); ++family) {
     const Case c = make_case(family, seed);
+    if (const std::optional<Failure> off_surface = check_samples(c.mesh, seed, 20)) {
+      std::printf("# FAILED: %s, seed %llu\n%s", c.family.c_str(), static_cast<unsigned long long>(seed),
+                  describe(c.mesh, *off_surface).c_str());
+      return false;
+    }
     const std::optional<Failure> failure = check(c.mesh, c.queries, &counts);
     if (!failure) continue;
     const raycone::TriangleMesh small = shrink(c.mesh, failure->query);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/disk_space.h"
 #include "app/field_evaluator.h"
 #include "app/fields.h"
 #include "app/grid_reader.h"
@@ -60,6 +61,7 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, Output
   const FieldFormat format = command.output.format;
   const OutputDescription description = description_of(report, command.field, command.output);
   check_memory(report.mesh, writer_memory(lattice, format, description), limits.memory());
+  output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_lattice_writer(format, output, lattice, description);
   check_memory(report.mesh, slab_memory(first_slab(lattice, *writer), command.field), limits.memory());
   return writer;
@@ -91,6 +93,7 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
+  refuse_to_replace_input(files_written(command.output), report.files_read);
   TriangleMesh mesh =
       timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
   report.warnings = std::move(file.parsed.warnings);

@@ -6,12 +6,22 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <exception>
 #include <stdexcept>
 #include <string_view>
 
 #include "core/floating_point.h"
 
 namespace raycone {
+
+namespace {
+
+// What a loop's body threw. Its own text, which may start with any file's name, must not be taken for TBB's.
+struct BodyException {
+  std::exception_ptr cause;
+};
+
+}  // namespace
 
 struct ThreadLimit::Control {
   tbb::global_control parallelism;
@@ -35,10 +45,16 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   try {
     tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
       const DefaultFloatingPoint guard;
-      body(range.begin(), range.end());
+      try {
+        body(range.begin(), range.end());
+      } catch (...) {
+        throw BodyException{std::current_exception()};
+      }
     });
+  } catch (const BodyException& exception) {
+    std::rethrow_exception(exception.cause);
   } catch (const std::runtime_error& error) {
-    // All that tells TBB's exception from others.
+    // All that tells this exception of TBB's from its others.
     if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
     throw;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/lattice_choice.h"
+#include "app/plain_text.h"
 #include "io/file_error.h"
 
 namespace raycone {
@@ -100,7 +101,7 @@ std::string info_text(const MeshInfo& info, int threads) {
   } catch (const LimitError& error) {
     table.row("no lattice", error.what());
   }
-  return info.mesh + "\n" + table.text();
+  return plain_text(info.mesh, "?") + "\n" + table.text();
 }
 
 }  // namespace raycone

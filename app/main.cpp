@@ -9,6 +9,7 @@
 #include "app/report.h"
 #include "app/run.h"
 #include "app/signals.h"
+#include "app/stack_limit.h"
 
 namespace raycone {
 namespace {
@@ -27,6 +28,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   using namespace raycone;
   set_up_process();
+  if (!ensure_stack()) return static_cast<int>(ExitCode::kLimit);
   try {
     return static_cast<int>(run_words({argv + (argc > 0 ? 1 : 0), argv + argc}));
   } catch (...) {

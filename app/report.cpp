@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 
+#include "app/plain_text.h"
 #include "app/usage_error.h"
 #include "io/file_error.h"
 
@@ -40,14 +41,7 @@ std::string summary_line(const RunReport& report) {
          (report.verification ? verification_clause(*report.verification) : "");
 }
 
-std::string message_line(std::string_view message) {
-  std::string line = "raycone: ";
-  for (const char character : message) {
-    const bool control = static_cast<unsigned char>(character) < 0x20 || character == 0x7f;
-    line += control ? '?' : character;
-  }
-  return line + '\n';
-}
+std::string message_line(std::string_view message) { return "raycone: " + plain_text(message, "?") + '\n'; }
 
 void print_message(std::string_view message) { std::fputs(message_line(message).c_str(), stderr); }
 

@@ -11,6 +11,7 @@
 #include "app/verify.h"
 #include "core/lattice.h"
 #include "core/winding_number.h"
+#include "io/read_mesh.h"
 
 namespace raycone {
 
@@ -25,6 +26,7 @@ struct Seconds {
 struct RunReport {
   std::string mesh;                     // files as named on the command line
   std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
+  std::vector<FileRead> companions;     // what the mesh refers to
   std::string sha256;
   std::string output;
   std::uint64_t vertices = 0;  // as read, before welding
@@ -44,7 +46,8 @@ struct RunReport {
 // asked for, ", verified 100 samples, largest difference 3e-16"
 [[nodiscard]] std::string summary_line(const RunReport& report);
 
-// "raycone: ", `message` and a line feed: one line, whatever bytes its file names hold.
+// "raycone: ", `message` and a line feed: one line that moves no terminal, whatever bytes its file
+// names hold.
 [[nodiscard]] std::string message_line(std::string_view message);
 
 // Writes that line to standard error.

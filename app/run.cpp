@@ -29,33 +29,35 @@ void print(const std::string& text) {
 }
 
 ExitCode run(const LatticeCommand& command, const RunLimits& limits) {
-  refuse_to_replace_input(command.output, {command.mesh.path});
+  std::vector<std::string> inputs{command.mesh.path};
+  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) inputs.push_back(grid->path);
+  refuse_to_replace_input(files_written(command.output), inputs);
   const SideFiles side_files = open_side_files(command.output);
   publish(run_lattice(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
 ExitCode run(const PointsCommand& command, const RunLimits& limits) {
-  refuse_to_replace_input(command.output, {command.mesh.path, command.points});
+  std::vector<std::string> inputs{command.mesh.path};
+  if (!command.sample) inputs.push_back(command.points);
+  refuse_to_replace_input(files_written(command.output), inputs);
   const SideFiles side_files = open_side_files(command.output);
   publish(run_points(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
 ExitCode run(const SliceCommand& command, const RunLimits& limits) {
-  refuse_to_replace_input(command.output, {command.mesh.path});
-  if (command.values) {
-    const std::vector<std::string> others{command.mesh.path, command.output.path, command.output.report.value_or("-"),
-                                          command.output.depfile.value_or("-")};
-    refuse_to_replace_input({.path = *command.values, .report = std::nullopt, .depfile = std::nullopt}, others);
-  }
+  refuse_to_replace_input(files_written(command), {command.mesh.path});
   const SideFiles side_files = open_side_files(command.output);
   publish(run_slice(command, limits), command.run, side_files);
   return ExitCode::kDone;
 }
 
 ExitCode run(const InfoCommand& command, const RunLimits& limits) {
+  const std::vector<WrittenFile> written{{"-", "output"}};
+  refuse_to_replace_input(written, {command.mesh.path});
   const MeshFile file = read(command.mesh, limits);
+  for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
   warn(file.parsed.warnings, command.run, command.mesh.path);
   const TriangleMesh mesh = weld(file.parsed.mesh, command.mesh.weld);
   MeshInfo info;

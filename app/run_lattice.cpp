@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/disk_space.h"
 #include "app/field_evaluator.h"
 #include "app/fields.h"
 #include "app/grid_reader.h"
@@ -91,6 +92,7 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, Output
   const OutputDescription description = description_of(report, command.field, command.output);
   const double of_writer = writer_memory(lattice, format, description);
   check_memory(report.mesh, of_writer, limits.memory());
+  output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, output, lattice, description, limits);
   const LatticeBlock smallest = Slabs(lattice, *writer, 1).first();
   check_memory(report.mesh, of_writer + slab_memory(smallest, command.field), limits.memory());
@@ -127,6 +129,7 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
+  refuse_to_replace_input(files_written(command.output), report.files_read);
   TriangleMesh mesh =
       timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
   report.warnings = std::move(file.parsed.warnings);

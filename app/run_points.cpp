@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/disk_space.h"
 #include "app/field_evaluator.h"
 #include "app/fields.h"
 #include "app/limits.h"
@@ -63,6 +64,7 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
+  refuse_to_replace_input(files_written(command.output), report.files_read);
   if (!command.sample) report.files_read.push_back(command.points);
   report.warnings = std::move(file.parsed.warnings);
   warn(report.warnings, command.run, command.mesh.path);
@@ -80,8 +82,10 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
     evaluator.prepare_points();
   });
   report.exterior_edges = evaluator.winding_number().exterior_edges();
-  const std::unique_ptr<PointWriter> writer = make_point_writer(command.output.format, output, reader->size(),
-                                                                description_of(report, command.field, command.output));
+  const OutputDescription description = description_of(report, command.field, command.output);
+  output.reserve(least_point_file(command.output.format, description, reader->size().value_or(0)));
+  const std::unique_ptr<PointWriter> writer =
+      make_point_writer(command.output.format, output, reader->size(), description);
 
   Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), reader->size());
   FieldSamples samples(command.field);

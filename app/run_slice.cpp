@@ -87,6 +87,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
 
   MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
   describe(file, report);
+  refuse_to_replace_input(files_written(command), report.files_read);
   const TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
   report.warnings = std::move(file.parsed.warnings);
   file.parsed.mesh = {};
@@ -95,6 +96,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
   warn(report.warnings, command.run, command.mesh.path);
   check_slice_memory(slice, report.mesh, limits);
+  if (values_file) values_file->reserve(report.samples * sizeof(double));
 
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(mesh); });
   report.exterior_edges = evaluator.exterior_edges();

@@ -15,14 +15,12 @@
 #include "app/usage_error.h"
 #include "core/polygons.h"
 #include "io/file_error.h"
+#include "io/file_identity.h"
 
 namespace raycone {
 namespace {
 
-bool are_one_regular_file(const std::string& a, const std::string& b) {
-  std::error_code error;  // a file that does not exist is no other
-  return a != "-" && b != "-" && std::filesystem::is_regular_file(a, error) && std::filesystem::equivalent(a, b, error);
-}
+std::string name_of_output(const std::string& path) { return path == "-" ? "standard output" : path; }
 
 // Each thread may have an arena, and none uses what is free in another one's.
 void share_arenas(std::uint64_t memory) {
@@ -55,19 +53,32 @@ void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
   }
 }
 
-void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::string>& inputs) {
-  std::vector<std::pair<std::string, std::string>> written{{output.path, "output"}};
-  if (output.report) written.emplace_back(*output.report, "report");
-  if (output.depfile) written.emplace_back(*output.depfile, "depfile");
+std::vector<WrittenFile> files_written(const OutputFiles& output) {
+  std::vector<WrittenFile> written{{output.path, "output"}};
+  if (output.report) written.push_back({*output.report, "report"});
+  if (output.depfile) written.push_back({*output.depfile, "depfile"});
+  return written;
+}
+
+std::vector<WrittenFile> files_written(const SliceCommand& command) {
+  std::vector<WrittenFile> written = files_written(command.output);
+  if (command.values) written.push_back({*command.values, "values"});
+  return written;
+}
+
+void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {
+  std::vector<std::optional<FileIdentity>> read;
+  for (const std::string& input : inputs) read.push_back(identity_of_input(input));
   for (std::size_t n = 0; n < written.size(); ++n) {
     const auto& [path, role] = written[n];
-    for (const std::string& input : inputs) {
-      if (are_one_regular_file(path, input)) throw UsageError(path + ": is input and " + role);
+    const std::optional<FileIdentity> identity = identity_of_output(path);
+    if (identity && std::ranges::count(read, identity) > 0) {
+      throw UsageError(name_of_output(path) + ": is input and " + role);
     }
     for (std::size_t before = 0; before < n; ++before) {
       const auto& [other, other_role] = written[before];
-      if (path == other || are_one_regular_file(path, other)) {
-        throw UsageError(path + ": is " + other_role + " and " + role);
+      if (path == other || (identity && identity == identity_of_output(other))) {
+        throw UsageError(name_of_output(path) + ": is " + other_role + " and " + role);
       }
     }
   }
@@ -111,7 +122,9 @@ RunReport report_on(const MeshOptions& mesh, const OutputFiles& output, const Ru
 
 void describe(const MeshFile& file, RunReport& report) {
   report.sha256 = file.sha256;
-  report.files_read.insert(report.files_read.end(), file.files_read.begin(), file.files_read.end());
+  report.companions = file.companions;
+  report.files_read.push_back(report.mesh);
+  for (const FileRead& companion : file.companions) report.files_read.push_back(companion.path);
   report.vertices = file.parsed.mesh.vertices.size();
   report.faces = file.parsed.mesh.triangles.size();
 }

@@ -47,9 +47,18 @@ auto within_limits(const RunOptions& options, const std::string& mesh, const Bod
   }
 }
 
-// Throws UsageError where what is written would replace one of `inputs` or another output: a slip of the keyboard must
-// not cost the user an input.
-void refuse_to_replace_input(const OutputFiles& output, const std::vector<std::string>& inputs);
+// What a command writes, and as what: "output", "report", ...
+struct WrittenFile {
+  std::string path;  // "-": standard output
+  std::string role;
+};
+[[nodiscard]] std::vector<WrittenFile> files_written(const OutputFiles& output);
+[[nodiscard]] std::vector<WrittenFile> files_written(const SliceCommand& command);
+
+// Throws UsageError where one of `written` would replace or grow one of `inputs` ("-": standard input) or another of
+// `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,
+// and once more when it is known which files a mesh refers to.
+void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs);
 
 // What is written beside the results; null where not asked for.
 struct SideFiles {

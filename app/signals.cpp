@@ -16,7 +16,7 @@
 
 #include "app/exit_code.h"
 #include "app/report.h"
-#include "io/output_file.h"
+#include "io/temporary_file.h"
 
 namespace raycone {
 namespace {
@@ -72,9 +72,18 @@ extern "C" void time_out(int /*signal*/) {
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_ONSTACK);
   sigfillset(&action.sa_mask);
   sigaction(signal, &action, nullptr);
+}
+
+// The main thread's handlers need a stack of their own where its stack has overflowed.
+void prepare_handler_stack() {
+  static std::array<char, 1U << 16> memory;
+  stack_t stack{};
+  stack.ss_sp = memory.data();
+  stack.ss_size = memory.size();
+  sigaltstack(&stack, nullptr);
 }
 
 bool is_set_to(int signal, void (*handler)(int)) {
@@ -94,6 +103,7 @@ void occupy_standard_descriptors() {
 
 void set_up_process() {
   occupy_standard_descriptors();
+  prepare_handler_stack();
   // What the caller ignores stays ignored, and what a preloaded library handles (profilers, sanitizers) stays its own.
   for (const int signal : kInterruptions) {
     if (is_set_to(signal, SIG_DFL)) handle(signal, clean_up_and_die);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string_view>
@@ -15,6 +16,34 @@
 #include "core/floating_point.h"
 
 namespace raycone {
+namespace {
+
+// What a loop's body threw. Its own text, which may start with any file's name, must not be taken for TBB's.
+struct BodyException {
+  std::exception_ptr cause;
+};
+
+void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
+  try {
+    tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
+      const DefaultFloatingPoint guard;
+      try {
+        body(range.begin(), range.end());
+      } catch (...) {
+        throw BodyException{std::current_exception()};
+      }
+    });
+  } catch (const BodyException& exception) {
+    std::rethrow_exception(exception.cause);
+  } catch (const std::runtime_error& error) {
+    // All that tells this exception of TBB's from its others.
+    if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
+    throw;
+  }
+}
+
+}  // namespace
 
 struct ThreadLimit::Control {
   tbb::global_control parallelism;
@@ -27,20 +56,6 @@ ThreadLimit::~ThreadLimit() = default;
 int thread_count() {
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return std::min(static_cast<int>(allowed), tbb::this_task_arena::max_concurrency());
-}
-
-static void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
-  const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
-  try {
-    tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
-      const DefaultFloatingPoint guard;
-      body(range.begin(), range.end());
-    });
-  } catch (const std::runtime_error& error) {
-    // All that tells TBB's exception from others.
-    if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
-    throw;
-  }
 }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {

@@ -55,12 +55,12 @@ void GltfBudget::spend(std::uint64_t count, std::uint64_t factor) {
 
 GltfBuffers::GltfBuffers(const MeshSource& source, const GltfDocument& document,
                          std::optional<std::string_view> binary_chunk, GltfBudget& budget,
-                         std::vector<std::string>* files_read)
+                         std::vector<FileRead>* companions)
     : source_(source),
       document_(document),
       binary_chunk_(binary_chunk),
       budget_(budget),
-      files_read_(files_read),
+      companions_(companions),
       loaded_(document.buffers.size()) {}
 
 std::string_view GltfBuffers::view(std::size_t index) {
@@ -79,7 +79,7 @@ std::string_view GltfBuffers::load(std::size_t index) {
   const GltfBuffer& buffer = document_.buffers[index];
   std::string_view bytes;
   if (buffer.uri) {
-    bytes = owned_.emplace_back(load_gltf_uri(source_, index, *buffer.uri, files_read_));
+    bytes = owned_.emplace_back(load_gltf_uri(source_, index, *buffer.uri, companions_));
   } else if (!buffer.fallback_of.empty()) {
     fail(index, "has no data but those of the extension " + buffer.fallback_of + ", which is not supported");
   } else if (index == 0 && binary_chunk_) {

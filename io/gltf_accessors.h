@@ -37,7 +37,7 @@ class GltfBuffers {
  public:
   // What is passed by reference or pointer must outlive this.
   GltfBuffers(const MeshSource& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
-              GltfBudget& budget, std::vector<std::string>* files_read);
+              GltfBudget& budget, std::vector<FileRead>* companions);
 
   // All bytes of a buffer view. Throws InputError.
   std::string_view view(std::size_t index);
@@ -50,7 +50,7 @@ class GltfBuffers {
   const GltfDocument& document_;
   std::optional<std::string_view> binary_chunk_;
   GltfBudget& budget_;
-  std::vector<std::string>* files_read_;
+  std::vector<FileRead>* companions_;
   std::vector<std::optional<std::string_view>> loaded_;
   std::deque<std::string> owned_;  // keeps its elements where they are
 };
@@ -59,10 +59,10 @@ class GltfBuffers {
 class GltfAccessors {
  public:
   GltfAccessors(const MeshSource& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
-                GltfBudget& budget, std::vector<std::string>* files_read)
+                GltfBudget& budget, std::vector<FileRead>* companions)
       : file_(source.name),
         document_(document),
-        buffers_(source, document, binary_chunk, budget, files_read),
+        buffers_(source, document, binary_chunk, budget, companions),
         budget_(budget) {}
 
   // Quantized ones are returned as the reals that they stand for. Throws InputError.

@@ -142,7 +142,7 @@ std::string decode_data_uri(const MeshSource& source, std::size_t buffer, std::s
 }
 
 std::string read_beside(const MeshSource& source, std::size_t buffer, std::string_view uri,
-                        std::vector<std::string>* files_read) {
+                        std::vector<FileRead>* companions) {
   const std::filesystem::path relative = percent_decoded(uri);
   if (relative.native().find('\0') != std::string::npos) refuse(source, buffer, uri, "is not a file name");
   if (has_scheme(uri) || relative.is_absolute() || leaves_directory(relative)) {
@@ -156,7 +156,7 @@ std::string read_beside(const MeshSource& source, std::size_t buffer, std::strin
     refuse(source, buffer, uri, "is missing, expected a file beside this one");
   }
   std::string bytes = read_file(path.string());
-  if (files_read) files_read->push_back(path.string());
+  if (companions) companions->push_back({path.string(), sha256(bytes)});
   return bytes;
 }
 
@@ -188,9 +188,9 @@ GlbChunks split_glb(const MeshSource& source) {
 }
 
 std::string load_gltf_uri(const MeshSource& source, std::size_t buffer, std::string_view uri,
-                          std::vector<std::string>* files_read) {
+                          std::vector<FileRead>* companions) {
   if (is_data_uri(uri)) return decode_data_uri(source, buffer, uri);
-  return read_beside(source, buffer, uri, files_read);
+  return read_beside(source, buffer, uri, companions);
 }
 
 }  // namespace raycone

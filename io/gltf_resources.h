@@ -25,8 +25,8 @@ struct GlbChunks {
 [[nodiscard]] GlbChunks split_glb(const MeshSource& source);
 
 // The bytes that buffer number `buffer` of the asset refers to by `uri`: decoded, if a data URI, else of a regular file
-// in or below source.directory, whose path is appended to *files_read. Throws InputError.
+// in or below source.directory, whose path is appended to *companions. Throws InputError.
 [[nodiscard]] std::string load_gltf_uri(const MeshSource& source, std::size_t buffer, std::string_view uri,
-                                        std::vector<std::string>* files_read);
+                                        std::vector<FileRead>* companions);
 
 }  // namespace raycone

@@ -1,145 +1,44 @@
 // Atomic output: everything goes to a temporary file in the target's directory, which rename(2) puts in its place.
 #include "io/output_file.h"
 
-#include <dirent.h>
-#include <fcntl.h>
+#include <fcntl.h>  // fallocate
 #include <stdio.h>  // renameat2
-#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <climits>
-#include <cstring>
+#include <cstdio>
+#include <limits>
 #include <optional>
-#include <random>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "io/file_buffer.h"
 #include "io/file_error.h"
+#include "io/file_identity.h"
+#include "io/temporary_file.h"
 
 namespace raycone {
 namespace {
 
-// --- Temporary files that a signal handler must remove. A fixed table in static storage, because a handler may neither
-// allocate nor lock. Where all entries are taken a file is removed by its destructor only.
-
-struct TemporaryEntry {
-  enum State { kFree, kFilling, kInUse };
-  std::atomic<int> state{kFree};
-  std::array<char, PATH_MAX> path{};
-};
-static_assert(std::atomic<int>::is_always_lock_free);
-constexpr std::size_t kMaxTemporaries = 32;
-std::array<TemporaryEntry, kMaxTemporaries> temporaries;
-
-TemporaryEntry* remember_temporary(const std::string& path) {
-  if (path.size() >= PATH_MAX) return nullptr;
-  for (TemporaryEntry& entry : temporaries) {
-    int expected = TemporaryEntry::kFree;
-    if (!entry.state.compare_exchange_strong(expected, TemporaryEntry::kFilling)) continue;
-    std::memcpy(entry.path.data(), path.c_str(), path.size() + 1);
-    entry.state = TemporaryEntry::kInUse;
-    return &entry;
-  }
-  return nullptr;
-}
-
-void forget_temporary(TemporaryEntry* entry) {
-  if (entry != nullptr) entry->state = TemporaryEntry::kFree;
-}
-
-// --- Paths
-
-std::string directory_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? "." : path.substr(0, std::max<std::size_t>(slash, 1));
-}
-
-// Where the symbolic link `path` points to; nothing for all else.
-std::optional<std::string> link_target(const std::string& path) {
-  std::array<char, PATH_MAX> target;
-  const ssize_t length = readlink(path.c_str(), target.data(), target.size());
-  if (length < 0) return std::nullopt;
-  const std::string text(target.data(), static_cast<std::size_t>(length));
-  return text.starts_with('/') ? text : directory_of(path) + '/' + text;
-}
-
-// The number N of /dev/fd/N and /proc/self/fd/N: descriptors that the caller opened for us.
-std::optional<int> descriptor_number(std::string_view path) {
-  for (const std::string_view prefix : {"/dev/fd/", "/proc/self/fd/"}) {
-    if (!path.starts_with(prefix)) continue;
-    const std::string_view digits = path.substr(prefix.size());
-    int number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error == std::errc() && end == digits.data() + digits.size() && number >= 0) return number;
-  }
-  return std::nullopt;
-}
-
-// `path` with symbolic links in its last component followed, also a dangling one, as far as a descriptor's name.
-std::string follow_links(std::string path) {
-  constexpr int kMaxLinks = 40;  // the kernel's own limit
-  for (int i = 0; i < kMaxLinks && !descriptor_number(path); ++i) {
-    std::optional<std::string> target = link_target(path);
-    if (!target) break;
-    path = std::move(*target);
-  }
-  return path;
-}
-
-constexpr std::string_view kTemporaryPrefix = ".raycone-";
-
-// A name in the directory of `target` that nobody else uses: not even a process of the same number on another host or
-// in another container that shares the directory.
-std::string temporary_path(const std::string& target) {
-  std::random_device random;
-  return directory_of(target) + '/' + std::string(kTemporaryPrefix) + std::to_string(getpid()) + '-' +
-         std::to_string(random());
-}
-
-// --- Whose temporary file is it? Its writer holds a lock (flock(2)) until it ends, however it ends.
-
-// Whether the file is now ours: not where remove_abandoned_files() was faster than the lock. File systems without locks
-// leave all as it is.
-bool claim(int descriptor) {
-  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
-  struct stat status {};
-  return fstat(descriptor, &status) != 0 || status.st_nlink > 0;
-}
-
-// Keeps the lock of a descriptor beyond its close(), which tells the last error of writing.
-class LockKeeper {
- public:
-  explicit LockKeeper(int original) : number_(fcntl(original, F_DUPFD_CLOEXEC, 0)) {}
-  ~LockKeeper() {
-    if (number_ >= 0) close(number_);
-  }
-  LockKeeper(const LockKeeper&) = delete;
-  LockKeeper& operator=(const LockKeeper&) = delete;
-
- private:
-  int number_;
-};
-
-void remove_if_abandoned(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(path.c_str());
-  close(descriptor);
-}
-
 // --- Calls that differ from their POSIX namesakes
 
 bool write_to_disk(int descriptor) {
+  int result = -1;
+  do {
+    result = fsync(descriptor);
+  } while (result != 0 && errno == EINTR);
   // Some network and user-space file systems cannot sync, and say so in these two ways.
-  return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS;
+  return result == 0 || errno == EINVAL || errno == ENOSYS;
+}
+
+int open_directory(const std::string& path) {
+  int descriptor = -1;
+  do {
+    descriptor = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  } while (descriptor < 0 && errno == EINTR);
+  return descriptor;
 }
 
 // Gives the open file the permissions of the file that it will replace, if there is one.
@@ -171,6 +70,12 @@ struct OutputFile::State {
     throw OutputError((name == "-" ? "standard output" : name) + ": " + what);
   }
   [[noreturn]] void fail_writing(int error) const { fail("cannot write: " + std::generic_category().message(error)); }
+  [[noreturn]] void fail_reserving(std::uint64_t bytes, double room) const {
+    char text[128];
+    std::snprintf(text, sizeof text, "cannot write: No space left on device: needs %.1f MB or more, %.1f MB are free",
+                  static_cast<double>(bytes) * 1e-6, room * 1e-6);
+    fail(text);
+  }
 
   void open();
   void open_descriptor(int number);
@@ -180,18 +85,17 @@ struct OutputFile::State {
 
   std::string name;
   bool no_clobber;
-  std::string target;               // `name` with links followed
-  std::string temporary;            // empty where written to directly, and once renamed
-  TemporaryEntry* entry = nullptr;  // of `temporary`
+  std::string target;                      // `name` with links followed
+  std::optional<TemporaryFile> temporary;  // absent where written to directly
   int descriptor = -1;
+  int directory = -1;  // of `target`, to be synced; -1 where it may be written to, but not opened
   std::optional<FileBuffer> buffer;
   std::ostream stream{nullptr};
 };
 
 OutputFile::State::~State() {
   if (descriptor >= 0) close(descriptor);
-  if (!temporary.empty()) unlink(temporary.c_str());
-  forget_temporary(entry);
+  if (directory >= 0) close(directory);
 }
 
 void OutputFile::State::open() {
@@ -233,27 +137,26 @@ void OutputFile::State::open_special() {
 }
 
 void OutputFile::State::open_temporary() {
-  constexpr mode_t kMode = 0666;  // less the umask
-  std::string path;
-  for (;;) {
-    path = temporary_path(target);
-    forget_temporary(entry);
-    entry = remember_temporary(path);  // before the file exists: a signal may arrive at any time
-    descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-    if (descriptor >= 0 ? claim(descriptor) : errno != EEXIST) break;
-    if (descriptor >= 0) close(descriptor);
+  const std::string path = directory_of(target);
+  const auto fail_here = [&](int error) {
+    fail("cannot create a file in " + path + ": " + std::generic_category().message(error));
+  };
+  directory = open_directory(path);
+  if (directory < 0 && errno != EACCES) fail_here(errno);
+  try {
+    descriptor = temporary.emplace(path).take_descriptor();
+  } catch (const std::system_error& error) {
+    fail_here(error.code().value());
   }
-  if (descriptor < 0) {
-    fail("cannot create a file in " + directory_of(target) + ": " + std::generic_category().message(errno));
-  }
-  temporary = path;
 }
 
 void OutputFile::State::put_in_place() {
-  const bool renamed = no_clobber ? rename_to_new(temporary, target) : rename(temporary.c_str(), target.c_str()) == 0;
+  const std::string& path = temporary->path();
+  const bool renamed = no_clobber ? rename_to_new(path, target) : rename(path.c_str(), target.c_str()) == 0;
   if (!renamed && errno == EEXIST) fail("already exists (--no-clobber)");
   if (!renamed) fail_writing(errno);
-  temporary.clear();
+  temporary->renamed();
+  if (directory >= 0 && !write_to_disk(directory)) fail_writing(errno);
 }
 
 OutputFile::OutputFile(const std::string& path, bool no_clobber) : state_(std::make_unique<State>(path, no_clobber)) {
@@ -261,6 +164,23 @@ OutputFile::OutputFile(const std::string& path, bool no_clobber) : state_(std::m
 }
 
 OutputFile::~OutputFile() = default;
+
+// Reserved where the file system can do that, which tells of quotas, too, and keeps what others write meanwhile from
+// taking the room; else its word for the free space must do. The file that will be replaced gives no room: it stays
+// until the new one is complete.
+void OutputFile::reserve(std::uint64_t bytes) {
+  struct stat status {};
+  struct statvfs disk {};
+  const int descriptor = state_->descriptor;
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return;
+  const bool told = fstatvfs(descriptor, &disk) == 0 && disk.f_blocks > 0;
+  const double room = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  if (told && room < static_cast<double>(bytes)) state_->fail_reserving(bytes, room);
+  if (!state_->temporary || bytes > static_cast<std::uint64_t>(std::numeric_limits<off_t>::max())) return;
+  if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) return;
+  if (errno == ENOSPC) state_->fail_reserving(bytes, room);
+  if (errno == EDQUOT || errno == EFBIG) state_->fail_writing(errno);
+}
 
 void OutputFile::write(const void* data, std::size_t size) {
   const auto length = static_cast<std::streamsize>(size);
@@ -282,7 +202,7 @@ void OutputFile::overwrite(std::uint64_t offset, const void* data, std::size_t s
   buffer.pubseekpos(end, std::ios_base::out);
 }
 
-bool OutputFile::seekable() const { return !state_->temporary.empty(); }
+bool OutputFile::seekable() const { return state_->temporary.has_value(); }
 
 void OutputFile::flush() {
   if (state_->buffer->pubsync() != 0) state_->fail_writing(state_->buffer->error());
@@ -293,34 +213,15 @@ std::ostream& OutputFile::stream() { return state_->stream; }
 void OutputFile::commit() {
   flush();
   State& state = *state_;
-  if (!state.temporary.empty()) {
+  if (state.temporary) {
     if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
     if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
   }
-  const LockKeeper lock(state.descriptor);
   const int descriptor = std::exchange(state.descriptor, -1);
   if (close(descriptor) != 0 && errno != EINTR) state.fail_writing(errno);
-  if (!state.temporary.empty()) state.put_in_place();
+  if (state.temporary) state.put_in_place();
 }
 
 const std::string& OutputFile::name() const { return state_->name; }
-
-void remove_temporary_files() noexcept {
-  const int saved = errno;
-  for (const TemporaryEntry& entry : temporaries) {
-    if (entry.state == TemporaryEntry::kInUse) unlink(entry.path.data());
-  }
-  errno = saved;
-}
-
-void remove_abandoned_files(const std::string& directory) {
-  DIR* const entries = opendir(directory.c_str());
-  if (entries == nullptr) return;
-  while (const dirent* const entry = readdir(entries)) {
-    if (std::string_view(entry->d_name).starts_with(kTemporaryPrefix))
-      remove_if_abandoned(directory + '/' + entry->d_name);
-  }
-  closedir(entries);
-}
 
 }  // namespace raycone

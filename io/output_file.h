@@ -10,7 +10,7 @@ namespace raycone {
 
 // Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
 // output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
-// removes an uncommitted temporary file; so does remove_temporary_files().
+// removes an uncommitted temporary file; so does remove_temporary_files() (io/temporary_file.h).
 class OutputFile {
  public:
   // Opens at once, so that what cannot be written fails before the work. With no_clobber an existing file is an error.
@@ -20,6 +20,9 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  // Makes sure of room for `bytes` in all, before the first is written: throws OutputError where the file system tells
+  // that there is none, or that a quota or limit forbids it. Nothing for pipes and devices.
+  void reserve(std::uint64_t bytes);
   // Appends, or goes on where seek() went; throws OutputError (a closed pipe raises SIGPIPE).
   void write(const void* data, std::size_t size);
   // Goes on at `offset`, which may lie behind all that has been written; only where seekable().
@@ -31,7 +34,8 @@ class OutputFile {
   void flush();
   // A stream of the same bytes for libraries that want one; valid while this object lives. Errors surface in commit().
   std::ostream& stream();
-  // Flushes, syncs and renames. Throws OutputError. Nothing may follow.
+  // Flushes, syncs, renames and syncs the directory. Throws OutputError: where that last step fails, the file is in its
+  // place already, but a loss of power may undo it. Nothing may follow.
   void commit();
   // As given on the command line.
   [[nodiscard]] const std::string& name() const;
@@ -40,12 +44,5 @@ class OutputFile {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-// Removes the temporary files of all open OutputFiles. Async-signal-safe: for signal handlers.
-void remove_temporary_files() noexcept;
-
-// Removes the temporary files in `directory` whose writers were killed, and never one that is being written, be it by
-// another process or, where the file system's locks reach that far, on another host. Ignores errors.
-void remove_abandoned_files(const std::string& directory);
 
 }  // namespace raycone

@@ -366,7 +366,7 @@ std::vector<std::string> warnings_of(const Omissions& omissions) {
 
 }  // namespace
 
-ParsedMesh read_gltf(const MeshSource& source, std::vector<std::string>* files_read) {
+ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions) {
   GlbChunks chunks{source.bytes, 0, std::nullopt};
   const bool glb = is_glb(source.bytes);
   if (glb) chunks = split_glb(source);
@@ -375,7 +375,7 @@ ParsedMesh read_gltf(const MeshSource& source, std::vector<std::string>* files_r
   check_extensions(document, source.name);
 
   GltfBudget budget(source.name);
-  GltfAccessors accessors(source, document, chunks.binary, budget, files_read);
+  GltfAccessors accessors(source, document, chunks.binary, budget, companions);
   Omissions omissions;
   MeshAssembler assembler(source.name, document, accessors, budget, omissions);
 

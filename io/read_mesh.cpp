@@ -47,7 +47,7 @@ std::string directory_of(const std::string& path) {
   return directory.empty() ? "." : directory;
 }
 
-ParsedMesh parse(const MeshSource& source, MeshFormat format, std::vector<std::string>* files_read) {
+ParsedMesh parse(const MeshSource& source, MeshFormat format, std::vector<FileRead>* companions) {
   switch (format) {
     case MeshFormat::kObj:
       return read_obj(source);
@@ -61,7 +61,7 @@ ParsedMesh parse(const MeshSource& source, MeshFormat format, std::vector<std::s
     case MeshFormat::kGlb:
       break;
   }
-  return read_gltf(source, files_read);
+  return read_gltf(source, companions);
 }
 
 void transform(std::vector<Vec3>& vertices, const ReadMeshOptions& options) {
@@ -93,12 +93,11 @@ MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
   const MeshSource source{path, directory_of(path), bytes};
   MeshFile file;
-  if (path != "-") file.files_read.push_back(path);
   const MeshFormat format = format_of(source, options);
   // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.
   constexpr std::size_t kLarge = std::size_t{1} << 20;
   parallel_for(2, bytes.size() < kLarge ? 2 : 1, [&](std::size_t begin, std::size_t end) {
-    if (begin == 0) file.parsed = parse(source, format, &file.files_read);
+    if (begin == 0) file.parsed = parse(source, format, &file.companions);
     if (end == 2) file.sha256 = sha256(bytes);
   });
   if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");

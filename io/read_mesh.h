@@ -38,10 +38,15 @@ struct ParsedMesh {
   std::vector<std::string> warnings;  // one per kind, with its count: "3 faces with fewer than three corners skipped"
 };
 
+struct FileRead {
+  std::string path;
+  std::string sha256;  // of the bytes that were read, 64 hexadecimal digits
+};
+
 struct MeshFile {
   ParsedMesh parsed;
-  std::string sha256;                   // of the file's bytes, 64 hexadecimal digits
-  std::vector<std::string> files_read;  // the mesh file and those it refers to
+  std::string sha256;                // of the file's bytes, 64 hexadecimal digits
+  std::vector<FileRead> companions;  // further files, which the mesh refers to
 };
 
 // Reads `path`, or standard input for "-". At least one triangle, all indices in range, all vertices of triangles
@@ -53,7 +58,7 @@ struct MeshFile {
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 [[nodiscard]] ParsedMesh read_off(const MeshSource& source);
-// glTF (JSON) or GLB, told apart by content. Files referred to are appended to *files_read.
-[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, std::vector<std::string>* files_read);
+// glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
+[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions);
 
 }  // namespace raycone

@@ -20,7 +20,7 @@ allow() {
 # The shared meshes lie beside the repository, not in it.
 [ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow 'shared_meshes|accuracy_of_real_meshes|SharedMeshes\..*|ReadGltf\.SharedMeshes.*'
 # Sanitizers reserve terabytes of addresses, and die where memory runs out.
-[ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory'
+[ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory|ulimit'
 # They must be loaded before libfaketime, and trace themselves.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'clock|system_calls'
 # Containers may forbid to trace.

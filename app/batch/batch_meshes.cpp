@@ -122,14 +122,6 @@ bool same_file(const BatchMesh& a, const BatchMesh& b) {
 
 }  // namespace
 
-FileStamp stamp_of(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) return {};
-  constexpr std::int64_t kNanoseconds = 1'000'000'000;
-  return {static_cast<std::uint64_t>(status.st_size),
-          static_cast<std::int64_t>(status.st_mtim.tv_sec) * kNanoseconds + status.st_mtim.tv_nsec};
-}
-
 std::vector<BatchMesh> find_meshes(const MeshSearch& search) {
   std::vector<BatchMesh> meshes;
   for (const std::string& operand : search.operands) {

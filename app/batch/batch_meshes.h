@@ -1,21 +1,12 @@
 // The meshes of a batch: from operands to files, and the outputs they are to have.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "app/batch/file_stamp.h"
+
 namespace raycone {
-
-// What tells quickly that a file is still the same.
-struct FileStamp {
-  std::uint64_t size = 0;     // bytes; 0 where there is no file
-  std::int64_t modified = 0;  // nanoseconds since 1970
-
-  friend bool operator==(const FileStamp&, const FileStamp&) = default;
-};
-
-[[nodiscard]] FileStamp stamp_of(const std::string& path);
 
 struct BatchMesh {
   std::string path;    // to open, and for messages

@@ -7,28 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/batch_meshes.h"
 #include "app/batch/csv.h"
+#include "app/batch/file_stamp.h"
 #include "app/batch/result_row.h"
 
 namespace raycone {
 
-struct StampedFile {
-  std::string path;
-  FileStamp stamp;
-
-  friend bool operator==(const StampedFile&, const StampedFile&) = default;
-};
-
 struct RowOrigin {
   FileStamp stamp;                        // of the mesh, before it was read
-  std::vector<StampedFile> companions{};  // further files that were read: the buffers of a glTF
+  std::vector<StampedFile> companions{};  // further files that were read: the buffers of a glTF, a grid
   std::string version{};                  // of raycone
   std::string options{};                  // those that results depend on
   std::uint64_t memory_limit = 0;         // bytes
   bool default_memory_limit = false;
   double timeout = 0.0;       // seconds
   std::int64_t finished = 0;  // nanoseconds since 1970: of two rows of a mesh the later one counts
+  bool superseded = false;    // begun again since: the output may be another one
   std::string thumbnail{};    // BMP in base64; empty where there is none
 };
 
@@ -40,11 +34,22 @@ struct BatchRecord {
 // By mesh.
 using BatchRecords = std::map<std::string, BatchRecord>;
 
+// When it was finished; 0 where that is unknown.
+[[nodiscard]] std::int64_t finished(const BatchRecord& record);
+
 // Keeps, of `record` and the one that `records` may have of the same mesh, the one that was finished last.
 void keep_latest(BatchRecord record, BatchRecords& records);
 
 // The names of the columns of the files that keep the origins.
 [[nodiscard]] const CsvRecord& origin_columns();
+// Those of version 1.0.0-rc1, whose origins say too little to be trusted.
+[[nodiscard]] CsvRecord former_origin_columns();
+
+// A note that `mesh` was begun at `time` (nanoseconds since 1970): whatever rows there are from before, in this file or
+// that of another shard, its output need not be theirs any more.
+[[nodiscard]] CsvRecord to_start_record(const std::string& mesh, std::int64_t time);
+// Its time; nothing where `record` is no such note.
+[[nodiscard]] std::optional<std::int64_t> start_from(const CsvRecord& record);
 
 // The origin of the row whose CSV line is `line`.
 [[nodiscard]] CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std::string& line);

@@ -25,13 +25,13 @@ Job job_from(const Message& message) {
           static_cast<std::uint64_t>(integer_in(message[3]))};
 }
 
-// The row, the thumbnail, the number of companions with three strings each, and the warnings.
+// The row, the thumbnail, the number of companions with two strings each, and the warnings.
 Message to_message(const JobResult& result) {
   Message message = to_record(result.row);
   message.push_back(result.thumbnail);
   message.push_back(std::to_string(result.companions.size()));
   for (const StampedFile& file : result.companions) {
-    message.insert(message.end(), {file.path, std::to_string(file.stamp.size), std::to_string(file.stamp.modified)});
+    message.insert(message.end(), {file.path, file.sha256});
   }
   message.insert(message.end(), result.warnings.begin(), result.warnings.end());
   return message;
@@ -46,10 +46,9 @@ JobResult result_from(const Message& message) {
   JobResult result{std::move(*row), {}, {}, message[columns]};
   const auto companions = static_cast<std::size_t>(integer_in(message[columns + 1]));
   std::size_t at = columns + 2;
-  if ((message.size() - at) / 3 < companions) throw std::runtime_error("not a result");
-  for (std::size_t i = 0; i < companions; ++i, at += 3) {
-    result.companions.push_back(
-        {message[at], {static_cast<std::uint64_t>(integer_in(message[at + 1])), integer_in(message[at + 2])}});
+  if ((message.size() - at) / 2 < companions) throw std::runtime_error("not a result");
+  for (std::size_t i = 0; i < companions; ++i, at += 2) {
+    result.companions.push_back({.path = message[at], .sha256 = message[at + 1]});
   }
   result.warnings.assign(message.begin() + static_cast<std::ptrdiff_t>(at), message.end());
   return result;

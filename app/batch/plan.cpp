@@ -4,9 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <system_error>
-
-#include "io/file_error.h"
-#include "io/read_file.h"
+#include <utility>
 
 namespace raycone {
 namespace {
@@ -14,22 +12,17 @@ namespace {
 // Memory that is free differs from run to run; only a default limit that grew by more than this is another one.
 constexpr double kMoreMemory = 1.25;
 
-bool same_content(const BatchMesh& mesh, const std::string& sha256) {
-  try {
-    return !sha256.empty() && sha256_of_file(mesh.path) == sha256;
-  } catch (const InputError&) {
-    return false;
-  }
+// Their stamps are brought up to date where they have not.
+bool mesh_changed(const BatchMesh& mesh, BatchRecord& record) {
+  const FileStamp earlier = record.origin->stamp;
+  record.origin->stamp = mesh.stamp;
+  if (is_certainly_same(earlier, mesh.stamp)) return false;
+  StampedFile file{mesh.path, kNoStamp, record.row.sha256};
+  return earlier.size != mesh.stamp.size || !is_unchanged(file);
 }
 
-bool mesh_changed(const BatchMesh& mesh, const BatchRecord& record) {
-  return mesh.stamp != record.origin->stamp &&
-         (mesh.stamp.size != record.origin->stamp.size || !same_content(mesh, record.row.sha256));
-}
-
-bool companions_changed(const RowOrigin& origin) {
-  return std::ranges::any_of(origin.companions,
-                             [](const StampedFile& file) { return stamp_of(file.path) != file.stamp; });
+bool companions_changed(RowOrigin& origin) {
+  return !std::ranges::all_of(origin.companions, [](StampedFile& file) { return is_unchanged(file); });
 }
 
 bool memory_limit_changed(const RowOrigin& origin, const PlanOptions& options) {
@@ -64,8 +57,8 @@ std::string reason_to_repeat(const BatchMesh& mesh, const ResultRow& row, const 
   return options.retry_failed ? name_of(row.status) + " before" : "";
 }
 
-std::string reason_to_evaluate(const BatchMesh& mesh, const BatchRecord& record, const PlanOptions& options) {
-  if (!record.origin) return "not known how it was made";
+std::string reason_to_evaluate(const BatchMesh& mesh, BatchRecord& record, const PlanOptions& options) {
+  if (!record.origin || record.origin->superseded) return "not known how it was made";
   if (record.origin->version != options.version) return "another version";
   if (record.origin->options != options.options) return "options changed";
   if (mesh_changed(mesh, record)) return "mesh changed";
@@ -79,14 +72,17 @@ Plan make_plan(const std::vector<BatchMesh>& meshes, const BatchRecords& records
   Plan plan;
   for (const BatchMesh& mesh : meshes) {
     const auto known = records.find(mesh.name);
-    const std::string reason = known == records.end() ? "new" : reason_to_evaluate(mesh, known->second, options);
-    if (!reason.empty()) {
-      plan.todo.push_back({mesh, reason});
+    if (known == records.end()) {
+      plan.todo.push_back({mesh, "new"});
       continue;
     }
     BatchRecord record = known->second;
-    record.origin->stamp = mesh.stamp;
-    plan.kept.emplace(mesh.name, record);
+    const std::string reason = reason_to_evaluate(mesh, record, options);
+    if (reason.empty()) {
+      plan.kept.emplace(mesh.name, std::move(record));
+    } else {
+      plan.todo.push_back({mesh, reason, finished(record)});
+    }
   }
   return plan;
 }

@@ -24,7 +24,8 @@ struct PlanOptions {
 
 struct PlannedMesh {
   BatchMesh mesh;
-  std::string reason;  // "new", "mesh changed", ...
+  std::string reason;        // "new", "mesh changed", ...
+  std::int64_t earlier = 0;  // when the row was finished that is to be replaced; 0 where there is none
 };
 
 struct Plan {
@@ -32,7 +33,7 @@ struct Plan {
   BatchRecords kept;  // of the meshes that need nothing, their stamps brought up to date
 };
 
-// Reads the meshes whose stamp changed, to see whether their content did.
+// Reads the files whose stamp changed, to see whether their content did.
 [[nodiscard]] Plan make_plan(const std::vector<BatchMesh>& meshes, const BatchRecords& records,
                              const PlanOptions& options);
 

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "app/batch/batch_record.h"
@@ -14,12 +16,17 @@
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
 #include "app/limits.h"
+#include "app/run_steps.h"
+#include "app/usage_error.h"
 #include "app/version.h"
 #include "io/file_error.h"
+#include "io/file_identity.h"
 #include "io/output_file.h"
 
 namespace raycone {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --ink: #1c2733; --quiet: #5d6b7a; --line: #d7dee6; --paper: #fff; --panel: #f5f7f9;
@@ -209,9 +216,25 @@ std::string page(const std::string& directory, const BatchRecords& records) {
          failures(records) + evaluated(records) + "<script>" + kScript + "</script>\n</body>\n</html>\n";
 }
 
+// Those that shards are yet to write included.
+void refuse_to_replace_results(const ReportCommand& command) {
+  std::vector<std::string> results;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(command.directory, error)) {
+    if (is_results_file(entry.path().filename().string())) results.push_back(entry.path().string());
+  }
+  refuse_to_replace_input({{command.output, "report"}}, results);
+  const fs::path target = follow_links(command.output);
+  if (is_results_file(target.filename().string()) &&
+      fs::equivalent(directory_of(target.string()), command.directory, error)) {
+    throw UsageError(command.output + ": is a name for results of a batch, expected another one for the report");
+  }
+}
+
 }  // namespace
 
 void write_report_page(const ReportCommand& command) {
+  refuse_to_replace_results(command);
   const BatchRecords records = read_all_results(command.directory);
   if (records.empty()) throw InputError(command.directory + ": no results, expected the results.csv of a batch");
   OutputFile output(command.output);

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <map>
@@ -82,6 +83,7 @@ std::string CsvLog::text() const {
 std::vector<CsvRecord> CsvLog::read() const {
   const std::string all = text();
   const std::string header = csv_line(columns_);
+  if (!former_columns_.empty() && all.starts_with(csv_line(former_columns_))) return {};
   if (header.starts_with(all)) return {};  // empty, or a header that was never completed
   if (!all.starts_with(header)) throw InputError(path_ + ":1: not written by raycone batch, expected " + header);
   return parse_csv(std::string_view(all).substr(header.size())).records;
@@ -115,38 +117,55 @@ void CsvLog::append(const std::string& line) const {
 void CsvLog::replace(const std::vector<std::string>& lines) const {
   std::string wanted = csv_line(columns_);
   for (const std::string& line : lines) wanted += line;
-  if (text() == wanted) return;
+  if (text() == wanted) return sync();
   OutputFile file(path_);
   file.write(wanted.data(), wanted.size());
   file.commit();
 }
 
+void CsvLog::sync() const {
+  const int descriptor = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;  // there is none
+  const int result = fsync(descriptor);
+  const int error = errno;
+  close(descriptor);
+  if (result != 0 && error != EINVAL && error != ENOSYS && error != EINTR) fail_writing(path_, error);
+}
+
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
     : directory_(directory),
       rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns()),
-      origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns()) {}
+      origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns(), former_origin_columns()) {}
 
-BatchRecords ResultsFiles::read() const {
+BatchRecords ResultsFiles::read() const { return contents().records; }
+
+ResultsFiles::Contents ResultsFiles::contents() const {
+  Contents contents;
   std::map<std::string, CsvRecord> origins;  // of each mesh the last one
   for (CsvRecord& record : origins_.read()) {
     const std::string mesh = record.front();
-    origins.insert_or_assign(mesh, std::move(record));
+    if (const std::optional<std::int64_t> start = start_from(record)) {
+      std::int64_t& latest = contents.starts[mesh];
+      latest = std::max(latest, *start);
+    } else {
+      origins.insert_or_assign(mesh, std::move(record));
+    }
   }
-  BatchRecords records;
   for (const CsvRecord& record : rows_.read()) {
     std::optional<ResultRow> row = row_from(record);
     if (!row) continue;
     const std::string mesh = row->mesh;
-    records.insert_or_assign(mesh, record_of(std::move(*row), origins));
+    contents.records.insert_or_assign(mesh, record_of(std::move(*row), origins));
   }
-  return records;
+  return contents;
 }
 
-void ResultsFiles::forget(const std::set<std::string>& meshes) const {
+void ResultsFiles::forget(const Starts& meshes) const {
   const DirectoryLock lock(directory_);
-  BatchRecords records = read();
-  std::erase_if(records, [&meshes](const auto& record) { return meshes.contains(record.first); });
-  write(records);
+  Contents all = contents();
+  std::erase_if(all.records, [&meshes](const auto& record) { return meshes.contains(record.first); });
+  for (const auto& [mesh, start] : meshes) all.starts.insert_or_assign(mesh, start);
+  write(all);
 }
 
 // The origin first: without it a row would have to be made again.
@@ -159,17 +178,22 @@ void ResultsFiles::append(const BatchRecord& record) const {
 
 void ResultsFiles::merge(const BatchRecords& records) const {
   const DirectoryLock lock(directory_);
-  BatchRecords all = read();
-  for (const auto& [mesh, record] : records) keep_latest(record, all);
+  Contents all = contents();
+  for (const auto& [mesh, record] : records) keep_latest(record, all.records);
   write(all);
 }
 
-void ResultsFiles::write(const BatchRecords& records) const {
+void ResultsFiles::write(const Contents& contents) const {
   std::vector<std::string> rows;
   std::vector<std::string> origins;
-  for (const auto& [mesh, record] : records) {
+  for (const auto& [mesh, record] : contents.records) {
     rows.push_back(csv_line(to_record(record.row)));
     if (record.origin) origins.push_back(csv_line(to_record(*record.origin, mesh, rows.back())));
+  }
+  for (const auto& [mesh, start] : contents.starts) {
+    const auto record = contents.records.find(mesh);
+    const bool over = record != contents.records.end() && finished(record->second) > start;
+    if (!over) origins.push_back(csv_line(to_start_record(mesh, start)));
   }
   origins_.replace(origins);
   rows_.replace(rows);
@@ -177,11 +201,20 @@ void ResultsFiles::write(const BatchRecords& records) const {
 
 BatchRecords read_all_results(const std::string& directory) {
   BatchRecords all;
+  Starts starts;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     if (!holds_rows(name)) continue;
-    for (auto& [mesh, record] : ResultsFiles(directory, shard_of(name)).read()) keep_latest(std::move(record), all);
+    ResultsFiles::Contents contents = ResultsFiles(directory, shard_of(name)).contents();
+    for (auto& [mesh, record] : contents.records) keep_latest(std::move(record), all);
+    for (const auto& [mesh, start] : contents.starts) starts[mesh] = std::max(starts[mesh], start);
+  }
+  for (auto& [mesh, record] : all) {
+    const auto start = starts.find(mesh);
+    if (!record.origin || start == starts.end() || finished(record) > start->second) continue;
+    record.origin->superseded = true;
+    record.origin->finished = start->second;
   }
   return all;
 }

@@ -1,12 +1,14 @@
 // The files in which a batch keeps its results. For each batch or shard there are two: results.csv, for users, with a
 // row a mesh, and batch-state.csv, which tells what each row was made from. Both are appended to as results come, a
-// write(2) a line, and sorted at the end; what a killed writer left of a line is dropped.
+// write(2) a line, and sorted at the end; what a killed writer left of a line is dropped. Synced are the sorted ones: a
+// line that a loss of power takes away is made again.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,22 +21,29 @@ namespace raycone {
 // A CSV file with a fixed header that several processes may append to.
 class CsvLog {
  public:
-  CsvLog(std::string path, CsvRecord columns) : path_(std::move(path)), columns_(std::move(columns)) {}
+  // A table with the columns of an earlier version counts as empty, and is replaced.
+  CsvLog(std::string path, CsvRecord columns, CsvRecord former_columns = {})
+      : path_(std::move(path)), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
 
   // Nothing where there is no file. Throws InputError where it is no such table.
   [[nodiscard]] std::vector<CsvRecord> read() const;
   // Throw OutputError. append() leaves the file as it was where it cannot write all of the line.
   void append(const std::string& line) const;
-  void replace(const std::vector<std::string>& lines) const;  // does nothing where they are there already
+  void replace(const std::vector<std::string>& lines) const;  // just syncs where they are there already
 
  private:
   [[nodiscard]] std::string text() const;
   off_t drop_incomplete_line(int descriptor) const;
+  void sync() const;
 
   std::string path_;
   CsvRecord columns_;
+  CsvRecord former_columns_;
   mutable off_t complete_ = 0;  // the size that this has left behind: it ends with a complete line
 };
+
+// When the evaluation of meshes began: nanoseconds since 1970, by mesh.
+using Starts = std::map<std::string, std::int64_t>;
 
 class ResultsFiles {
  public:
@@ -42,14 +51,21 @@ class ResultsFiles {
   ResultsFiles(const std::string& directory, const std::optional<Shard>& shard);
 
   [[nodiscard]] BatchRecords read() const;
-  // Forgets the rows of `meshes`, and what a killed writer left incomplete.
-  void forget(const std::set<std::string>& meshes) const;
+  // Forgets the rows of `meshes`, and what a killed writer left incomplete. Notes the time at which each is begun: rows
+  // of other shards from before are superseded, too, although they are theirs to forget.
+  void forget(const Starts& meshes) const;
   void append(const BatchRecord& record) const;
-  // Adds `records` where they are newer than what is there, and sorts by mesh.
+  // Adds `records` where they are newer than what is there, sorts by mesh, and syncs.
   void merge(const BatchRecords& records) const;
 
  private:
-  void write(const BatchRecords& records) const;
+  struct Contents {
+    BatchRecords records;
+    Starts starts;
+  };
+  friend BatchRecords read_all_results(const std::string& directory);
+  [[nodiscard]] Contents contents() const;
+  void write(const Contents& contents) const;
 
   std::string directory_;
   CsvLog rows_;

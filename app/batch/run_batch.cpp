@@ -2,16 +2,20 @@
 #include "app/batch/run_batch.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "app/batch/batch_marker.h"
 #include "app/batch/batch_summary.h"
 #include "app/batch/plan.h"
 #include "app/batch/results_files.h"
@@ -19,6 +23,7 @@
 #include "app/batch/worker.h"
 #include "app/batch_options.h"
 #include "app/limits.h"
+#include "app/plain_text.h"
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/signals.h"
@@ -26,13 +31,56 @@
 #include "app/usage_error.h"
 #include "app/version.h"
 #include "io/file_error.h"
+#include "io/file_identity.h"
 #include "io/output_file.h"
 #include "io/read_file.h"
+#include "io/temporary_file.h"
 
 namespace raycone {
 namespace {
 
 namespace fs = std::filesystem;
+
+const GridReference* grid_of(const MeshCommand& command) {
+  const auto* const lattice = std::get_if<LatticeCommand>(&command);
+  return lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
+}
+
+// Files that the batch reads beside the meshes: lists, the grid of --like.
+std::vector<std::string> other_inputs(const BatchCommand& command) {
+  std::vector<std::string> inputs;
+  for (const std::string& operand : command.search.operands) {
+    if (operand == "-") inputs.push_back(operand);
+    if (operand.starts_with('@')) inputs.push_back(operand.substr(1));
+  }
+  const MeshCommand of_mesh = mesh_command_of(command.format, command.mesh_options);
+  if (const GridReference* const grid = grid_of(of_mesh)) inputs.push_back(grid->path);
+  return inputs;
+}
+
+// No output may replace an input of this or another mesh, nor go where links lead another output.
+void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>& meshes) {
+  std::map<std::pair<dev_t, ino_t>, std::string> inputs;  // their names
+  const auto add = [&inputs](const std::string& path) {
+    if (const auto file = identity_of_input(path)) inputs.emplace(std::pair(file->device, file->inode), path);
+  };
+  for (const BatchMesh& mesh : meshes) add(mesh.path);
+  for (const std::string& path : other_inputs(command)) add(path);
+  std::map<std::string, std::string> outputs;  // by the place where links lead
+  for (const BatchMesh& mesh : meshes) {
+    const std::string path = command.directory + '/' + mesh.output;
+    const std::optional<FileIdentity> file = identity_of_output(path);
+    if (!file) continue;
+    const auto input = inputs.find({file->device, file->inode});
+    const bool is_input = file->new_name.empty() && input != inputs.end();
+    const fs::path target = follow_links(path);
+    std::error_code error;
+    const fs::path place = fs::canonical(directory_of(target.string()), error) / target.filename();
+    const auto [other, is_free] = outputs.emplace(place.string(), mesh.path);
+    if (is_input) throw UsageError(mesh.path + ": its output " + path + " would replace the input " + input->second);
+    if (!is_free) throw UsageError(mesh.path + ": its output " + path + " would replace that of " + other->second);
+  }
+}
 
 std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
   std::vector<BatchMesh> all = find_meshes(command.search);
@@ -41,6 +89,7 @@ std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
     if (command.format == "none" || !is_results_file(mesh.output)) continue;
     throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
   }
+  if (command.format != "none") refuse_to_replace(command, all);
   if (!command.shard) return all;
   std::vector<SizedName> names;
   for (const BatchMesh& mesh : all) names.push_back({mesh.name, mesh.stamp.size});
@@ -57,9 +106,7 @@ std::string shaping_options(const BatchCommand& command) {
     if (!without_effect.contains(option.substr(0, option.find('=')))) text += '\n' + option;
   }
   const MeshCommand of_mesh = mesh_command_of(command.format, command.mesh_options);
-  const auto* const lattice = std::get_if<LatticeCommand>(&of_mesh);
-  const auto* const grid = lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
-  if (grid) text += '\n' + sha256_of_file(grid->path);
+  if (const GridReference* const grid = grid_of(of_mesh)) text += '\n' + sha256_of_file(grid->path);
   return text;
 }
 
@@ -87,10 +134,13 @@ PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& l
           .timeout = limits.timeout};
 }
 
+// For programs names as they are, for people such that no terminal is moved.
 void print_plan(const Plan& plan) {
+  const bool for_people = isatty(STDOUT_FILENO) == 1;
   OutputFile standard_output("-");
   for (const PlannedMesh& planned : plan.todo) {
-    standard_output.stream() << planned.mesh.path << '\t' << planned.reason << '\n';
+    const std::string& path = planned.mesh.path;
+    standard_output.stream() << (for_people ? plain_text(path, "?") : path) << '\t' << planned.reason << '\n';
   }
   standard_output.commit();
 }
@@ -114,12 +164,16 @@ class BatchRun {
   // Returns the signal that interrupted it, or 0.
   int run(const SupervisorOptions& limits) {
     const HeldSignals signals;
+    BatchMarker marker(command_.directory, options_.version + '\n' + options_.options);
     prepare_directory();
     const int signal = timed(outcome_.seconds, [&] {
       return supervise(
           jobs(), limits, signals,
           [this](std::size_t job, JobResult result, double part) { return take(job, std::move(result), part); },
-          [this] { progress_.show(); });
+          [this, &marker] {
+            progress_.show();
+            marker.renew();
+          });
     });
     progress_.erase();
     outcome_.kept = plan_.kept;
@@ -135,18 +189,18 @@ class BatchRun {
  private:
   // Rows that are about to be made again are forgotten, and what killed runs left is removed.
   void prepare_directory() const {
-    std::set<std::string> names;
+    Starts starts;
     std::set<std::string> directories{command_.directory};
     for (const PlannedMesh& planned : plan_.todo) {
-      names.insert(planned.mesh.name);
+      starts.emplace(planned.mesh.name, time_after(planned.earlier));
       directories.insert(fs::path(path_of_output(planned.mesh)).parent_path().string());
     }
     for (const std::string& directory : directories) remove_abandoned_files(directory);
     for (const auto& [name, record] : results_.read()) {
       const bool was_unreadable_directory = name.ends_with('/');
-      if (was_unreadable_directory && !plan_.kept.contains(name)) names.insert(name);
+      if (was_unreadable_directory && !plan_.kept.contains(name)) starts.emplace(name, time_after(finished(record)));
     }
-    results_.forget(names);
+    results_.forget(starts);
   }
 
   [[nodiscard]] std::string path_of_output(const BatchMesh& mesh) const {
@@ -166,7 +220,7 @@ class BatchRun {
   // Whether to go on.
   bool take(std::size_t job, JobResult result, double part) {
     const BatchMesh& mesh = plan_.todo[job].mesh;
-    BatchRecord record = record_of(mesh, std::move(result));
+    BatchRecord record = record_of(plan_.todo[job], std::move(result));
     results_.append(record);
     const bool failed = record.row.status != MeshStatus::kOk;
     progress_.erase();
@@ -179,12 +233,12 @@ class BatchRun {
     return !(failed && command_.fail_fast);
   }
 
-  [[nodiscard]] BatchRecord record_of(const BatchMesh& mesh, JobResult result) const {
+  [[nodiscard]] BatchRecord record_of(const PlannedMesh& planned, JobResult result) const {
+    const BatchMesh& mesh = planned.mesh;
     ResultRow& row = result.row;
     row.mesh = mesh.name;
     if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
     if (row.sha256.empty()) row.sha256 = hash_of(mesh);
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
     RowOrigin origin{.stamp = mesh.stamp,
                      .companions = std::move(result.companions),
                      .version = options_.version,
@@ -192,20 +246,28 @@ class BatchRun {
                      .memory_limit = options_.memory_limit,
                      .default_memory_limit = options_.default_memory_limit,
                      .timeout = options_.timeout,
-                     .finished = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(),
+                     .finished = time_after(planned.earlier + 1),
                      .thumbnail = std::move(result.thumbnail)};
     return {std::move(row), std::move(origin)};
   }
 
-  // Of a mesh that failed: what tells later whether it is still the same. A pipe would have to be waited for.
+  // Of a mesh that failed: what tells later whether it is still the same. A pipe would have to be waited for. Empty
+  // where the mesh has changed since it was found: what was read then is not known.
   static std::string hash_of(const BatchMesh& mesh) {
     std::error_code error;
     if (!fs::is_regular_file(mesh.path, error)) return "";
     try {
-      return sha256_of_file(mesh.path);
+      const std::string hash = sha256_of_file(mesh.path);
+      return stamp_of(mesh.path) == mesh.stamp ? hash : "";
     } catch (const InputError&) {
       return "";
     }
+  }
+
+  // Now, or where clocks of hosts differ at least later than `earlier`: nanoseconds since 1970.
+  static std::int64_t time_after(std::int64_t earlier) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), earlier + 1);
   }
 
   const BatchCommand& command_;

@@ -17,7 +17,7 @@
 #include "app/exit_code.h"
 #include "app/limits.h"
 #include "app/signals.h"
-#include "io/output_file.h"
+#include "io/temporary_file.h"
 
 namespace raycone {
 namespace {

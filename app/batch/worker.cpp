@@ -26,6 +26,7 @@
 #include "app/signals.h"
 #include "core/threads.h"
 #include "io/base64.h"
+#include "io/read_file.h"
 
 namespace raycone {
 namespace {
@@ -114,10 +115,17 @@ JobResult result_of(const RunReport& report, const std::string& thumbnail) {
   result.row.message = joined(report.warnings);
   result.warnings = report.warnings;
   result.thumbnail = to_base64(thumbnail);
-  for (const std::string& file : report.files_read) {
-    if (file != report.mesh) result.companions.push_back({file, stamp_of(file)});
-  }
+  for (const FileRead& file : report.companions)
+    result.companions.push_back({.path = file.path, .sha256 = file.sha256});
   return result;
+}
+
+// Of the grid of --like, which is read by another process, job after job. It is hashed again where its stamp differs.
+std::string hash_of_grid(const std::string& path) {
+  static StampedFile known;
+  const FileStamp now = stamp_of(path);
+  if (!is_certainly_same(known.stamp, now)) known = {path, now, sha256_of_file(path)};
+  return known.sha256;
 }
 
 MeshStatus status_of(ExitCode code) {
@@ -156,11 +164,18 @@ OneCommand command_for(const Job& job, OneCommand command) {
 
 JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
   Thumbnail thumbnail;
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  const std::string grid_before = grid ? hash_of_grid(grid->path) : "";
   const RunReport report = run_lattice(
       command, limits, [&thumbnail](const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
         thumbnail.add(lattice, block, values);
       });
-  return result_of(report, thumbnail.bmp());
+  JobResult result = result_of(report, thumbnail.bmp());
+  if (!grid) return result;
+  // Unknown where it changed meanwhile.
+  const std::string hash = hash_of_grid(grid->path) == grid_before ? grid_before : "";
+  result.companions.push_back({.path = grid->path, .sha256 = hash});
+  return result;
 }
 
 // Points make no picture.
@@ -173,7 +188,7 @@ JobResult perform(const OneCommand& command) {
   reset_peak_memory();
   try {
     return within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
-      refuse_to_replace_input(command.output, {command.mesh.path});
+      refuse_to_replace_input(files_written(command.output), {command.mesh.path});
       return evaluate(command, limits);
     });
   } catch (...) {

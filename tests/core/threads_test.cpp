@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -42,6 +43,23 @@ TEST(ParallelFor, RunsInTheDefaultFloatingPointEnvironment) {
 TEST(ParallelFor, PassesExceptionsOn) {
   const auto fail = [](std::size_t, std::size_t) { throw std::range_error("of the body"); };
   EXPECT_THROW(parallel_for(kCount, 1, fail), std::range_error);
+}
+
+// What TBB says where it cannot start a thread begins like this, and so may a file's name.
+TEST(ParallelFor, TakesNoExceptionOfItsBodyForALackOfThreads) {
+  const auto fail = [](std::size_t, std::size_t) {
+    throw std::runtime_error("pthread_create.obj:3: expected a number");
+  };
+  const auto nested = [&fail](std::size_t, std::size_t) { parallel_for(kCount, 1, fail); };
+  for (const std::function<void(std::size_t, std::size_t)>& body :
+       std::vector<std::function<void(std::size_t, std::size_t)>>{fail, nested}) {
+    try {
+      parallel_for(kCount, 1, body);
+      ADD_FAILURE() << "no exception";
+    } catch (const std::exception& error) {
+      EXPECT_STREQ(error.what(), "pthread_create.obj:3: expected a number");
+    }
+  }
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ using ReaderOfSeveralFiles = ParsedMesh(const MeshSource&, std::vector<std::stri
 
 [[maybe_unused]] ParsedMesh read(Reader* reader, const MeshSource& source) { return reader(source); }
 [[maybe_unused]] ParsedMesh read(ReaderOfSeveralFiles* reader, const MeshSource& source) {
-  std::vector<std::string> files_read;
-  return reader(source, &files_read);
+  std::vector<FileRead> companions;
+  return reader(source, &companions);
 }
 
 void check(const TriangleMesh& mesh) {

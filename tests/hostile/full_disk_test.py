@@ -99,10 +99,35 @@ def sweep_batch():
         failures.append("batch: neither rows nor outputs lacked room: %s" % statuses)
 
 
+# What cannot fit is refused before work: as soon as the disk lacks the last byte, and with the number.
+def sweep_refusals():
+    empty()
+    for arguments, least in [(["lattice", OPEN, "--resolution", "100", "-o", "new.npy"], 4 * 100**3),
+                             (["lattice", OPEN, "--resolution", "100", "--field", "inside", "-o", "new.npy"], 100**3),
+                             (["lattice", OPEN, "--resolution", "100", "-o", "new.vti"], 4 * 100**3),
+                             (["lattice", OPEN, "--resolution", "60", "-o", "new.csv"], 14 * 60**3),
+                             (["points", OPEN, "--sample", "uniform=100000", "--field", "winding,inside", "-o", "new.npz"], 33 * 10**5),
+                             (["points", OPEN, "--sample", "uniform=100000", "-o", "new.csv"], 8 * 10**5),
+                             (["slice", OPEN, "--size", "500", "-o", "new.png", "--values", "values.npy"], 8 * 500**2)]:
+        leave(least - 8192)
+        result = run(arguments)
+        message = "needs %.1f MB or more" % (least * 1e-6)
+        if result.returncode != 3 or message not in result.stderr.decode() or result.stderr.count(b"\n") != 1:
+            fail("%s without room for %d bytes" % (" ".join(arguments), least), result.returncode, result.stderr)
+        empty()
+        result = run([word.replace("new.", "made.") for word in arguments])
+        if b"needs" in result.stderr:
+            fail("control: " + " ".join(arguments), result.returncode, result.stderr)
+        for name in os.listdir():
+            if name.startswith(("new.", "made.", "values.")):
+                os.unlink(name)
+
+
 def inside(directory):
     subprocess.run(["mount", "-t", "tmpfs", "-o", "size=%d" % DISK, "tmpfs", directory], check=True)
     os.chdir(directory)
     subprocess.run([RAYCONE, "batch", CUBE, OPEN, "--resolution", "8", "--out-dir", "batch", "--quiet"], check=True)
+    sweep_refusals()
     for arguments, outputs in COMMANDS:
         sweep_room(arguments, outputs)
     sweep_batch()

@@ -5,18 +5,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <climits>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "io/file_error.h"
 #include "io/spool_file.h"
+#include "io/temporary_file.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 
@@ -388,6 +387,19 @@ TEST(OutputFile, StreamAndWriteShareOneBuffer) {
   EXPECT_EQ(text.size(), 3U + (std::size_t{3} << 20));
 }
 
+TEST(OutputFile, ReservesRoomThatThereIsAndRefusesWhatThereIsNot) {
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out");
+  EXPECT_NO_THROW(output.reserve(1 << 20));
+  write(output, "short");
+  const std::string message = error_of([&] { output.reserve(std::uint64_t{1} << 60); });
+  EXPECT_NE(message.find("No space left on device: needs 1152921504606.8 MB or more, "), std::string::npos) << message;
+  output.commit();
+  EXPECT_EQ(contents(directory / "out"), "short") << "room that was reserved is no content";
+  OutputFile device("/dev/null");
+  EXPECT_NO_THROW(device.reserve(std::uint64_t{1} << 60));
+}
+
 TEST(SpoolFile, CopiesItsFinalBytes) {
   const TemporaryDirectory directory;
   OutputFile output(directory / "out");
@@ -399,36 +411,6 @@ TEST(SpoolFile, CopiesItsFinalBytes) {
   spool.copy_to(output);
   output.commit();
   EXPECT_EQ(contents(directory / "out"), "head" + much);
-}
-
-TEST(RemoveAbandonedFiles, TakesThoseOfKilledWritersOnly) {
-  const TemporaryDirectory directory;
-  put(directory / ".raycone-1-2", "of a process that was killed");
-  put(directory / "raycone-1-2", "not ours");
-  OutputFile output(directory / "out");
-  write(output, "complete");
-  remove_abandoned_files(directory.path());
-  EXPECT_EQ(entries(directory).size(), 2U);  // "raycone-1-2" and the temporary file of `output`
-  output.commit();
-  EXPECT_EQ(contents(directory / "out"), "complete");
-  EXPECT_TRUE(std::filesystem::exists(directory / "raycone-1-2"));
-}
-
-TEST(RemoveAbandonedFiles, NeverDisturbsWritersThatStart) {
-  const TemporaryDirectory directory;
-  std::atomic<bool> done{false};
-  std::thread remover([&] {
-    while (!done) remove_abandoned_files(directory.path());
-  });
-  for (int i = 0; i < 300; ++i) {
-    OutputFile output(directory / "out");
-    write(output, std::to_string(i));
-    EXPECT_NO_THROW(output.commit());
-  }
-  done = true;
-  remover.join();
-  EXPECT_EQ(contents(directory / "out"), "299");
-  EXPECT_EQ(entries(directory), std::vector<std::string>{"out"});
 }
 
 }  // namespace

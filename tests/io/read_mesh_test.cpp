@@ -96,7 +96,7 @@ TEST(ReadMesh, StandardInputIsReadUnderTheNameOfADash) {
   close(file);
   close(saved);
   EXPECT_EQ(mesh.parsed.mesh.vertices, kVertices);
-  EXPECT_TRUE(mesh.files_read.empty());
+  EXPECT_TRUE(mesh.companions.empty());
   EXPECT_EQ(error,
             ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB (--mesh-format names what has "
             "no signature)");
@@ -139,7 +139,7 @@ TEST(ReadMesh, HashAndNameOfTheFileAreReported) {
   const std::string path = write(directory, "a.obj", kObj);
   const MeshFile file = read_mesh(path);
   EXPECT_EQ(file.sha256, sha256(kObj));
-  EXPECT_EQ(file.files_read, std::vector<std::string>{path});
+  EXPECT_TRUE(file.companions.empty());
 }
 
 TEST(RecogniseMesh, GoesByTheSignature) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "tests/app/batch/batch_fixture.h"
 
@@ -246,18 +247,66 @@ TEST_F(Batch, WarnsOncePerMeshAndObeysStrict) {
   EXPECT_EQ(run({"--quiet"}).err, "");
 }
 
-TEST_F(Batch, BuffersOfGltfCountAsPartOfTheMesh) {
-  put("box.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+// Two triangles, their corners in box.bin.
+constexpr const char* kBox = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
-    "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"box.bin","byteLength":36}]})");
-  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  const std::string buffer(reinterpret_cast<const char*>(corners), sizeof corners);
-  put("box.bin", buffer);
+    "accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3","min":[0,0,0],"max":[1,1,1]}],
+    "bufferViews":[{"buffer":0,"byteLength":72}],"buffers":[{"uri":"box.bin","byteLength":72}]})";
+
+std::string box_buffer(float height) {
+  const float corners[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, height, 1, 1, 1, 0, 1, 0};
+  return {reinterpret_cast<const char*>(corners), sizeof corners};
+}
+
+TEST_F(Batch, BuffersOfGltfCountAsPartOfTheMesh) {
+  put("box.gltf", kBox);
+  const std::string path = put("box.bin", box_buffer(1));
   ASSERT_EQ(run().status, 0);
   EXPECT_EQ(run({"--dry-run"}).out, "");
-  fs::last_write_time(meshes_ + "/box.bin", fs::file_time_type::clock::now() + std::chrono::hours(1));
+  fs::last_write_time(path, fs::file_time_type::clock::now() + std::chrono::hours(1));
+  EXPECT_EQ(run({"--dry-run"}).out, "") << "another time stamp, but the same content";
+  put("box.bin", box_buffer(0.5F));
+  EXPECT_EQ(run({"--dry-run"}).out, meshes_ + "/box.gltf\ta file that the mesh refers to changed\n");
+  fs::remove(path);
   EXPECT_EQ(count_lines(run({"--dry-run"}).out), 1U);
+}
+
+// As on a file system of coarse times, or where a tool sets them: size and time stamp are the same.
+TEST_F(Batch, NoticesChangesThatLeaveSizeAndTimeStamp) {
+  put("box.gltf", kBox);
+  put("cube.obj", kCube);
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"box.bin", box_buffer(0.5F)},
+                                   {"cube.obj", std::string(kCube).replace(std::string(kCube).find('1'), 1, "2")}}) {
+    put("box.bin", box_buffer(1));
+    put("cube.obj", kCube);
+    ASSERT_EQ(run().status, 0);
+    ASSERT_EQ(run({"--dry-run"}).out, "");
+    const std::string path = meshes_ + "/" + name;
+    const auto time = fs::last_write_time(path);
+    put("replacement", text);
+    fs::last_write_time(meshes_ + "/replacement", time);
+    fs::rename(meshes_ + "/replacement", path);
+    EXPECT_EQ(count_lines(run({"--dry-run"}).out), 1U) << name;
+  }
+}
+
+// Whenever the buffer changes during a run, after another one the output is that of what is there now.
+TEST_F(Batch, NoticesBuffersThatChangeWhileTheyAreUsed) {
+  const std::vector<std::string> options{"--resolution", "120", "--format", "npy", "--quiet"};
+  put("box.gltf", kBox);
+  for (const int delay : {0, 60, 120}) {
+    fs::remove_all(out_);
+    put("box.bin", box_buffer(1));
+    Command running(raycone_command(arguments(options)));
+    ASSERT_TRUE(becomes_true([this] { return fs::exists(out_) && !outputs_in(out_).empty(); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+    put("box.bin", box_buffer(0.5F));
+    EXPECT_EQ(running.wait().status, 0);
+    ASSERT_EQ(run(options).status, 0);
+    const std::string again = read_text(out_ + "/box.npy");
+    ASSERT_EQ(run_raycone(arguments_into(dir_ / "fresh", options)).status, 0);
+    EXPECT_TRUE(again == read_text(dir_ / "fresh/box.npy")) << delay;
+  }
 }
 
 TEST_F(Batch, SaysWhatIsWrongWithItsOptions) {

@@ -84,7 +84,10 @@ class BatchInterruption : public Batch {
 
   [[nodiscard]] std::size_t temporaries() const {
     std::size_t count = 0;
-    for (const auto& [name, text] : outputs_in(out_)) count += name.find(".raycone-") != std::string::npos ? 1 : 0;
+    for (const auto& [name, text] : outputs_in(out_)) {
+      const bool is_marker = name.find(".batch-") != std::string::npos;
+      count += name.find(".raycone-") != std::string::npos && !is_marker ? 1 : 0;
+    }
     return count;
   }
 
@@ -180,9 +183,43 @@ TEST_F(BatchInterruption, CleansUpBehindKilledRunsButNotBehindOthers) {
   EXPECT_EQ(temporaries(), 2U) << "nobody was left to remove them";
   Command alive(long_run());
   EXPECT_TRUE(becomes_true([&] { return children_of(alive.process()).size() == 2 && temporaries() == 2; }));
-  put("c.obj");
-  EXPECT_EQ(run_raycone({"batch", meshes_ + "/c.obj", "--out-dir", out_, "--resolution", "8"}).status, 0);
+  put("c.obj", kTriangle);  // flat: one layer
+  EXPECT_EQ(run_raycone({"batch", meshes_ + "/c.obj", "--out-dir", out_, "--resolution", "300"}).status, 0);
   EXPECT_EQ(temporaries(), 2U) << "of the batch that runs";
+}
+
+TEST_F(BatchInterruption, ABatchWithOtherOptionsIsRefusedWhileOneRuns) {
+  put_long();
+  Command running(long_run());
+  (void)wait_for_workers(running);
+  const auto before = outputs_in(out_);
+  const CommandResult other = run({"--resolution", "299"});
+  EXPECT_EQ(other.status, 3);
+  EXPECT_EQ(other.err, "raycone: " + out_ + ": a batch with other options, or of another version, runs here (process " +
+                           std::to_string(running.process()) +
+                           "), expected to wait for it or to have another --out-dir\n");
+  EXPECT_EQ(outputs_in(out_).size(), before.size());
+  EXPECT_EQ(run({"--resolution", "299", "--dry-run"}).status, 0) << "which changes nothing";
+  running.send_signal(SIGKILL);
+  (void)running.wait();
+  fs::remove(meshes_ + "/a.obj");
+  put("b.obj");
+  EXPECT_EQ(run({"--resolution", "9"}).status, 0) << "that batch has ended";
+  EXPECT_EQ(outputs_in(out_).size(), 1U) << "neither marker nor temporary file is left";
+}
+
+TEST_F(BatchInterruption, ABatchOnAnotherHostHasEndedWhenItIsSilent) {
+  put("a.obj");
+  fs::create_directories(out_);
+  const std::string marker = out_ + "/.raycone-0123456789abcdef-1-1-0.batch-0123456789abcdef";
+  write_text(marker, "");
+  EXPECT_EQ(run().status, 3);
+  EXPECT_TRUE(fs::exists(marker));
+  fs::last_write_time(marker, fs::file_time_type::clock::now() - std::chrono::minutes(9));
+  EXPECT_EQ(run().status, 3);
+  fs::last_write_time(marker, fs::file_time_type::clock::now() - std::chrono::minutes(11));
+  EXPECT_EQ(run().status, 0);
+  EXPECT_FALSE(fs::exists(marker));
 }
 
 TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {

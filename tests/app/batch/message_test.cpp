@@ -48,7 +48,7 @@ TEST(Message, CarriesJobsAndResults) {
   sent.row.figures = MeshFigures{.faces = 12, .evaluate_s = 0.25};
   sent.row.sha256 = "0123";
   sent.warnings = {"one", "two"};
-  sent.companions = {{"x.bin", {5, -7}}};
+  sent.companions = {{.path = "x.bin", .sha256 = "abc"}};
   sent.thumbnail = "iVBO";
   const JobResult received = result_from(to_message(sent));
   EXPECT_EQ(received.row.figures->faces, 12U);

@@ -13,8 +13,8 @@ namespace raycone {
 
 // All of these are exact for all finite doubles, and thread-safe; they need DefaultFloatingPoint.
 
-// The direction of the polygon's area vector: each component of the exact vector, times one power of two, rounded to
-// the nearest double; the largest is between 1/2 and 2. Zero if and only if the area vector is.
+// The direction of the polygon's area vector: each component of the exact vector, times one power of two, cut to 53
+// bits; the largest is between 1/2 and 2. Zero if and only if the area vector is.
 [[nodiscard]] Vec3 exact_area_direction(std::span<const Vec3> corners);
 
 // Sign of det(b - a, c - a, direction): positive where a, b, c turn left, seen against the direction.

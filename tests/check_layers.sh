@@ -31,7 +31,7 @@ evaluators=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr
 forbid 'io may include only the data headers of core, and threads.h' "\"(${evaluators%|})\"" io/*.h io/*.cpp
 
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
-only_in CGAL '[<"]CGAL' 'core/(polygon_cut|predicates)\.cpp'
+only_in CGAL '[<"]CGAL' 'core/(predicates|projection)\.cpp'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/threads\.cpp'
 only_in Highway '[<"]hwy' 'core/(cone_kernel\.cpp|solid_angle_kernel\.cpp|simd\.cpp|product_lanes-inl\.h)'
 only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'

@@ -1,311 +1,329 @@
-// The winding number of a polygon is constant in each face of a triangulation that has the polygon's edges among its
-// own: the faces where it is 1 are the polygon, and where it is neither 0 nor 1 the polygon is not simple.
+// A plane sweep from left to right over the places where corners are (Shamos and Hoey, "Geometric intersection
+// problems", 1976, and Hertel and Mehlhorn, "Fast triangulation of the plane with respect to simple polygons", 1985).
+//
+// Edges end where they meet a corner, and what of them lies on one line and between the same places is one edge that
+// remembers how often the polygon runs along it. The edges that the sweep line meets divide it into gaps; the number of
+// times that the polygon winds around a gap's points must be 0 (outside) or 1 (inside).
+//
+// Each gap inside has a chain of places, from the left end of the edge below to the left end of the edge above: left of
+// the chain all is cut already. Chains turn left nowhere, seen upwards, so that a place to the right of one sees its
+// latest place, and from there on all edges that are turned to it.
+//
+// Why what is cut this way covers the polygon once: docs/method.md, "Polygons".
 #include "core/polygon_cut.h"
-
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/Gmpzf.h>
-#include <CGAL/Spatial_sort_traits_adapter_2.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-#include <CGAL/property_map.h>
-#include <CGAL/spatial_sort.h>
 
 #include <algorithm>
 #include <cassert>
-#include <climits>
-#include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <numeric>
-#include <random>
-#include <utility>
+#include <set>
 
-#include "core/floating_point.h"
+#include "core/projection.h"
 
 namespace raycone {
 namespace {
 
-// --- Numbers --------------------------------------------------------------------------------------------------------
+using Place = std::uint32_t;  // its number in the order of the sweep
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-using Exact = CGAL::Gmpzf;  // sums and products of doubles
-using ExactVec3 = std::array<Exact, 3>;
-
-ExactVec3 difference(const Vec3& a, const Vec3& b) {
-  return {Exact(a.x) - Exact(b.x), Exact(a.y) - Exact(b.y), Exact(a.z) - Exact(b.z)};
-}
-
-ExactVec3 cross(const ExactVec3& a, const ExactVec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// --- Projection -----------------------------------------------------------------------------------------------------
-
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Point = Kernel::Point_2;
-
-// Maps space to a plane such that the direction becomes a point and turns keep their signs.
-class Projection {
- public:
-  explicit Projection(const Vec3& direction) {
-    for (int axis = 1; axis < 3; ++axis)
-      if (std::abs(direction[axis]) > std::abs(direction[along_])) along_ = axis;
-    const bool backwards = direction[along_] < 0.0;
-    across_ = {(along_ + (backwards ? 2 : 1)) % 3, (along_ + (backwards ? 1 : 2)) % 3};
-    direction_ = direction;
-  }
-
-  [[nodiscard]] Point operator()(const Vec3& p) const { return {coordinate(p, across_[0]), coordinate(p, across_[1])}; }
-
- private:
-  // Of coordinates that change along the direction, the multiple of another that changes alike is taken away.
-  [[nodiscard]] Kernel::FT coordinate(const Vec3& p, int axis) const {
-    if (direction_[axis] == 0.0) return {p[axis]};
-    const double sign = direction_[along_] < 0.0 ? -1.0 : 1.0;
-    Kernel::FT result =
-        Kernel::FT(sign * direction_[along_]) * p[axis] - Kernel::FT(sign * direction_[axis]) * p[along_];
-    CGAL::exact(result);  // lets go of its terms
-    return result;
-  }
-
-  Vec3 direction_;
-  int along_ = 0;  // axis of its largest component
-  std::array<int, 2> across_{};
+// What of the polygon runs along a line, from a place that is known to `end`, further right.
+struct Run {
+  Place end;
+  Place first;         // leftmost place of all runs that overlap on the line; kNone: an edge of the polygon, whole
+  std::int64_t count;  // how often to the right, less to the left
+  std::uint32_t next = kNone;  // in a list of runs that start at one place
 };
 
-// --- Triangulation --------------------------------------------------------------------------------------------------
-
-constexpr std::uint32_t kNoCorner = 0xFFFFFFFF;
-
-struct Corner {
-  std::uint32_t index = kNoCorner;  // of one of those that are at the vertex
-  std::uint32_t uses = 0;           // how many are
+struct Chain {
+  std::uint32_t bottom = kNone, top = kNone, latest = kNone;  // links
 };
 
-struct Face {
-  int winding = 0;  // number of the polygon
-  bool visited = false;
+struct Link {
+  Place place;
+  std::uint32_t below = kNone, above = kNone;
 };
 
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Corner, Kernel>;
-using FaceBase =
-    CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<Face, Kernel>>;
-// Throws at edges that cross, lets those pass that share a line.
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
-using Vertex = Triangulation::Vertex_handle;
-
-// An edge of the triangulation that the polygon runs along.
-struct Step {
-  std::uint32_t low, high;  // corners at its ends
-  int direction;            // +1 from low to high
-
-  [[nodiscard]] bool is_along(const Step& other) const { return low == other.low && high == other.high; }
+struct Gap {
+  bool inside = false;
+  Chain chain;  // where inside
 };
 
-Step step(const Vertex& from, const Vertex& to) {
-  const std::uint32_t a = from->info().index, b = to->info().index;
-  return {std::min(a, b), std::max(a, b), a < b ? 1 : -1};
-}
-
-bool precedes(const Step& a, const Step& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; }
-
-// The numbers below `count` in an order that looks random: edges inserted in the polygon's order may each cross nearly
-// all of the triangulation, in a random one few of it (Shewchuk and Brown, "Fast segment insertion and incremental
-// construction of constrained Delaunay triangulations", 2015).
-std::vector<std::size_t> shuffled(std::size_t count) {
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::mt19937_64 random;  // NOLINT(cert-msc51-cpp): the same order every time
-  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
-  return order;
-}
+// An edge that the sweep line meets.
+struct Edge {
+  Place left, right;
+  Place first;  // as of a run
+  std::int64_t count;
+  mutable Gap above;  // no part of the order of edges
+};
 
 class PolygonCut {
  public:
-  PolygonCut(std::span<const Vec3> corners, const Vec3& direction) : corners_(corners), projection_(direction) {}
+  PolygonCut(std::span<const Vec3> corners, const Vec3& direction) : corners_(corners), direction_(direction) {}
 
   // False where the polygon is not simple.
   bool cut() {
-    if (!insert_corners()) return false;
-    try {
-      for (const std::size_t i : shuffled(corners_.size())) insert_edge(at_[i], at_[(i + 1) % corners_.size()]);
-    } catch (const Triangulation::Intersection_of_constraints_exception&) {
-      return false;
-    }
-    // Only now do edges stay where they are.
-    for (std::size_t i = 0; i < corners_.size(); ++i) follow_edge(at_[i], at_[(i + 1) % corners_.size()]);
-    sum_steps();
-    if (!find_windings()) return false;
-    for (const auto face : triangulation_.finite_face_handles())
-      if (face->info().winding == 1) add(face->vertex(0), face->vertex(1), face->vertex(2));
+    if (!find_places()) return false;
+    for (Place p = 0; p < corner_at_.size(); ++p)
+      if (!visit(p)) return false;
     return true;
   }
 
-  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> take() {
-    std::sort(triangles_.begin(), triangles_.end());
-    return std::move(triangles_);
-  }
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> take() { return std::move(triangles_); }
 
  private:
-  // False where corners at different places project to one, or all of them to a line.
-  bool insert_corners() {
-    std::vector<Point> points;
-    points.reserve(corners_.size());
-    for (const Vec3& corner : corners_) points.push_back(projection_(corner));
-    at_.resize(points.size());
-    Triangulation::Face_handle near;
-    for (const std::size_t i : one_of_each_place(points)) {
-      const Vertex vertex = triangulation_.insert(points[i], near);
-      if (vertex->info().index != kNoCorner) return false;
-      vertex->info().index = static_cast<std::uint32_t>(i);
-      at_[i] = vertex;
-      near = vertex->face();
+  struct Below {
+    using is_transparent = void;
+    const PolygonCut* polygon;
+    bool operator()(const Edge& a, const Edge& b) const {
+      if (a.left == b.left) return polygon->turn(a.left, a.right, b.right) > 0;
+      return a.left < b.left ? polygon->side(a, b.left) > 0 : polygon->side(b, a.left) < 0;
     }
-    for (std::size_t i = 0; i < at_.size(); ++i) {
-      at_[i] = at_[same_place_[i]];
-      ++at_[i]->info().uses;
-    }
-    return triangulation_.dimension() == 2;
+    bool operator()(const Edge& a, Place p) const { return polygon->side(a, p) > 0; }
+    bool operator()(Place p, const Edge& a) const { return polygon->side(a, p) < 0; }
+  };
+  using Edges = std::set<Edge, Below>;
+  using At = Edges::iterator;
+
+  // --- Geometry -----------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] const Vec3& at(Place p) const { return corners_[corner_at_[p]]; }
+
+  [[nodiscard]] int turn(Place a, Place b, Place c) const {
+    if (a == b || b == c || c == a) return 0;
+    return raycone::turn(direction_, at(a), at(b), at(c));
   }
 
-  // The first of the corners at each place, each close to the one before; sets same_place_. A triangulation would take
-  // long to find again a corner that many edges meet at.
-  std::vector<std::size_t> one_of_each_place(const std::vector<Point>& points) {
-    std::vector<std::size_t> order(corners_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto place = [this](std::size_t i) { return std::array{corners_[i].x, corners_[i].y, corners_[i].z}; };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
-    same_place_.resize(order.size());
-    std::size_t kept = 0;
-    for (const std::size_t i : order) {
-      if (kept == 0 || place(order[kept - 1]) != place(i)) order[kept++] = i;
-      same_place_[i] = order[kept - 1];
-    }
-    order.resize(kept);
-    const auto map = CGAL::make_property_map(points);
-    CGAL::spatial_sort(order.begin(), order.end(), CGAL::Spatial_sort_traits_adapter_2<Kernel, decltype(map)>(map));
-    return order;
-  }
+  // 1 where the place is above the edge, 0 where it is on its line.
+  [[nodiscard]] int side(const Edge& edge, Place p) const { return turn(edge.left, edge.right, p); }
 
-  // Looking for an edge takes as long as a vertex has edges: where corners meet at one, it starts at the other.
-  static bool starts_at_second(const Vertex& a, const Vertex& b) { return a->info().uses > b->info().uses; }
+  // --- Places -------------------------------------------------------------------------------------------------------
 
-  void insert_edge(Vertex a, Vertex b) {
-    if (starts_at_second(a, b)) std::swap(a, b);
-    if (a != b) triangulation_.insert_constraint(a, b);
-  }
-
-  // Notes the steps from a to b, and joins corners between them to the edge.
-  void follow_edge(const Vertex& a, const Vertex& b) {
-    if (a == b) return;
-    const bool reversed = starts_at_second(a, b);
-    std::vector<Vertex> line{reversed ? b : a};
-    const Vertex last = reversed ? a : b;
-    while (line.back() != last) line.push_back(next_on_line(line.back(), last));
-    if (reversed) std::reverse(line.begin(), line.end());
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) steps_.push_back(step(line[i], line[i + 1]));
-    for (std::size_t i = line.size() - 1; i >= 2; --i) add(a, line[i], line[i - 1]);
-  }
-
-  // The end of the first edge from `from` towards `to`. Precondition: they are joined by edges in a straight line.
-  [[nodiscard]] Vertex next_on_line(const Vertex& from, const Vertex& to) const {
-    Vertex next;
-    Triangulation::Face_handle face;
-    int index = 0;
-    [[maybe_unused]] const bool found = triangulation_.includes_edge(from, to, next, face, index);
-    assert(found);
-    return next;
-  }
-
-  // Of steps along the same edge keeps one, with the sum of their directions.
-  void sum_steps() {
-    std::sort(steps_.begin(), steps_.end(), precedes);
-    std::size_t kept = 0;
-    for (const Step& each : steps_) {
-      if (kept > 0 && steps_[kept - 1].is_along(each))
-        steps_[kept - 1].direction += each.direction;
-      else
-        steps_[kept++] = each;
-    }
-    steps_.resize(kept);
-  }
-
-  // How often the polygon runs from a to b, less the other way.
-  [[nodiscard]] int runs(const Vertex& a, const Vertex& b) const {
-    const Step wanted = step(a, b);
-    const auto found = std::lower_bound(steps_.begin(), steps_.end(), wanted, precedes);
-    return found != steps_.end() && found->is_along(wanted) ? found->direction * wanted.direction : 0;
-  }
-
-  // False where one is neither 0 nor 1.
-  bool find_windings() {
-    std::vector<Triangulation::Face_handle> reached{triangulation_.infinite_face()};
-    reached.back()->info().visited = true;
-    while (!reached.empty()) {
-      const auto face = reached.back();
-      reached.pop_back();
-      for (int i = 0; i < 3; ++i) {
-        const auto other = face->neighbor(i);
-        if (other->info().visited) continue;
-        const bool crosses = face->is_constrained(i);
-        // The face lies to the left of its edges.
-        const int left = crosses ? runs(face->vertex(Triangulation::ccw(i)), face->vertex(Triangulation::cw(i))) : 0;
-        other->info() = {face->info().winding - left, true};
-        if (other->info().winding < 0 || other->info().winding > 1) return false;
-        reached.push_back(other);
+  // Numbers the places and notes the polygon's edges where they start. False where two places project to one point.
+  bool find_places() {
+    const SweepOrder order(direction_);
+    std::vector<std::uint32_t> sorted(corners_.size());
+    std::iota(sorted.begin(), sorted.end(), 0U);
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const int sign = corners_[a] == corners_[b] ? 0 : order(corners_[a], corners_[b]);
+      return sign != 0 ? sign < 0 : a < b;
+    });
+    std::vector<Place> place_of(corners_.size());
+    corner_at_.reserve(corners_.size());
+    for (const std::uint32_t corner : sorted) {
+      if (corner_at_.empty() || corners_[corner_at_.back()] != corners_[corner]) {
+        if (!corner_at_.empty() && order(corners_[corner_at_.back()], corners_[corner]) == 0) return false;
+        corner_at_.push_back(corner);
       }
+      place_of[corner] = static_cast<Place>(corner_at_.size() - 1);
+    }
+    starting_.assign(corner_at_.size(), kNone);
+    ends_.assign(corner_at_.size(), 0);
+    runs_.reserve(corners_.size());
+    triangles_.reserve(corners_.size());
+    for (std::size_t i = 0; i < place_of.size(); ++i) {
+      const Place a = place_of[i], b = place_of[i + 1 < place_of.size() ? i + 1 : 0];
+      if (a != b) add_run(std::min(a, b), {std::max(a, b), kNone, a < b ? 1 : -1});
     }
     return true;
   }
 
-  void add(const Vertex& a, const Vertex& b, const Vertex& c) {
-    std::array<std::uint32_t, 3> triangle{a->info().index, b->info().index, c->info().index};
-    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
-    triangles_.push_back(triangle);
+  void add_run(Place start, Run run) {
+    run.next = starting_[start];
+    if (unused_ == kNone) {
+      starting_[start] = static_cast<std::uint32_t>(runs_.size());
+      runs_.push_back(run);
+    } else {
+      starting_[start] = unused_;
+      unused_ = runs_[unused_].next;
+      runs_[starting_[start]] = run;
+    }
+  }
+
+  // Moves the runs that start at a place to leaving_.
+  void take_runs(Place p) {
+    for (std::uint32_t i = starting_[p]; i != kNone;) {
+      leaving_.push_back(runs_[i]);
+      runs_[i].next = unused_;
+      unused_ = i;
+      i = leaving_.back().next;
+    }
+  }
+
+  // --- Sweep --------------------------------------------------------------------------------------------------------
+
+  // False where edges cross before p but not at a corner, or p borders on a gap that is wound around otherwise than 0
+  // or 1 times.
+  bool visit(Place p) {
+    At edge = edges_.lower_bound(p);
+    const At begin = edge;
+    Gap low = edge == edges_.begin() ? Gap{} : std::prev(edge)->above, high = low;
+    leaving_.clear();
+    for (; edge != edges_.end() && side(*edge, p) == 0; ++edge) {
+      if (edge != begin && high.inside && !close(high.chain, p)) return false;
+      high = edge->above;
+      add_flat(edge->first, edge->left, p, -edge->count);
+      if (edge->right != p) leaving_.push_back({edge->right, edge->first, edge->count});
+      --ends_[edge->right];
+    }
+    // Edges that have crossed are in a wrong order, and the first of them that a place lies on, or between, shows it.
+    if (ends_[p] != 0 || (edge != edges_.end() && side(*edge, p) > 0)) return false;
+    if (edge == begin && low.inside) split(low.chain, high.chain);
+    if (low.inside) add_above(low.chain, p);
+    if (high.inside) add_below(high.chain, p);
+    edges_.erase(begin, edge);
+    take_runs(p);
+    return leave(p, edge, low, high);
+  }
+
+  // Inserts the edges that start at p, between the gaps `low` and `high`.
+  bool leave(Place p, At next, Gap low, const Gap& high) {
+    if (leaving_.empty() && low.inside) low.chain = joined(low.chain, high.chain);
+    if (next != edges_.begin()) std::prev(next)->above = low;
+    sort_leaving(p);
+    bool inside = low.inside;
+    for (std::size_t i = 0, end = 0; i < leaving_.size(); i = end) {
+      end = i + 1;
+      while (end < leaving_.size() && turn(p, leaving_[i].end, leaving_[end].end) == 0) ++end;
+      Edge edge = merge(p, i, end);
+      const std::int64_t winding = edge.count + (inside ? 1 : 0);
+      if (winding != 0 && winding != 1) return false;
+      inside = winding == 1;
+      if (end == leaving_.size())
+        edge.above = high;
+      else if (inside)
+        edge.above = {true, single(p)};
+      assert(edge.above.inside == inside);
+      edges_.insert(next, edge);
+      ++ends_[edge.right];
+    }
+    return true;
+  }
+
+  // Upwards by direction, from p on one line outwards.
+  void sort_leaving(Place p) {
+    if (leaving_.size() < 2) return;
+    std::sort(leaving_.begin(), leaving_.end(), [&](const Run& a, const Run& b) {
+      const int sign = turn(p, a.end, b.end);
+      return sign != 0 ? sign > 0 : a.end < b.end;
+    });
+  }
+
+  // The edge from p to the nearest end of the runs [begin, end) of leaving_, which lie on one line. What is beyond
+  // waits there, each place of it once, so that many long runs on one line do not take quadratic time.
+  Edge merge(Place p, std::size_t begin, std::size_t end) {
+    Place first = p;
+    for (std::size_t i = begin; i < end; ++i) first = std::min(first, leaving_[i].first);
+    std::int64_t count = 0, whole = 0;
+    for (std::size_t i = end; i-- > begin;) {
+      const Run& run = leaving_[i];
+      count += run.count;
+      if (run.first == kNone) whole += run.count;
+      const Place before = i > begin ? leaving_[i - 1].end : p;
+      if (before == run.end) continue;
+      add_flat(first, p, run.end, whole);
+      whole = 0;
+      if (i > begin) add_run(before, {run.end, first, count});
+    }
+    return {p, leaving_[begin].end, first, count, {}};
+  }
+
+  // --- Chains -------------------------------------------------------------------------------------------------------
+
+  std::uint32_t link(Place p) {
+    links_.push_back({p});
+    return static_cast<std::uint32_t>(links_.size() - 1);
+  }
+
+  Chain single(Place p) {
+    const std::uint32_t only = link(p);
+    return {only, only, only};
+  }
+
+  void connect(std::uint32_t below, std::uint32_t above) {
+    links_[below].above = above;
+    links_[above].below = below;
+  }
+
+  // Divides a chain, which both start with, at its latest place, which both keep.
+  void split(Chain& low, Chain& high) {
+    const std::uint32_t copy = link(links_[low.latest].place), above = links_[low.latest].above;
+    if (above != kNone) connect(copy, above);
+    high = {copy, above != kNone ? low.top : copy, copy};
+    links_[low.latest].above = kNone;
+    low.top = low.latest;
+  }
+
+  // Of two chains of which one ends where the other starts.
+  Chain joined(const Chain& low, const Chain& high) {
+    connect(low.top, links_[high.bottom].above);
+    return {low.bottom, high.top, low.top};
+  }
+
+  // Cuts off what p sees, next to the edge above.
+  void add_above(Chain& chain, Place p) {
+    while (links_[chain.top].below != kNone && cut_off(links_[chain.top].below, p, chain.top))
+      chain.top = links_[chain.top].below;
+    chain.latest = link(p);
+    connect(chain.top, chain.latest);
+    chain.top = chain.latest;
+  }
+
+  // Likewise, next to the edge below.
+  void add_below(Chain& chain, Place p) {
+    while (links_[chain.bottom].above != kNone && cut_off(chain.bottom, p, links_[chain.bottom].above))
+      chain.bottom = links_[chain.bottom].above;
+    chain.latest = link(p);
+    connect(chain.latest, chain.bottom);
+    chain.bottom = chain.latest;
+  }
+
+  // Where both edges end at p. False where a triangle is turned over.
+  bool close(const Chain& chain, Place p) {
+    for (std::uint32_t i = chain.bottom; i != chain.top; i = links_[i].above) {
+      const Place low = links_[i].place, high = links_[links_[i].above].place;
+      if (turn(low, p, high) < 0) return false;
+      add_triangle(low, p, high);
+    }
+    return true;
+  }
+
+  bool cut_off(std::uint32_t low, Place p, std::uint32_t high) {
+    if (turn(links_[low].place, p, links_[high].place) <= 0) return false;
+    add_triangle(links_[low].place, p, links_[high].place);
+    return true;
+  }
+
+  // --- Triangles ----------------------------------------------------------------------------------------------------
+
+  void add_triangle(Place a, Place b, Place c) { triangles_.push_back({corner_at_[a], corner_at_[b], corner_at_[c]}); }
+
+  // `count` times the triangle of three places on a line, or that turned over: over all runs on the line, of the whole
+  // edges less the edges that the sweep makes of them, these sum to their difference.
+  void add_flat(Place a, Place b, Place c, std::int64_t count) {
+    if (a == b || b == c || c == a) return;
+    for (; count > 0; --count) add_triangle(a, b, c);
+    for (; count < 0; ++count) add_triangle(a, c, b);
   }
 
   std::span<const Vec3> corners_;
-  Projection projection_;
-  Triangulation triangulation_;
-  std::vector<Vertex> at_;               // of each corner
-  std::vector<std::size_t> same_place_;  // of each corner the first one at its place
-  std::vector<Step> steps_;
+  Vec3 direction_;
+  std::vector<std::uint32_t> corner_at_;  // one of those at each place
+  std::vector<std::uint32_t> starting_;   // of each place, the first in the list of its runs
+  std::vector<std::uint32_t> ends_;       // of each place, how many of edges_ end there
+  std::vector<Run> runs_;
+  std::uint32_t unused_ = kNone;  // likewise, of those that can be used again
+  std::vector<Run> leaving_;      // of the place that is visited
+  std::vector<Link> links_;
+  Edges edges_{Below{this}};
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
 }  // namespace
 
-Vec3 exact_area_direction(std::span<const Vec3> corners) {
-  assert(DefaultFloatingPoint::holds());
-  ExactVec3 area;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    const ExactVec3 part = cross(difference(corners[i], corners[0]), difference(corners[i + 1], corners[0]));
-    for (std::size_t axis = 0; axis < 3; ++axis) area[axis] += part[axis];
-  }
-  std::array<std::pair<double, long>, 3> parts;  // mantissa and exponent
-  long largest = LONG_MIN;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    parts[axis] = area[axis].to_double_exp();
-    if (parts[axis].first != 0.0) largest = std::max(largest, parts[axis].second + std::ilogb(parts[axis].first));
-  }
-  Vec3 direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& [mantissa, exponent] = parts[static_cast<std::size_t>(axis)];
-    if (mantissa != 0.0) direction[axis] = std::ldexp(mantissa, static_cast<int>(std::max(exponent - largest, -4000L)));
-  }
-  return direction;
-}
-
-int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
-  assert(DefaultFloatingPoint::holds());
-  const ExactVec3 normal = cross(difference(b, a), difference(c, a));
-  const Exact volume = normal[0] * Exact(direction.x) + normal[1] * Exact(direction.y) + normal[2] * Exact(direction.z);
-  return static_cast<int>(CGAL::sign(volume));
-}
-
 std::optional<std::vector<std::array<std::uint32_t, 3>>> cut_polygon(std::span<const Vec3> corners,
                                                                      const Vec3& direction) {
-  assert(DefaultFloatingPoint::holds());
+  if (corners.size() >= std::size_t{1} << 29) return std::nullopt;  // links have 32 bits, of less than 6 a corner
   PolygonCut polygon(corners, direction);
   return polygon.cut() ? std::optional(polygon.take()) : std::nullopt;
 }

@@ -1,4 +1,4 @@
-// What polygons.cpp takes from CGAL: exact numbers, and a constrained Delaunay triangulation.
+// Cuts one polygon into triangles.
 #pragma once
 
 #include <array>
@@ -11,17 +11,12 @@
 
 namespace raycone {
 
-// All of these are exact for all finite doubles, and thread-safe; they need DefaultFloatingPoint.
-
-// The direction of the polygon's area vector: each component of the exact vector, times one power of two, rounded to
-// the nearest double; the largest is between 1/2 and 2. Zero if and only if the area vector is.
-[[nodiscard]] Vec3 exact_area_direction(std::span<const Vec3> corners);
-
-// Sign of det(b - a, c - a, direction): positive where a, b, c turn left, seen against the direction.
-[[nodiscard]] int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c);
-
 // Triangles, as indices into `corners`, that cover the polygon once in the projection along `direction`, which is not
-// zero, and have its boundary; absent where the polygon is not simple there (core/polygons.h).
+// zero, and have its boundary: where corners at one place are one, the triangles' directed edges sum to the polygon's,
+// opposite ones cancelled. Absent where the polygon is not simple there (core/polygons.h), two corners at different
+// places project to one point, or there are 2^29 corners. The result is the same from whichever corner the polygon
+// starts, but for which of the corners at one place is named. Exact for all finite doubles; thread-safe; needs
+// DefaultFloatingPoint. Time n log n, memory n.
 [[nodiscard]] std::optional<std::vector<std::array<std::uint32_t, 3>>> cut_polygon(std::span<const Vec3> corners,
                                                                                    const Vec3& direction);
 

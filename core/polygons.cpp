@@ -10,43 +10,13 @@
 
 #include "core/floating_point.h"
 #include "core/polygon_cut.h"
+#include "core/projection.h"
 #include "core/threads.h"
 
 namespace raycone {
 namespace {
 
-// --- Projection -----------------------------------------------------------------------------------------------------
-
-// What differences and products of doubles round, relative to the sum of the products' absolute values: a handful of
-// roundings of 2^-53 each. Where products underflow, nothing is sure.
-constexpr double kTrust = 0x1p-49;
-constexpr double kUnderflow = 0x1p-960;
-
-double sum(const Vec3& v) { return v.x + v.y + v.z; }
-
-Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
-// The components of cross(|a|, |b|) with plus signs.
-Vec3 cross_terms(const Vec3& a, const Vec3& b) {
-  return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
-          std::abs(a.x * b.y) + std::abs(a.y * b.x)};
-}
-
-// The area vector's direction, as good as exact; zero if and only if the area vector is.
-Vec3 area_direction(std::span<const Vec3> corners) {
-  Vec3 area, terms;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    const Vec3 a = corners[i] - corners[0], b = corners[i + 1] - corners[0];
-    area = area + cross(a, b);
-    terms = terms + cross_terms(a, b);
-  }
-  // Far from the exact one only where the terms cancel; a sum that is not finite compares false.
-  constexpr double kCancelled = 0x1p-20;
-  const double size = sum(absolute(area)), whole = sum(terms);
-  const bool sure = size > kCancelled * whole && size > kUnderflow && std::isfinite(whole) &&
-                    static_cast<double>(corners.size()) < 0x1p20;
-  return sure ? area : exact_area_direction(corners);
-}
+// --- Corners -----------------------------------------------------------------------------------------------------
 
 // The corners of a polygon, seen along its area vector.
 class Polygon {
@@ -72,13 +42,7 @@ class Polygon {
 
   // 1 where corners i, j, k turn left, -1 where they turn right, 0 where they lie on a line.
   [[nodiscard]] int turn(std::size_t i, std::size_t j, std::size_t k) const {
-    const Vec3 &a = corners_[i], &b = corners_[j], &c = corners_[k];
-    const Vec3 first = b - a, second = c - a;
-    const double volume = dot(cross(first, second), direction_);
-    const double trust = kTrust * dot(cross_terms(first, second), absolute(direction_)) + kUnderflow;
-    if (volume > trust) return 1;
-    if (volume < -trust) return -1;
-    return exact_turn(direction_, a, b, c);
+    return raycone::turn(direction_, corners_[i], corners_[j], corners_[k]);
   }
 
   // Starts the polygon at the corner that comes first in space, so that it matters little where a file starts it.

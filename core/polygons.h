@@ -9,8 +9,8 @@
 
 namespace raycone {
 
-// Each polygon is seen along its area vector, the sum of c(i) x c(i+1), rounded to the nearest doubles; all decisions
-// are exact signs in that projection (docs/method.md, "Polygons").
+// Each polygon is seen along its area vector, the sum of c(i) x c(i+1), rounded to doubles; all decisions are exact
+// signs in that projection (docs/method.md, "Polygons").
 // - Convex (corners in a straight line and repeated ones allowed): keeps its fan.
 // - Simple but not convex: its triangles are replaced by others that cover it once. Simple means that its edges cross
 //   nowhere but at corners and that it winds around every point 0 or 1 times, so it may touch itself, as where a bridge

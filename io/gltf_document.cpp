@@ -4,9 +4,11 @@
 #include "io/gltf_document.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "io/file_error.h"
@@ -68,10 +70,10 @@ class Object {
     return indices;
   }
 
-  [[nodiscard]] bool flag(const char* key) const {
+  [[nodiscard]] bool flag(const char* key, bool otherwise = false) const {
     const Json* value = find(key);
     if (value && !value->is_boolean()) fail(std::string(key) + " is not true or false");
-    return value && value->get<bool>();
+    return value ? value->get<bool>() : otherwise;
   }
 
   // Takes the text out of the document: data URIs are large.
@@ -179,17 +181,21 @@ std::string place_of(const GltfText& text, std::size_t offset) {
   return std::to_string(1 + std::count(text.json.begin(), end, '\n'));
 }
 
-// The library's message without its own prefix and place, short and printable.
+std::string short_and_printable(std::string text) {
+  if (text.size() > kMaxQuoted) text = text.substr(0, kMaxQuoted) + "...";
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+// The library's message without its own prefix and place.
 std::string reason_of(const std::string& message) {
   std::string reason = message;
   for (const std::string_view prefix : {"] ", ": syntax error "}) {
     const std::size_t found = reason.find(prefix);
     if (found != std::string::npos) reason = reason.substr(found + prefix.size());
   }
-  if (reason.size() > kMaxQuoted) reason = reason.substr(0, kMaxQuoted) + "...";
-  std::replace_if(
-      reason.begin(), reason.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return reason;
+  return short_and_printable(reason);
 }
 
 // Builds the kept part of the document as the parser meets it. The library's own filter, a callback, takes time
@@ -215,6 +221,11 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   bool key(std::string& key) override {
     if (skipping()) return true;
     if (is_kept(open_.size(), key)) {
+      // Which of the two is meant, nobody can tell.
+      if (open_.back()->contains(key)) {
+        throw InputError(text_.file + ": JSON with two members '" + short_and_printable(key) +
+                         "' in one object, expected one");
+      }
       member_ = &(*open_.back())[std::move(key)];
     } else {
       skipped_from_ = open_.size();
@@ -282,11 +293,28 @@ Json parse_json(const GltfText& text) {
 
 // --- Meaning --------------------------------------------------------------------------------------------------------
 
+// A version "2.0" as the pair (2, 0); absent where it is none.
+std::optional<std::pair<unsigned, unsigned>> parse_version(std::string_view text) {
+  std::pair<unsigned, unsigned> version;
+  const char* end = text.data() + text.size();
+  const auto major = std::from_chars(text.data(), end, version.first);
+  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
+  const auto minor = std::from_chars(major.ptr + 1, end, version.second);
+  return minor.ec == std::errc() && minor.ptr == end ? std::optional(version) : std::nullopt;
+}
+
+// Later versions 2.x may be read, unless the asset says that it takes one.
 void check_version(const Object& root) {
   const auto asset = root.object("asset");
-  const auto version = asset ? asset->take_text("version") : std::nullopt;
-  if (!version) root.fail("asset version is missing, expected glTF 2.0");
-  if (!version->starts_with("2.")) root.fail("version " + version->substr(0, kMaxQuoted) + ", expected glTF 2.0");
+  const auto text = asset ? asset->take_text("version") : std::nullopt;
+  if (!text) root.fail("asset version is missing, expected glTF 2.0");
+  const auto version = parse_version(*text);
+  if (!version || version->first != 2) root.fail("version " + short_and_printable(*text) + ", expected glTF 2.0");
+  const auto least_text = asset->take_text("minVersion");
+  if (!least_text) return;
+  const auto least = parse_version(*least_text);
+  if (!least || *least > std::pair(2U, 0U))
+    root.fail("minVersion " + short_and_printable(*least_text) + ", expected glTF 2.0");
 }
 
 GltfBuffer parse_buffer(const Object& json) {
@@ -437,6 +465,8 @@ GltfNode parse_node(const Object& json, GltfDocument& document, std::size_t node
   node.mesh = json.reference("mesh", "mesh", document.meshes.size());
   node.skinned = json.find("skin") != nullptr;
   node.morphed = has_weights(json);
+  const auto visibility = json.extension("KHR_node_visibility");
+  node.visible = !visibility || visibility->flag("visible", true);
   return node;
 }
 

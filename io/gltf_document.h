@@ -68,6 +68,7 @@ struct GltfNode {
   std::optional<std::size_t> mesh;
   bool skinned = false;
   bool morphed = false;  // some morph weight of its own is not zero
+  bool visible = true;   // KHR_node_visibility: false hides its children, too
 };
 
 // Every reference from one of these arrays into another is in range.

@@ -25,6 +25,8 @@ constexpr std::array<std::pair<std::string_view, PlyScalar>, 16> kScalarNames = 
                                                                                   {"double", PlyScalar::kFloat64},
                                                                                   {"float64", PlyScalar::kFloat64}}};
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
 class HeaderReader {
  public:
   explicit HeaderReader(TextScanner& text) : text_(text) {}
@@ -53,7 +55,9 @@ class HeaderReader {
       read_property();
     } else if (keyword != "comment" && keyword != "obj_info" && keyword != "end_header") {
       text_.seek(offset);
-      text_.fail("expected 'element', 'property' or 'end_header', found " + text_.found());
+      if (!is_letter(text_.peek()))
+        text_.fail("expected 'element', 'property' or 'end_header', found " + text_.found());
+      ++header_.unknown_lines;
     }
     return keyword != "end_header";
   }

@@ -69,7 +69,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t vertex_element = 0;  // index of the one named "vertex", which has the numbers "x", "y" and "z"
+  std::uint64_t unknown_lines = 0;  // that begin with no keyword of the format
+  std::size_t vertex_element = 0;   // index of the one named "vertex", which has the numbers "x", "y" and "z"
 };
 
 // Reads the header and leaves `text` at the first byte of the body. Throws InputError.

@@ -55,7 +55,8 @@ void check_extensions(const GltfDocument& document, const std::string& file) {
     throw InputError(file + ": uses the extension " + kInstancing + ", which is not supported");
   }
   for (const std::string& extension : document.extensions_required) {
-    if (extension != "KHR_mesh_quantization" && !leaves_geometry_alone(extension)) {
+    const bool is_read = extension == "KHR_mesh_quantization" || extension == "KHR_node_visibility";
+    if (!is_read && !leaves_geometry_alone(extension)) {
       throw InputError(file + ": requires the extension " + extension + ", which is not supported");
     }
   }
@@ -276,7 +277,7 @@ struct Instance {
   GltfTransform placement;
 };
 
-// Calls visit(node, placement) for the scene's nodes, parents before children.
+// Calls visit(node, placement) for the scene's visible nodes, parents before children.
 template <class Visit>
 void visit_scene(const GltfDocument& document, const std::string& file, Visit visit) {
   const std::vector<std::size_t> parents = parent_counts(document);
@@ -298,6 +299,7 @@ void visit_scene(const GltfDocument& document, const std::string& file, Visit vi
     if (++visits > max_visits) throw LimitError(file + ": nodes with several parents make too many copies");
     const GltfNode& node = document.nodes[level.nodes.front()];
     level.nodes = level.nodes.subspan(1);
+    if (!node.visible) continue;
     const GltfTransform placement =
         node.transform ? composed(level.outer, document.transforms[*node.transform]) : level.outer;
     visit(node, placement);

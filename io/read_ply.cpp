@@ -32,7 +32,7 @@ std::optional<std::int64_t> to_integer(Number value) {
 // same members, so that the reader is written once.
 class AsciiBody {
  public:
-  explicit AsciiBody(const TextScanner& text) : text_(text) {}
+  explicit AsciiBody(const TextScanner& text) : text_(text), row_end_(text.offset()) {}
 
   // Bytes that follow, but for blanks.
   [[nodiscard]] std::size_t remaining() {
@@ -50,10 +50,18 @@ class AsciiBody {
     text_.skip_whitespace();
     return text_.offset();
   }
+  // More numbers in the row's line are passed over. Behind a row of several lines they are an error: that is what a
+  // header with one property too many looks like.
   void end_row() {
     text_.skip_blanks();
-    if (!text_.at_line_end()) text_.fail("expected the end of the line, found " + text_.found());
+    if (!text_.at_line_end() || text_.peek() == '#') {
+      if (!is_in_one_line()) text_.fail("expected the end of the line, found " + text_.found());
+      ++long_rows_;
+      text_.skip_line();
+    }
+    row_end_ = text_.offset();
   }
+  [[nodiscard]] std::uint64_t long_rows() const { return long_rows_; }
 
   // The text's value as it stands: a declared type of lower precision does not round it.
   double number(PlyScalar) {
@@ -92,7 +100,18 @@ class AsciiBody {
   [[noreturn]] void fail_at(std::size_t offset, const std::string& what) const { text_.fail_at(offset, what); }
 
  private:
+  // Whether the row that ends here began in the same line.
+  [[nodiscard]] bool is_in_one_line() const {
+    TextScanner row = text_;
+    row.seek(row_end_);
+    row.skip_whitespace();
+    row.skip_line();
+    return text_.offset() < row.offset() || text_.at_end();
+  }
+
   TextScanner text_;
+  std::size_t row_end_;  // of the row before
+  std::uint64_t long_rows_ = 0;
 };
 
 class BinaryBody {
@@ -110,6 +129,7 @@ class BinaryBody {
 
   [[nodiscard]] std::size_t next_offset() const { return offset_; }
   void end_row() const {}
+  [[nodiscard]] std::uint64_t long_rows() const { return 0; }
 
   double number(PlyScalar type) {
     const std::size_t start = offset_;
@@ -165,6 +185,8 @@ class PlyReader {
     if (const std::size_t surplus = body_.remaining())
       builder_.warn("bytes after the last element ignored: " + std::to_string(surplus));
     if (const auto offset = builder_.non_finite_corner_offset()) body_.fail_at(*offset, kNonFiniteCorner);
+    warn(header_.unknown_lines, "header line", "of no known keyword ignored");
+    warn(body_.long_rows(), "row", "longer than the header announces, what is too much ignored");
     return builder_.finish();
   }
 
@@ -190,6 +212,10 @@ class PlyReader {
     } else {
       skip_element(element);
     }
+  }
+
+  void warn(std::uint64_t count, const std::string& noun, const std::string& what) {
+    if (count > 0) builder_.warn(std::to_string(count) + " " + noun + (count == 1 ? " " : "s ") + what);
   }
 
   // The number of rows, which the bytes that follow may be enough for. Rows without properties take none.

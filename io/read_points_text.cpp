@@ -165,6 +165,21 @@ std::optional<double> number_of(std::string_view field) {
   return parse_number(field.data(), last, value) == last && !field.empty() ? std::optional(value) : std::nullopt;
 }
 
+// What number_of() does not read may be meant as a number: "1D0", "0x1", "1 000", a Unicode minus.
+bool starts_like_number(std::string_view field) {
+  for (const std::string_view sign : {"+", "-", "\u2212", "."}) {
+    if (field.starts_with(sign)) field.remove_prefix(sign.size());
+  }
+  return !field.empty() && is_digit(field.front());
+}
+
+// Of any alphabet.
+bool has_letter(std::string_view field) {
+  return std::any_of(field.begin(), field.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+  });
+}
+
 // A field as part of a message.
 std::string quoted(std::string_view field) {
   std::string text(field.substr(0, kMaxQuoted));
@@ -222,7 +237,8 @@ class TextPointReader : public PointReader {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
-  // Whether the first line is a header, which it is if no coordinate in it is a number. Takes the columns from it.
+  // Whether the first line is a header, which it is if no coordinate in it is a number, or looks like one, and one of
+  // them is a name. Takes the columns from it.
   bool take_header(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) lines_->fail("the input is binary, expected text");
     std::vector<std::string_view> names;
@@ -233,8 +249,20 @@ class TextPointReader : public PointReader {
     }
     const std::size_t last = *std::max_element(columns_.begin(), columns_.end());
     if (last >= names.size() && std::any_of(names.begin(), names.end(), number_of)) return false;
-    if (!columns_are_given_) columns_ = named_columns(names).value_or(columns_);
+    const std::optional<Columns> named = named_columns(names);
+    if (!named && !has_names(names)) return false;
+    if (named && !columns_are_given_) columns_ = *named;
     return true;
+  }
+
+  [[nodiscard]] bool has_names(const std::vector<std::string_view>& fields) const {
+    bool found = false;
+    for (const std::size_t column : columns_) {
+      if (column >= fields.size()) continue;
+      if (starts_like_number(fields[column])) return false;
+      found = found || has_letter(fields[column]);
+    }
+    return found || std::none_of(columns_.begin(), columns_.end(), [&](std::size_t c) { return c < fields.size(); });
   }
 
   Vec3 parse(std::string_view line) {

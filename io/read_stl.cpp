@@ -22,7 +22,7 @@ class AsciiStlReader {
       if (text_.skip_word("facet")) {
         read_facet();
       } else if (text_.skip_word("solid") || text_.skip_word("endsolid")) {
-        text_.skip_line();  // a name of any bytes
+        skip_name();
       } else {
         text_.fail("expected 'facet' or 'endsolid', found " + text_.found());
       }
@@ -32,6 +32,37 @@ class AsciiStlReader {
   }
 
  private:
+  // Moves behind a name of any bytes: to the end of the line, or to a facet that begins in it.
+  void skip_name() {
+    const std::size_t start = text_.offset();
+    text_.skip_line();
+    const std::size_t next_line = text_.offset();
+    text_.seek(start);
+    for (text_.skip_whitespace(); text_.offset() < next_line; text_.skip_whitespace()) {
+      if (begins_facet()) return;
+      text_.skip_token();
+    }
+    text_.seek(next_line);
+  }
+
+  // Names may hold the word "facet", so it takes more than that.
+  bool begins_facet() {
+    const std::size_t start = text_.offset();
+    bool found = next_is("facet") && next_is("normal");
+    for (int axis = 0; found && axis < 3; ++axis) {
+      text_.skip_whitespace();
+      text_.skip_token();
+    }
+    found = found && next_is("outer") && next_is("loop");
+    text_.seek(start);
+    return found;
+  }
+
+  bool next_is(std::string_view word) {
+    text_.skip_whitespace();
+    return text_.skip_word(word);
+  }
+
   void read_facet() {
     expect("normal");
     for (int axis = 0; axis < 3; ++axis) skip_normal_component();
@@ -71,8 +102,7 @@ class AsciiStlReader {
   void expect(std::string_view word) { expect(word, "'" + std::string(word) + "'"); }
 
   void expect(std::string_view word, const std::string& expected) {
-    text_.skip_whitespace();
-    if (!text_.skip_word(word)) text_.fail("expected " + expected + ", found " + text_.found());
+    if (!next_is(word)) text_.fail("expected " + expected + ", found " + text_.found());
   }
 
   TextScanner text_;

@@ -139,7 +139,7 @@ void TextScanner::skip_continued_line() {
   do {
     skip_line();
     const char* last = position_ - 1;  // the line's end, unless the text ends without one
-    if (last > begin_ && last[-1] == '\r') --last;
+    if (last > begin_ && last[-1] == '\r' && line_end_ == '\n') --last;
     if (last <= begin_ || last[-1] != '\\') return;
   } while (!at_end());
 }

@@ -37,7 +37,7 @@ judged=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n
 forbid 'oracles must not include what they judge' "\"(${judged%|})\"" tests/support/direct_* tests/support/exact_* tests/support/quad_*
 
 only_in Embree '[<"]embree' 'core/ray_caster\.cpp'
-only_in CGAL '[<"]CGAL' 'core/(polygon_cut|predicates)\.cpp'
+only_in CGAL '[<"]CGAL' 'core/(predicates|projection)\.cpp'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/threads\.cpp'
 only_in Highway '[<"]hwy' 'core/(cone_kernel\.cpp|solid_angle_kernel\.cpp|simd\.cpp|product_lanes-inl\.h)'
 only_in OpenVDB '[<"]openvdb' 'io/(read|write)_vdb\.cpp'

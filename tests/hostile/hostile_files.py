@@ -134,7 +134,7 @@ add("no_format.ply", "ply\nelement vertex 0\nend_header\n", 2, "format")
 add("unknown_format.ply", ply("binary_middle_endian", PLY_LITTLE), 2, "binary_middle_endian")
 add("version_2.ply", ply("ascii", PLY_TEXT).replace(b"1.0", b"2.0"), 0)
 add("no_end_of_header.ply", ply("ascii", PLY_TEXT).replace(b"end_header\n", b""), 2, "expected 'element', 'property' or 'end_header', found '0'")
-add("header_cut.ply", ply("ascii", PLY_TEXT)[:60], 2, "expected 'element', 'property' or 'end_header', found")
+add("header_cut.ply", ply("ascii", PLY_TEXT)[:60], 2, "expected 'end_header', found the end of the file")
 add("unknown_type.ply", ply("ascii", PLY_TEXT, properties="property quad x\nproperty float y\nproperty float z\n"), 2, "quad")
 add("list_of_floats_counted_by_float.ply",
     ply("ascii", PLY_TEXT, listed="property list float int vertex_indices\n"), 0)
@@ -171,7 +171,11 @@ add("line_ends_mixed_header.ply", ply("ascii", PLY_TEXT).replace(b"float x\n", b
 add("line_ends_of_windows.ply", ply("ascii", PLY_TEXT).replace(b"\n", b"\r\n"), 0)
 add("utf8_mark.ply", b"\xef\xbb\xbf" + ply("ascii", PLY_TEXT), 0)
 add("utf16.ply", b"\xff\xfe" + ply("ascii", PLY_TEXT).decode().encode("utf-16-le"), 2, "the text is UTF-16, expected UTF-8 or ASCII")
-add("row_too_long.ply", ply("ascii", PLY_TEXT.replace(b"1 0 0\n", b"1 0 0 7\n", 1)), 2, "expected the end of the line")
+add("row_too_long.ply", ply("ascii", PLY_TEXT.replace(b"1 0 0\n", b"1 0 0 7\n", 1)), 0, "1 row longer than the header announces, what is too much ignored")
+add("rows_too_long.ply", ply("ascii", PLY_TEXT.replace(b"\n", b" 7 8\n")), 0, "8 rows longer than the header announces")
+add("row_too_short.ply", ply("ascii", PLY_TEXT.replace(b"1 0 0\n", b"1 0\n", 1)), 2, "expected the end of the line")
+add("keyword_unknown.ply", ply("ascii", PLY_TEXT).replace(b"element face", b"made_by hand\nelement face"), 0, "1 header line of no known keyword ignored")
+add("keyword_misspelled.ply", ply("ascii", PLY_TEXT).replace(b"element face", b"elements face"), 2, ":")
 for part, cut, fragment in (("header", 9, "expected 'element', 'property' or 'end_header'"),
                             ("first_vertex", -100, "4 elements 'vertex' announced, but only 0 bytes follow"),
                             ("last_vertex", -53, "4 elements 'vertex' announced, but only 47 bytes follow"),
@@ -222,6 +226,20 @@ add("solid_binary.stl", stl(1, RECORD, b"solid like text"), 0)
 add("nan_binary.stl", stl(1, RECORD[:12] + struct.pack("<f", float("nan")) + RECORD[16:]), 2, "byte 96: a vertex that faces use")
 add("inf_binary.stl", stl(1, RECORD[:-6] + struct.pack("<f", float("inf")) + RECORD[-2:]), 2, "a vertex that faces use")
 add("nan_binary_normal.stl", stl(1, struct.pack("<f", float("nan")) + RECORD[4:]), 0)
+
+# --- Polygons
+
+BOW = "v 0 0 0\nv 4 3 0\nv 4 0 0\nv 0 2 0\n"
+add("polygon_crossing.obj", BOW + "f 1 2 3 4\n", 0, "bad-polygons: 1 polygon that")
+add("polygons_crossing.obj", BOW + "f 1 2 3 4\nf 4 3 2 1\n", 0, "bad-polygons: 2 polygons that")
+add("polygon_on_a_line.obj", "v 0 0 0\nv 1 1 1\nv 3 3 3\nv 2 2 2\nf 1 2 3 4\n", 0)
+add("polygon_of_one_vertex.obj", V + "f 1 1 1 1 1\n", 0)
+add("polygon_twice_around.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n6 0 1 2 0 1 2\n", 0, "bad-polygons: 1 polygon that")
+add("polygon_of_extremes.obj", "v 1e308 0 0\nv -1e308 5e-324 0\nv 0 1e308 1e-308\nv 1e308 1e308 -1e308\nf 1 2 3 4\n", 0)
+add("polygon_concave.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 3 0 0\nvertex 1 1 0\nvertex 0 3 0\n"
+    "endloop\nendfacet\n", 0)
+add("polygon_petals.obj", "v 0 0 0\n" + "".join("v %d %d 0\n" % (i, i * i) for i in range(1, 2001))
+    + "f" + "".join(" 1 %d %d" % (i, i + 1) for i in range(2, 2001, 2)) + "\n", 0)
 
 # --- glTF and GLB
 
@@ -275,6 +293,10 @@ add("cut_in_string.gltf", gltf()[:20], 2, "while parsing object separator - unex
 add("array.gltf", "[]", 2, "document is not an object")
 add("nested.gltf", '{"asset":{"version":"2.0"},"x":' + "[" * 100000 + "]" * 100000 + "}", 2, "JSON is nested deeper than 256 levels")
 add("number_overflow.gltf", put("nodes", 0, "translation", [0, 0, 1]).replace("[0, 0, 1]", "[0, 0, 1e999]"), 2, "number overflow parsing '1e999', expected a glTF document")
+add("member_twice.gltf", gltf().replace('"mesh": 0', '"mesh": 0, "mesh": 0'), 2, "JSON with two members 'mesh' in one object, expected one")
+add("minimum_version.gltf", put("asset", {"version": "2.0", "minVersion": "2.1"}), 2, "minVersion 2.1, expected glTF 2.0")
+add("invisible.gltf", put("nodes", 0, "extensions", {"KHR_node_visibility": {"visible": False}}), 2, "no triangles")
+add("invisible_word.gltf", put("nodes", 0, "extensions", {"KHR_node_visibility": {"visible": "no"}}), 2, "visible is not true or false")
 add("no_meshes.gltf", put("nodes", 0, {}), 2, "no triangles")
 add("scene_beyond.gltf", put("scene", 7), 2, "7")
 add("node_beyond.gltf", put("scenes", 0, "nodes", [1]), 2, "1")
@@ -336,6 +358,10 @@ add("binary_first.glb", GLB[:16] + b"BIN\0" + GLB[20:], 2, "byte 16: first chunk
 # --- Points
 
 add("empty.csv", "", 0)
+add("fortran_first.csv", "1D0,2D0,3D0\n1,2,3\n", 2, ":1: column 1 is '1D0', expected a finite number")
+add("hexadecimal_first.csv", "0x1,0x2,0x3\n1,2,3\n", 2, ":1: column 1 is '0x1', expected a finite number")
+add("empty_first.csv", ",,\n1,2,3\n", 2, ":1: column 1 is empty, expected a finite number")
+add("unicode_minus_first.csv", "\u22121,\u22122,\u22123\n1,2,3\n", 2, ":1: column 1 is '???1', expected")
 add("header_only.csv", "x,y,z\n", 0)
 add("two_columns.csv", "0,0,0\n1,2\n", 2, ":2: found '1,2' with 2 columns, expected at least 3")
 add("word.csv", "0,0,0\n1,x,2\n", 2, ":2: column 2 is 'x', expected a finite number")

@@ -571,6 +571,59 @@ TEST(ReadGltf, DeeplyNestedJsonIsAnError) {
   EXPECT_FALSE(error_of(std::string(1000000, '[')).empty());
 }
 
+Asset with_nodes(const std::string& nodes) {
+  Asset asset;
+  asset.nodes = nodes;
+  return asset;
+}
+
+TEST(ReadGltf, InvisibleNodesAreHiddenWithTheirChildren) {
+  const std::string hidden = R"("extensions":{"KHR_node_visibility":{"visible":false}})";
+  const std::string shown = R"("extensions":{"KHR_node_visibility":{"visible":true}})";
+  const auto count = [](const std::string& nodes) { return parse(with_nodes(nodes)).mesh.triangles.size(); };
+  EXPECT_EQ(count(R"([{"mesh":0},{"mesh":0}])"), 2U);
+  EXPECT_EQ(count(R"([{"mesh":0,)" + hidden + R"(}])"), 0U);
+  EXPECT_EQ(count(R"([{"mesh":0,)" + shown + R"(}])"), 2U);
+  EXPECT_EQ(count(R"([{"mesh":0,"extensions":{"KHR_node_visibility":{}}}])"), 2U);
+  EXPECT_EQ(count(R"([{"children":[1,2]},{"mesh":0,"children":[3],)" + hidden + R"(},{"mesh":0},{"mesh":0}])"), 2U);
+  // Shared children are shown where one of their parents is.
+  EXPECT_EQ(count(R"([{"children":[1,2]},{"children":[3],)" + hidden + R"(},{"children":[3]},{"mesh":0}])"), 2U);
+  Asset required = with_nodes(R"([{"mesh":0,)" + hidden + R"(}])");
+  required.rest += R"(,"extensionsUsed":["KHR_node_visibility"],"extensionsRequired":["KHR_node_visibility"])";
+  EXPECT_EQ(parse(required).mesh.triangles.size(), 0U);
+  EXPECT_EQ(error_of(with_nodes(R"([{"mesh":0,"extensions":{"KHR_node_visibility":{"visible":0}}}])")),
+            "a.glb: node 0, extensions, KHR_node_visibility: visible is not true or false");
+}
+
+TEST(ReadGltf, TwoMembersOfOneNameAreRefused) {
+  EXPECT_EQ(error_of(with_nodes(R"([{"mesh":0,"mesh":0}])")),
+            "a.glb: JSON with two members 'mesh' in one object, expected one");
+  Asset scenes;
+  scenes.rest += R"(,"scenes":[])";
+  EXPECT_EQ(error_of(scenes), "a.glb: JSON with two members 'scenes' in one object, expected one");
+  EXPECT_EQ(error_of(with_nodes(R"([{"mesh":0,"m\u0065sh":0}])")),  // the same name, written in another way
+            "a.glb: JSON with two members 'mesh' in one object, expected one");
+  // What is not looked at does no harm.
+  EXPECT_EQ(error_of(with_nodes(R"([{"mesh":0,"extras":{"a":1,"a":2},"extras":3}])")), "");
+}
+
+TEST(ReadGltf, VersionsThatTakeALaterReaderAreRefused) {
+  const auto error = [](const std::string& asset) {
+    std::string json = Asset().json();
+    json.replace(json.find(R"("version":"2.0")"), 15, asset);
+    return error_of(glb(json, square_data()));
+  };
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":"2.0")"), "");
+  EXPECT_EQ(error(R"("version":"2.7","minVersion":"2.0")"), "");
+  EXPECT_EQ(error(R"("version":"2.1","minVersion":"1.0")"), "");
+  EXPECT_EQ(error(R"("version":"2.1","minVersion":"2.1")"), "a.glb: document: minVersion 2.1, expected glTF 2.0");
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":"3.0")"), "a.glb: document: minVersion 3.0, expected glTF 2.0");
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":"2.10")"), "a.glb: document: minVersion 2.10, expected glTF 2.0");
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":"2")"), "a.glb: document: minVersion 2, expected glTF 2.0");
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":2.0)"), "a.glb: document, asset: minVersion is not a string");
+  EXPECT_EQ(error(R"("version":"2.x")"), "a.glb: document: version 2.x, expected glTF 2.0");
+}
+
 TEST(ReadGltf, OldVersionsAreRefused) {
   EXPECT_EQ(error_of(std::string(R"({"asset":{"version":"1.0"}})")), "a.glb: document: version 1.0, expected glTF 2.0");
   EXPECT_EQ(error_of("glTF" + little_endian(1) + little_endian(20) + std::string(8, '\0')),

@@ -50,6 +50,15 @@ TEST(ReadObj, BackslashContinuesALine) {
   EXPECT_EQ(triangles(with_triangle("f 1 2 \\\r\n3\r\n")), kOneTriangle);
 }
 
+TEST(ReadObj, EmptyLineEndsAContinuationHoweverLinesEnd) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    EXPECT_EQ(triangles("v 0 0 0" + end + "v 1 0 0" + end + "v 0 1 0" + end + "f 1 2 3\\" + end + end + "f 1 2 3" + end)
+                  .size(),
+              2U)
+        << (end == "\r" ? "CR" : "LF");
+  }
+}
+
 TEST(ReadObj, ContinuationOfAnIgnoredStatementIsIgnored) {
   EXPECT_EQ(triangles(with_triangle("curv 0 1 \\\nf 1 1 1\nf 1 2 3\n")), kOneTriangle);
 }

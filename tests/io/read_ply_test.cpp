@@ -160,7 +160,7 @@ TEST(ReadPly, CommentsAndObjInfoMayStandAnywhereInTheHeader) {
 
 TEST(ReadPly, AsciiRowsMayGoOnInTheNextLineButNotShareOne) {
   EXPECT_EQ(triangles(kHeader + "0 0\n0\n1 0 0\n\n0 1 0\n3\n0 1 2\n"), kOneTriangle);
-  EXPECT_EQ(error_of(kHeader + "0 0 0 1\n0 0 0 1 0\n3 0 1 2\n"), "f:10: expected the end of the line, found '1'");
+  EXPECT_EQ(error_of(kHeader + "0 0 0 1\n0 0 0 1 0\n3 0 1 2\n"), "f:13: 1 elements 'face' announced, but only 0 bytes follow");
 }
 
 TEST(ReadPly, FacesOfOneOrTwoCornersAreSkippedAndCounted) {
@@ -188,14 +188,32 @@ TEST(ReadPly, NonFiniteCoordinateIsAnErrorOnlyOfAFace) {
       kOneTriangle);
 }
 
+TEST(ReadPly, HeaderLinesOfNoKnownKeywordAreWarnedAbout) {
+  const ParsedMesh parsed =
+      parse(kAscii + "made_by somebody\n" + kHeader.substr(kAscii.size(), kHeader.size() - kAscii.size() - 11) +
+            "units mm 3\nend_header\n" + kVertices + "3 0 1 2\n");
+  EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
+  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"2 header lines of no known keyword ignored"});
+}
+
+TEST(ReadPly, RowsLongerThanAnnouncedAreWarnedAbout) {
+  const ParsedMesh parsed = parse(kHeader + "0 0 0 9\n1 0 0 # red\n\n0 1 0\n3 0 1 2 255 0 0");
+  EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
+  EXPECT_EQ(parsed.mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(parsed.warnings,
+            std::vector<std::string>{"3 rows longer than the header announces, what is too much ignored"});
+  // Behind a row that took numbers of the next line they tell of a wrong header.
+  EXPECT_EQ(error_of(kHeader + "0 0 0\n1 0\n0 0 1 0\n3 0 1 2\n"), "f:12: expected the end of the line, found '0'");
+}
+
 TEST(ReadPly, BadHeadersAreNamed) {
   EXPECT_EQ(error_of("play\n"), "f:1: expected 'ply' in the first line");
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"), "f:3: expected 'end_header', found the end of the file");
   EXPECT_EQ(error_of("ply\nelement vertex 3\n" + kXyz + "end_header\n"), "f:6: the header has no line 'format'");
   EXPECT_EQ(error_of("ply\nformat binary 1.0\n"),
             "f:2: expected 'ascii', 'binary_little_endian' or 'binary_big_endian', found 'binary'");
-  EXPECT_EQ(error_of(kAscii + "elements vertex 3\n"),
-            "f:3: expected 'element', 'property' or 'end_header', found 'elements'");
+  EXPECT_EQ(error_of(kAscii + "3 0 1 2\n"), "f:3: expected 'element', 'property' or 'end_header', found '3'");
+  EXPECT_EQ(error_of(kAscii + "elements vertex 3\n"), "f:4: expected 'end_header', found the end of the file");
   EXPECT_EQ(error_of(kAscii + "element vertex -3\n"), "f:3: expected 0 or more elements 'vertex', found -3");
   EXPECT_EQ(error_of(kAscii + "element vertex\n"),
             "f:3: expected the number of elements 'vertex', found the end of the line");

@@ -90,6 +90,24 @@ TEST_F(ReadPoints, HeaderOfOtherNamesMeansTheFirstThreeColumns) {
   EXPECT_EQ(read("some title\n1,2,3\n-4,.5,6e-3\n"), kTwo);
 }
 
+// A first line that is not read as numbers may be a point all the same: it must not be lost.
+TEST_F(ReadPoints, HeaderNeedsAName) {
+  const auto error = [this](const std::string& first) { return error_of(first + "\n1,2,3\n"); };
+  EXPECT_EQ(error("1D0,2D0,3D0"), "pts:1: column 1 is '1D0', expected a finite number");
+  EXPECT_EQ(error("0x1,0x2,0x3"), "pts:1: column 1 is '0x1', expected a finite number");
+  EXPECT_EQ(error(",,"), "pts:1: column 1 is empty, expected a finite number");
+  EXPECT_EQ(error(",,,name"), "pts:1: column 1 is empty, expected a finite number");
+  EXPECT_EQ(error("-,-,-"), "pts:1: column 1 is '-', expected a finite number");
+  EXPECT_EQ(error("\"1D0\",\"x\",\"y\""), "pts:1: column 1 is '1D0', expected a finite number");
+  EXPECT_EQ(error("-.5d0,a,b"), "pts:1: column 1 is '-.5d0', expected a finite number");
+  EXPECT_EQ(error("1m,2m,3m"), "pts:1: column 1 is '1m', expected a finite number");
+  EXPECT_EQ(error("\u22121,\u22122,\u22123"), "pts:1: column 1 is '???1', expected a finite number");
+  EXPECT_EQ(error("1D0,2D0,3D0,x"), "pts:1: column 1 is '1D0', expected a finite number");
+  EXPECT_EQ(read("L\u00e4nge,Breite,H\u00f6he\n1,2,3\n-4,.5,6e-3\n"), kTwo);
+  EXPECT_EQ(read("\"\",\"x\",\"y\",\"z\"\n0,1,2,3\n1,-4,.5,6e-3\n"), kTwo);  // of R and pandas
+  EXPECT_EQ(read(",x,y,z\n0,1,2,3\n1,-4,.5,6e-3\n"), kTwo);
+}
+
 TEST_F(ReadPoints, GivenColumnsWinOverNames) {
   ReadPointsOptions options;
   options.columns = {4, 2, 3};

@@ -80,6 +80,33 @@ TEST(ReadStl, AsciiNamesMayBeAnyBytes) {
   EXPECT_EQ(parse("solid \xff\xfe facet\n" + kFacet + "endsolid \xe6\x9c\n").mesh.vertices, kCorners);
 }
 
+std::string in_one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text;
+}
+
+// Writers that lay out the text in other ways than everybody else.
+TEST(ReadStl, AsciiFacetMayBeginInTheLineOfASolidOrEndsolid) {
+  const std::size_t one = 1, two = 2;
+  EXPECT_EQ(parse("solid " + kFacet + "endsolid\n").mesh.triangles.size(), one);
+  EXPECT_EQ(parse("solid a b " + kFacet + kFacet + "endsolid a b\n").mesh.triangles.size(), two);
+  EXPECT_EQ(parse("solid a\n" + kFacet + "endsolid a solid b " + kFacet).mesh.triangles.size(), two);
+  EXPECT_EQ(parse(in_one_line("solid a\n" + kFacet + kFacet + "endsolid a")).mesh.triangles.size(), two);
+  EXPECT_EQ(parse(in_one_line("SOLID\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0 VERTEX 1 0 0 VERTEX 0 1 0\n"
+                              "ENDLOOP ENDFACET ENDSOLID"))
+                .mesh.vertices,
+            kCorners);
+}
+
+TEST(ReadStl, AsciiNamesMayHoldKeywords) {
+  for (const char* name : {"facet", "my facet normal", "facet normal 0 0 1", "facet normal export outer loop",
+                           "loop # facet", "a\\", "solid facet"}) {
+    EXPECT_EQ(parse("solid " + std::string(name) + "\n" + kFacet + "endsolid " + name + "\n").mesh.vertices, kCorners)
+        << name;
+  }
+}
+
 TEST(ReadStl, AsciiNormalsMayBeAnything) {
   EXPECT_EQ(parse("solid\nfacet normal nan -1.#IND 1.#QNAN\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                   "endloop\nendfacet\nendsolid\n")

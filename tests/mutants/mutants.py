@@ -188,6 +188,30 @@ MUTANTS = [
         ("core/solid_angles.cpp", "kLongest = 0x1p60;", "kLongest = HUGE_VAL;")]),
     Mutant("scale_by_block", "whether a sample is evaluated in scale depends on no other sample", [
         ("core/winding_number.cpp", "if (parts.size() != 1) return evaluate_parts", "if (parts.empty()) return evaluate_parts")]),
+    # --- Polygons ---
+    Mutant("concave_fanned", "concave polygons are cut", [
+        ("core/polygons.cpp", "if (polygon.size() <= 3) return true;", "if (polygon.size() <= 6) return true;")]),
+    Mutant("left_turns_are_convex", "what turns left everywhere may still wind twice", [
+        ("core/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "never_turns_right(polygon)")]),
+    Mutant("fan_without_turns", "convex polygons never turn right", [
+        ("core/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "fan_opens_once(polygon)")]),
+    Mutant("fan_opens_again", "flat triangles are the first or the last of a fan", [
+        ("core/polygons.cpp", "(turn > 0 && place == kBehind) || ", "")]),
+    Mutant("turns_in_floating_point", "floating point decides only turns that its error bound vouches for", [
+        ("core/polygons.cpp", "kTrust = 0x1p-49", "kTrust = 0x1p-60")]),
+    Mutant("turns_that_underflow", "products that underflow vouch for nothing", [
+        ("core/polygons.cpp", "kUnderflow = 0x1p-960", "kUnderflow = 0.0"),
+        ("core/polygons.cpp", "return exact_turn(direction_, a, b, c);", "return 0;")]),
+    Mutant("seen_along_z", "polygons are seen along their area vector", [
+        ("core/polygons.cpp", "direction_ = area_direction(corners_);", "direction_ = Vec3{0, 0, area_direction(corners_).z};")]),
+    Mutant("winding_not_looked_at", "polygons that wind twice, or backwards, are bad", [
+        ("core/polygon_cut.cpp", "if (other->info().winding < 0 || other->info().winding > 1) return false;", "")]),
+    Mutant("bridge_counts_once", "a bridge's two ways cancel", [
+        ("core/polygon_cut.cpp", "steps_[kept - 1].direction += each.direction;", "")]),
+    Mutant("edge_stays_split", "a corner on another edge leaves the boundary as it was", [
+        ("core/polygon_cut.cpp", "for (std::size_t i = line.size() - 1; i >= 2; --i) add(a, line[i], line[i - 1]);", "")]),
+    Mutant("first_corner_of_the_file", "it does not matter where a file starts a polygon", [
+        ("core/polygons.cpp", "  polygon.rotate_to_first();\n", "")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

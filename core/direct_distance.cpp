@@ -131,7 +131,7 @@ long double rough_square_to_box(const Points& points, const Vec3& q) {
 Quad direct_distance(const TriangleMesh& mesh, const Vec3& q) {
   constexpr long double kMoreThanRounding = 1 + 1e-15L;
   long double limit = rough_square_to_nearest_corner(mesh, q) * kMoreThanRounding;
-  Quad least = HUGE_VALQ;
+  Quad least = HUGE_VAL;
   for (const Triangle& t : mesh.triangles) {
     const Points points = corners_of(mesh, t);
     if (rough_square_to_box(points, q) > limit) continue;

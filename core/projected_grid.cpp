@@ -253,7 +253,9 @@ ProjectedGrid::Grid ProjectedGrid::Builder::choose(const Rectangle& box, std::sp
   const double mean_width = std::max(widths / n, kSmallestCell), mean_height = std::max(heights / n, kSmallestCell);
   const double more = entries_per_triangle - 1.0;
   double t = (1.0 + std::sqrt(1.0 + more * areas / (n * mean_width * mean_height))) / more;
-  t = std::max(t, std::sqrt((width / mean_width + 1.0) * (height / mean_height + 1.0) / (2.0 * n)));
+  // Along each axis, too: where triangles are as high as the box, columns alone are all cells. 32 bits count them.
+  const double cells = 2.0 * std::min(n, 0x1p28), across = width / mean_width, along = height / mean_height;
+  t = std::max({t, std::sqrt((across + 1.0) * (along + 1.0) / cells), across / cells, along / cells});
   Grid grid{box.y.lower, box.z.lower, 1.0 / (t * mean_width), 1.0 / (t * mean_height), 1, 1, 0};
   grid.columns = static_cast<std::uint32_t>(std::max(std::ceil(width * grid.columns_per_unit), 1.0));
   grid.rows = static_cast<std::uint32_t>(std::max(std::ceil(height * grid.rows_per_unit), 1.0));

@@ -1,10 +1,12 @@
 #include "core/projected_grid.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/crossings.h"
@@ -149,6 +151,32 @@ TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
   const Totals totals = check(mesh, queries);
   EXPECT_GT(totals.crossed, 800U);
   EXPECT_LT(totals.decided, queries.size() / 50);
+}
+
+// At most so many kB of memory were resident at a time.
+long peak_kilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+// Needles along y or z, as long as the box: cells of their proportions would be a row of millions.
+TEST(ProjectedGrid, TakesNoMoreMemoryForNeedles) {
+  for (const bool along_z : {false, true}) {
+    test::Random random(3);
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+      const double x = test::uniform(random, -1, 1), at = test::uniform(random, -1, 1);
+      for (const auto& [across, along] : {std::pair{at, -1.0}, {at + 1e-10, -1.0}, {at, 1.0}}) {
+        mesh.vertices.push_back(along_z ? Vec3{x, across, along} : Vec3{x, along, across});
+      }
+      mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const long before = peak_kilobytes();
+    const ProjectedGrid grid(mesh);
+    // Filters and lists take 5 MB, sanitizers three times that; the cells took 140.
+    EXPECT_LT(peak_kilobytes() - before, 50'000);
+  }
 }
 
 }  // namespace

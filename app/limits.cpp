@@ -15,6 +15,7 @@
 
 #include "app/parse_value.h"
 #include "app/usage_error.h"
+#include "core/threads.h"
 #include "io/file_error.h"
 
 namespace raycone {
@@ -22,9 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Pages of code and stacks that a run has yet to touch, beside what it allocates: measured, 4 MB at most
+// What a run has yet to touch beside what it allocates: pages of code, and of the stack of each thread
 // (docs/robustness.md, "Memory").
 constexpr double kUntouchedCode = 6.0 * 1024 * 1024;
+constexpr double kUntouchedStack = 128.0 * 1024;
 
 // Others need more memory meanwhile, and a machine without any kills whom it likes.
 constexpr double kShareOfMachine = 7.0 / 8.0;
@@ -179,7 +181,9 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(proc_bytes("/proc/self/status", "VmHWM").value_or(0.0));
 }
 
-double memory_in_use() { return proc_bytes("/proc/self/status", "VmRSS").value_or(0.0) + kUntouchedCode; }
+double memory_in_use() {
+  return proc_bytes("/proc/self/status", "VmRSS").value_or(0.0) + kUntouchedCode + kUntouchedStack * thread_count();
+}
 
 void check_memory(const std::string& name, double more, std::uint64_t limit) {
   if (more + memory_in_use() <= static_cast<double>(limit)) return;

@@ -29,15 +29,22 @@ void share_arenas(std::uint64_t memory) {
   mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(memory / kPerArena, 1, kMostArenas)));
 }
 
+// TBB starts as many workers as there are CPUs, now or later, however few are allowed to work, and ends the process
+// where it cannot. So all are started before anything is limited; the memory cap then takes their stacks for untouched.
+int with_all_workers(int threads) {
+  prime_threads();
+  return threads;
+}
+
 }  // namespace
 
 RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
     : threads_(options.threads ? *options.threads : default_threads()),
       memory_(options.memory_limit ? *options.memory_limit : available_memory()),
-      thread_limit_(threads_) {
+      thread_limit_(with_all_workers(threads_)) {
   if (options.timeout) start_timeout(*options.timeout, mesh);
   share_arenas(memory_);
-  prime_threads();  // the cap takes the stacks that are mapped for untouched
+  prime_threads();  // of more threads than CPUs, the rest
   check_memory(mesh, 0.0, memory_);
   cap_memory(memory_);
 }

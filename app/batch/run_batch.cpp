@@ -188,19 +188,18 @@ class BatchRun {
 
  private:
   // Rows that are about to be made again are forgotten, and what killed runs left is removed.
-  void prepare_directory() const {
-    Starts starts;
+  void prepare_directory() {
     std::set<std::string> directories{command_.directory};
     for (const PlannedMesh& planned : plan_.todo) {
-      starts.emplace(planned.mesh.name, time_after(planned.earlier));
+      starts_.emplace(planned.mesh.name, time_after(planned.earlier));
       directories.insert(fs::path(path_of_output(planned.mesh)).parent_path().string());
     }
     for (const std::string& directory : directories) remove_abandoned_files(directory);
     for (const auto& [name, record] : results_.read()) {
       const bool was_unreadable_directory = name.ends_with('/');
-      if (was_unreadable_directory && !plan_.kept.contains(name)) starts.emplace(name, time_after(finished(record)));
+      if (was_unreadable_directory && !plan_.kept.contains(name)) starts_.emplace(name, time_after(finished(record)));
     }
-    results_.forget(starts);
+    results_.forget(starts_);
   }
 
   [[nodiscard]] std::string path_of_output(const BatchMesh& mesh) const {
@@ -220,7 +219,7 @@ class BatchRun {
   // Whether to go on.
   bool take(std::size_t job, JobResult result, double part) {
     const BatchMesh& mesh = plan_.todo[job].mesh;
-    BatchRecord record = record_of(plan_.todo[job], std::move(result));
+    BatchRecord record = record_of(mesh, std::move(result));
     results_.append(record);
     const bool failed = record.row.status != MeshStatus::kOk;
     progress_.erase();
@@ -233,8 +232,7 @@ class BatchRun {
     return !(failed && command_.fail_fast);
   }
 
-  [[nodiscard]] BatchRecord record_of(const PlannedMesh& planned, JobResult result) const {
-    const BatchMesh& mesh = planned.mesh;
+  [[nodiscard]] BatchRecord record_of(const BatchMesh& mesh, JobResult result) const {
     ResultRow& row = result.row;
     row.mesh = mesh.name;
     if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
@@ -246,7 +244,7 @@ class BatchRun {
                      .memory_limit = options_.memory_limit,
                      .default_memory_limit = options_.default_memory_limit,
                      .timeout = options_.timeout,
-                     .finished = time_after(planned.earlier + 1),
+                     .finished = time_after(starts_.at(mesh.name)),
                      .thumbnail = std::move(result.thumbnail)};
     return {std::move(row), std::move(origin)};
   }
@@ -264,7 +262,7 @@ class BatchRun {
     }
   }
 
-  // Now, or where clocks of hosts differ at least later than `earlier`: nanoseconds since 1970.
+  // Now, or where clocks differ or are set back at least later than `earlier`: nanoseconds since 1970.
   static std::int64_t time_after(std::int64_t earlier) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), earlier + 1);
@@ -275,6 +273,7 @@ class BatchRun {
   const PlanOptions& options_;
   ResultsFiles results_;
   BatchProgress progress_;
+  Starts starts_;  // of all that is to be done
   std::vector<SupervisedJob> jobs_;
   BatchOutcome outcome_;
 };

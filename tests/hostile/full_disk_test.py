@@ -107,7 +107,7 @@ def sweep_refusals():
                              (["lattice", OPEN, "--resolution", "100", "-o", "new.vti"], 4 * 100**3),
                              (["lattice", OPEN, "--resolution", "60", "-o", "new.csv"], 14 * 60**3),
                              (["points", OPEN, "--sample", "uniform=100000", "--field", "winding,inside", "-o", "new.npz"], 33 * 10**5),
-                             (["points", OPEN, "--sample", "uniform=100000", "-o", "new.csv"], 8 * 10**5),
+                             (["points", OPEN, "--sample", "uniform=100000", "-o", "new.csv"], 12 * 10**5),
                              (["slice", OPEN, "--size", "500", "-o", "new.png", "--values", "values.npy"], 8 * 500**2)]:
         leave(least - 8192)
         result = run(arguments)

@@ -14,9 +14,9 @@ from runs import CLOSED, OPEN, RAYCONE, Run, fail, is_sanitized, report
 
 LONG = "--long" in sys.argv
 KB = 1024
-# Limits, whether root obeys them, and the values tried. Below 12 kB of stack the dynamic linker itself has too little.
+# Limits, whether root obeys them, and the values tried. Below 16 kB of stack the dynamic linker itself has too little.
 LIMITS = [
-    ("stack", resource.RLIMIT_STACK, [12 * KB, 16 * KB, 32 * KB, 64 * KB, 200 * KB, 256 * KB, 1024 * KB]),
+    ("stack", resource.RLIMIT_STACK, [16 * KB, 32 * KB, 64 * KB, 200 * KB, 256 * KB, 1024 * KB]),
     ("open files", resource.RLIMIT_NOFILE, list(range(4, 40)) if LONG else [4, 6, 8, 10, 12, 16, 24]),
     ("processes", resource.RLIMIT_NPROC, [0, 1, 2]),
     ("locked bytes", resource.RLIMIT_MEMLOCK, [0]),

@@ -396,10 +396,12 @@ TEST(ReadGltf, PercentEncodedFileBesideTheAssetIsReadAndReported) {
   // One byte more than byteLength, which is allowed.
   std::ofstream(directory / "sub dir/ä.bin", std::ios::binary) << asset.binary << '!';
   asset.buffers = R"([{"byteLength":60,"uri":"sub%20dir/%C3%A4.bin"}])";
-  std::vector<std::string> files;
+  std::vector<FileRead> files;
   const ParsedMesh parsed = read_gltf({"a.gltf", directory.path().string(), asset.json()}, &files);
   EXPECT_EQ(triangles_of(parsed.mesh), kSquareTriangles);
-  EXPECT_EQ(files, (std::vector<std::string>{directory / "sub dir/ä.bin"}));
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].path, directory / "sub dir/ä.bin");
+  EXPECT_EQ(files[0].sha256, sha256(asset.binary + '!'));
 }
 
 TEST(ReadGltf, UriThatLeavesTheDirectoryIsRefusedByName) {

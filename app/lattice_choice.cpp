@@ -137,6 +137,15 @@ void check_finite(const Box& box) {
   throw LimitError("the box is too large for double precision; see --scale");
 }
 
+// Padding in voxels may lead out of the doubles.
+void check_finite(const Lattice& lattice) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    if (std::isfinite(first) && std::isfinite(lattice.coordinate(axis, lattice.index_max(axis)))) continue;
+    throw LimitError("the lattice is too large for double precision; see --scale");
+  }
+}
+
 void check_positive(const Vec3& spacing) {
   if (std::min({spacing.x, spacing.y, spacing.z}) > 0.0) return;
   throw LimitError("the lattice's spacing is too small for double precision; see --scale");
@@ -161,6 +170,7 @@ Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::
   Lattice lattice = sample(box, request, warnings);
   check_positive(lattice.spacing);
   if (const auto* padding = std::get_if<VoxelPadding>(&request.padding)) add_samples(lattice, *padding);
+  check_finite(lattice);
   return lattice;
 }
 

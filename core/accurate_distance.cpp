@@ -15,29 +15,9 @@ constexpr DoubleDouble kZero{0.0}, kOne{1.0};
 
 double square(const Vec3& v) { return dot(v, v); }
 
-double largest_component(const DoubleDoubleVec3& v) {
-  return std::max({std::abs(v.x.high), std::abs(v.y.high), std::abs(v.z.high)});
-}
-
 // Edge i leads from corner i to the next; to_query[i] from corner i to the query.
 struct Differences {
   std::array<DoubleDoubleVec3, 3> edges, to_query;
-
-  [[nodiscard]] double largest() const {
-    double largest = 0.0;
-    for (const auto& vectors : {edges, to_query}) {
-      for (const DoubleDoubleVec3& v : vectors) largest = std::max(largest, largest_component(v));
-    }
-    return largest;
-  }
-
-  void scale(double factor) {
-    for (auto* const vectors : {&edges, &to_query}) {
-      for (DoubleDoubleVec3& v : *vectors) {
-        for (DoubleDouble* const number : {&v.x, &v.y, &v.z}) *number = {number->high * factor, number->low * factor};
-      }
-    }
-  }
 
   [[nodiscard]] std::size_t longest_edge() const {
     const std::array<double, 3> squares{square(edges[0].rounded()), square(edges[1].rounded()),
@@ -46,8 +26,8 @@ struct Differences {
   }
 };
 
-// Of numbers up to 1: an edge that short is a point.
-constexpr double kPoint = 1e-280;
+// An edge that short is a point: beyond, products would underflow.
+constexpr double kPoint = 1e-250;
 // A triangle that thin beside its longest edge, 2^-56, is the segments of its edges.
 constexpr double kThin = 0x1p-112;
 
@@ -81,18 +61,13 @@ double square_to_plane(const Differences& d) {
 }  // namespace
 
 double accurate_squared_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  Differences d{{exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)},
-                {exact_difference(p, a), exact_difference(p, b), exact_difference(p, c)}};
-  const double largest = d.largest();
-  if (largest == 0.0) return 0.0;
-  constexpr int kLargestExponent = 1000;
-  const int exponent = std::min(-std::ilogb(largest), kLargestExponent);
-  d.scale(std::ldexp(1.0, exponent));
+  const Differences d{{exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)},
+                      {exact_difference(p, a), exact_difference(p, b), exact_difference(p, c)}};
   double least = square_to_plane(d);
   if (least == HUGE_VAL) {
     for (std::size_t i = 0; i < 3; ++i) least = std::min(least, square_to_segment(d.to_query[i], d.edges[i]));
   }
-  return std::ldexp(least, -2 * exponent);
+  return least;
 }
 
 }  // namespace raycone

@@ -1,4 +1,5 @@
-// Unsigned distances to the triangles of a mesh, in double precision.
+// Unsigned distances to the triangles of a mesh: off by less than 1e-12 of themselves, or by less than 4 * 2^-53 times
+// the largest coordinate of the mesh or the point (docs/method.md, "Distances").
 #pragma once
 
 #include <memory>
@@ -17,9 +18,9 @@ class DistanceEvaluator {
   DistanceEvaluator(DistanceEvaluator&&) noexcept;
   DistanceEvaluator& operator=(DistanceEvaluator&&) noexcept;
 
-  // Distances (world units) of a block of `lattice`, x fastest, cut off at `band`: distances.size() == block.size().
-  // Uses the threads that ThreadLimit allows; the distances depend on neither their number nor the block's extent.
-  // Const calls may run concurrently.
+  // Distances (world units) of a block of `lattice`, x fastest: to the bit those of points, cut off at `band`;
+  // distances.size() == block.size(). Uses the threads that ThreadLimit allows; the distances depend on neither their
+  // number nor the block's extent. Const calls may run concurrently.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
   // Builds the search tree that points need and lattices do not; else the first evaluation of points does.

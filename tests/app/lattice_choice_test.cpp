@@ -206,6 +206,10 @@ TEST(LatticeChoice, WhatDoubleCannotHoldIsALimit) {
   LatticeRequest request;
   request.padding = VoxelPadding{std::numeric_limits<std::int64_t>::max()};
   EXPECT_THROW(choose(kUnit, request), LimitError);
+  LatticeRequest padded = sampled(VoxelSize{{1e308, 1e308, 1e308}});
+  EXPECT_EQ(choose(kUnit, padded).lattice.counts, (Counts{2, 2, 2}));
+  padded.padding = VoxelPadding{4};
+  EXPECT_THROW(choose(kUnit, padded), LimitError);
 }
 
 TEST(SampleCount, IsTheProductOfTheCounts) {

@@ -170,7 +170,7 @@ TEST(Distance, OfSamplesFarAway) {
   const TriangleMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
   for (const double size : {1e-290, 1e-150, 1.0, 1e150}) {
     const TriangleMesh mesh = test::moved(cube, {size, size, size}, {});
-    for (const double reach : {1e3, 3e15, 7e16, 1e20, 1e100, 1e150}) {
+    for (const double reach : {1e3, 3e15, 3.5e16, 7e16, 1e20, 1e100, 1e150}) {
       const double h = reach * size;
       for (const std::int64_t first : {-1, 0, 1}) {
         const Lattice lattice{{0, 0, 0}, {h, h, h}, {first, -1, -1}, {3, 3, 3}};
@@ -194,6 +194,25 @@ TEST(Distance, IsCutOffAtTheBandFarAway) {
   EXPECT_DOUBLE_EQ(distances[1], std::sqrt(2.0) * 1e20);
   EXPECT_EQ(distances[13], 0);
   EXPECT_EQ(distances[14], 1e20);
+}
+
+// The nearest point of all triangles is one corner of their boxes. Each finds its own distance to it, next to what is
+// rounded; of these the least counts, also where it is below that of the boxes, which is rounded less.
+TEST(Distance, OfSamplesNextToACornerOfManyTriangles) {
+  test::Random random(1);
+  TriangleMesh mesh{{{0, 0, 0}}, {}};
+  for (int n = 0; n < 512; ++n) {
+    mesh.vertices.push_back(test::uniform_point(random, {{-0.25, -0.25, -0.25}, {0, 0, 0}}));
+    mesh.vertices.push_back(test::uniform_point(random, {{-0.25, -0.25, -0.25}, {0, 0, 0}}));
+    const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    mesh.triangles.push_back({last - 1, 0, last});
+  }
+  mesh.vertices.push_back({-1, -1, -1});  // where scaling looks
+  const auto far = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  mesh.triangles.push_back({far, far, far});
+  for (const double h : {1e-3, 1e-5, 1e-7, 1e-9}) {
+    expect_points_bit_by_bit(mesh, {{0, 0, 0}, {h, h, h}, {1, 1, 1}, {9, 9, 9}});
+  }
 }
 
 TEST(Distance, ToTheOriginAlone) {

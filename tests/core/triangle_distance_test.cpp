@@ -105,6 +105,7 @@ TEST_F(TriangleDistanceTest, TakesTinyTriangles) {
     for (int n = 0; n < 200; ++n) {
       const Vec3 a = 1e-3 * point();
       expect_distance(a, a + size * point(), a + size * point(), point(), kRounding);
+      expect_distance(size * point(), size * point(), size * point(), point(), kRounding);
     }
   }
 }

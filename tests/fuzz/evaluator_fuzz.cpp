@@ -1,7 +1,7 @@
 // libFuzzer target of the evaluator: bytes become a small mesh, queries and a lattice. Every engine must give each
 // query the value of its definition (tests/property/check.h), and each sample of the lattice what it gives it as a
-// point. Rules hold for these values as their definitions say, and points drawn from the mesh lie on it
-// (tests/property/check_samples.h).
+// point. Distances likewise (tests/property/distance_check.h). Rules hold for these values as their definitions say, and
+// points drawn from the mesh lie on it (tests/property/check_samples.h).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,6 +19,7 @@
 #include "core/winding_number.h"
 #include "tests/property/check.h"
 #include "tests/property/check_samples.h"
+#include "tests/property/distance_check.h"
 
 namespace raycone {
 namespace {
@@ -135,6 +136,14 @@ void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
   }
 }
 
+void check_distances(const TriangleMesh& mesh, std::vector<Vec3> points, const Lattice& lattice) {
+  test::DistanceCounts counts;
+  const std::vector<Vec3> samples = points_of(lattice);
+  points.insert(points.end(), samples.begin(), samples.end());
+  if (const auto failure = test::check_distances(mesh, points, counts)) report(mesh, *failure);
+  if (const auto failure = test::check_lattice_distances(mesh, lattice, counts)) report(mesh, *failure);
+}
+
 }  // namespace
 }  // namespace raycone
 
@@ -145,7 +154,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<Vec3> queries;
   for (std::size_t i = 1 + choices.below(4); i > 0; --i) queries.push_back(any_query(mesh, choices));
   if (const auto failure = test::check(mesh, queries)) report(mesh, *failure);
-  check_lattice(mesh, any_lattice(choices));
+  const Lattice lattice = any_lattice(choices);
+  check_lattice(mesh, lattice);
+  check_distances(mesh, queries, lattice);
   if (const auto failure = test::check_samples(mesh, choices.below(256), 4)) report(mesh, *failure);
   return 0;
 }

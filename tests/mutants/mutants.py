@@ -182,4 +182,37 @@ MUTANTS = [
         ("core/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
     Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
         ("core/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
+    # --- Distances ---
+    Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
+        ("core/distance_tree.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
+    Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
+        ("core/distance_tree.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
+    Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
+        ("core/distance_band.cpp", "std::min(band_ + radius, distance + length(center - from))",
+         "std::min(band_, distance + length(center - from))")]),
+    Mutant("bands_without_slack", "what rounds may be just outside of what it is intersected with", [
+        ("core/distance_band.cpp", "reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13;",
+         "reach_ = band;")]),
+    Mutant("no_sample_is_far", "lattices may be larger than what squares hold", [
+        ("core/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
+         "return std::abs(to_unit(coordinate)) <= std::numeric_limits<double>::max();")]),
+    Mutant("band_ends_with_what_is_near", "samples that are not far may be farther than that from the mesh", [
+        ("core/distance.cpp", "std::min(to_unit(band), 4 * kFar)", "std::min(to_unit(band), kFar)")]),
+    Mutant("origin_has_a_size", "squares of distances to a mesh without a size underflow", [
+        ("core/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),
+    Mutant("distances_without_care", "next to the surface or a needle rounding shows", [
+        ("core/triangle_distance.cpp", "return least >= sure_from_ || least <= sure_up_to_ ?", "return least >= 0 ?")]),
+    Mutant("needles_are_segments", "a thin triangle is its edges from some distance only", [
+        ("core/triangle_distance.cpp", "4e12 *", "4e4 *")]),
+    Mutant("needles_are_proper", "beyond which edges a point lies is not known of needles", [
+        ("core/triangle_distance.cpp", "constexpr double kProper = 0x1p-8;", "constexpr double kProper = 1e-30;")]),
+    Mutant("tiny_triangles_are_proper", "squares of small normals underflow", [
+        ("core/triangle_distance.cpp", "constexpr double kTiny = 1e-130;", "constexpr double kTiny = 0;")]),
+    Mutant("rest_is_not_corrected", "a residual holds the error of the coordinates that it is of", [
+        ("core/triangle_distance.cpp", "return square(rest - dot(rest, to_v_) * edges_[0] + dot(rest, to_w_) * edges_[2]);",
+         "return square(rest);")]),
+    Mutant("inside_of_two_edges", "a point is inside of a thin triangle within all three edges", [
+        ("core/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
+    Mutant("no_segments", "a triangle without height is its edges", [
+        ("core/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 ]

@@ -1,6 +1,7 @@
 // raycone_distances: distances of generated triangles and meshes against exact arithmetic, for as long as you like.
 //
 //   raycone_distances [--seconds N] [--seed S]      (default: 3600 seconds, a seed from the clock, which is printed)
+//   raycone_distances MESH...                       the same checks of files, once
 //
 // Prints the first case that fails, a mesh as an OBJ file with its query; exit status 1.
 #include <algorithm>
@@ -10,9 +11,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "core/triangle_distance.h"
+#include "core/weld.h"
+#include "io/file_error.h"
+#include "io/read_mesh.h"
 #include "tests/property/cases.h"
 #include "tests/property/distance_check.h"
 #include "tests/property/triangle_cases.h"
@@ -66,9 +71,63 @@ bool run_meshes(std::uint64_t seed, DistanceCounts& counts) {
   return true;
 }
 
+// In the box and around it; and next to triangles, on either side of them, as close as 1e-17 of the box.
+std::vector<Vec3> points_near(const TriangleMesh& mesh, Random& random) {
+  constexpr int kPoints = 100;
+  const Box box = bounding_box(mesh);
+  const Vec3 sides = box.upper - box.lower;
+  std::vector<Vec3> points;
+  for (int n = 0; n < kPoints; ++n) {
+    points.push_back(uniform_point(random, {box.lower - 0.1 * sides, box.upper + 0.1 * sides}));
+    const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const double s = uniform(random, 0, 1), r = uniform(random, 0, 1 - s);
+    const double distance = std::pow(10.0, uniform(random, -17, -1));
+    points.push_back(a + s * (b - a) + r * (c - a) + uniform_point(random, {(-distance) * sides, distance * sides}));
+  }
+  return points;
+}
+
+// Whether the file is right, or no mesh.
+bool run_file(const std::string& path, DistanceCounts& counts) {
+  TriangleMesh mesh;
+  try {
+    mesh = weld(read_mesh(path, {}).parsed.mesh, {});
+  } catch (const InputError&) {
+    return true;
+  }
+  if (mesh.triangles.empty()) return true;
+  Random random(1);
+  auto failure = check_distances(mesh, points_near(mesh, random), counts);
+  constexpr int kLattices = 5;
+  for (int n = 0; n < kLattices && !failure; ++n) {
+    failure = check_lattice_distances(mesh, any_lattice(mesh, random), counts);
+  }
+  if (!failure) return true;
+  const Vec3& q = failure->query;
+  std::printf("# FAILED: %s at %.17g %.17g %.17g: %s\n", path.c_str(), q.x, q.y, q.z, failure->what.c_str());
+  return false;
+}
+
+void print(const DistanceCounts& counts) {
+  std::printf("meshes: %llu points right, %llu on the surface; %llu samples as points, %llu in the band\n",
+              printable(counts.points), printable(counts.on_surface), printable(counts.samples),
+              printable(counts.in_band));
+}
+
+// The exit status.
+int run_files(const std::vector<std::string>& paths) {
+  DistanceCounts counts;
+  int failed = 0;
+  for (const std::string& path : paths) failed += run_file(path, counts) ? 0 : 1;
+  print(counts);
+  return failed > 0 ? 1 : 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && argv[1][0] != '-') return run_files({argv + 1, argv + argc});
   double seconds = 3600;
   auto seed = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
   for (int i = 1; i + 1 < argc; i += 2) {
@@ -87,8 +146,6 @@ int main(int argc, char** argv) {
     std::printf("%s: %llu distances, within 1e-12 or by up to %.2g u of the coordinates\n", kNames[family],
                 printable(worst[family].cases), worst[family].absolute);
   }
-  std::printf("meshes: %llu points right, %llu on the surface; %llu samples as points, %llu in the band\n",
-              printable(counts.points), printable(counts.on_surface), printable(counts.samples),
-              printable(counts.in_band));
+  print(counts);
   return 0;
 }

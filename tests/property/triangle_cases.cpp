@@ -56,6 +56,23 @@ Vec3 foot(const std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
+// Off the triangle in any direction, or at right angles to it, as far as 64 bits tell, so that also far from a needle
+// its inside is nearest.
+Vec3 off(const std::array<Vec3, 3>& corners, Random& random) {
+  using Long = long double;
+  const auto& [a, b, c] = corners;
+  const auto minus = [](const Vec3& p, const Vec3& q) {
+    return std::array<Long, 3>{Long{p.x} - q.x, Long{p.y} - q.y, Long{p.z} - q.z};
+  };
+  const auto ab = minus(b, a), ac = minus(c, a);
+  const std::array<Long, 3> normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
+                                   ab[0] * ac[1] - ab[1] * ac[0]};
+  const Long size = std::hypot(normal[0], normal[1], normal[2]);
+  if (chance(random, 2) || !(size > 0)) return direction(random);
+  return {static_cast<double>(normal[0] / size), static_cast<double>(normal[1] / size),
+          static_cast<double>(normal[2] / size)};
+}
+
 // Along coordinate planes much is exact, and ties are frequent.
 void flatten(std::array<Vec3, 3>& corners, Random& random) {
   const int axis = static_cast<int>(random() % 3);
@@ -87,7 +104,7 @@ TriangleCase make_triangle_case(int family, Random& random) {
   const double scale = std::ldexp(1.0, -std::ilogb(largest_of(result.corners)) - 1);
   for (Vec3& corner : result.corners) corner = scale * corner;
   const double distance = chance(random, 10) ? 0.0 : size * scale * power(random, -18, 1);
-  result.query = foot(result.corners, random) + distance * direction(random);
+  result.query = foot(result.corners, random) + distance * off(result.corners, random);
   return result;
 }
 

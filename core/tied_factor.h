@@ -10,9 +10,9 @@
 
 namespace raycone {
 
-// Re and |Im| of a number with the argument of z_ab(q), where D = 0 and the edge does not project to a point
-// (docs/method.md, "Exact zeros"): max(|re|, |im|) in [1, 2], each rounded once to Real (and to 64 bits before); the
-// sign of Im is that of edge_side(). Nothing where the argument is 0.
+// Re and |Im| of a number with the argument of z_ab(q), where D = 0 and the edge does not project to a point (METHOD
+// section 3, rule 4): max(|re|, |im|) in [1, 2], each rounded once to Real (and to 64 bits before); the sign of Im is
+// that of edge_side(). Nothing where the argument is 0.
 template <class Real>
 [[nodiscard]] std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
   using Wide = long double;  // for its exponents: nothing here over- or underflows

@@ -231,6 +231,28 @@ MUTANTS = [
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
         ("core/winding_number.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
 
+    # --- Points that are drawn ---
+    Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [
+        ("core/point_sampler.cpp", "return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);",
+         "return ((void)in_range, (void)kThinnest, (void)exact_doubled_area, product);")]),
+    Mutant("area_filter_too_small", "doubles decide an area only where its error bound vouches for it", [
+        ("core/point_sampler.cpp", "kThinnest = 0x1p-20", "kThinnest = 0x1p-60")]),
+    Mutant("area_in_world_units", "areas may be below the range of doubles", [
+        ("core/point_sampler.cpp", "std::scalbn(s, -exponent)", "((void)exponent, s)")]),
+    Mutant("triangle_without_root", "points are uniform within a triangle", [
+        ("core/point_sampler.cpp", "from_a = std::sqrt(random.uniform())", "from_a = random.uniform()")]),
+    Mutant("points_out_of_their_box", "points of faces across an axis lie in them exactly", [
+        ("core/point_sampler.cpp", "p[axis] = std::clamp(p[axis], least, most);", "(void)std::clamp(p[axis], least, most);")]),
+    Mutant("noise_in_world_units", "noise is in diagonals of the mesh's box", [
+        ("core/point_sampler.cpp", "near.sigma * diagonal_", "near.sigma")]),
+    Mutant("points_at_infinity", "points that are not finite are told before they are drawn", [
+        ("core/point_sampler.cpp", "if (!std::isfinite(lower) || !std::isfinite(upper)) return false;", "")]),
+    Mutant("one_stream_for_all", "each point has a stream of random numbers of its own", [
+        ("core/point_sampler.cpp", "Random random(seed_, number);", "Random random(seed_, number / 2);")]),
+    Mutant("another_generator", "the generator is SplitMix64", [
+        ("core/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
+    Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
+        ("core/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
     # --- Distances ---
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
         ("core/distance_tree.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
@@ -264,26 +286,4 @@ MUTANTS = [
         ("core/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
-    # --- Points that are drawn ---
-    Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [
-        ("core/point_sampler.cpp", "return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);",
-         "return ((void)in_range, (void)kThinnest, (void)exact_doubled_area, product);")]),
-    Mutant("area_filter_too_small", "doubles decide an area only where its error bound vouches for it", [
-        ("core/point_sampler.cpp", "kThinnest = 0x1p-20", "kThinnest = 0x1p-60")]),
-    Mutant("area_in_world_units", "areas may be below the range of doubles", [
-        ("core/point_sampler.cpp", "std::scalbn(s, -exponent)", "((void)exponent, s)")]),
-    Mutant("triangle_without_root", "points are uniform within a triangle", [
-        ("core/point_sampler.cpp", "from_a = std::sqrt(random.uniform())", "from_a = random.uniform()")]),
-    Mutant("points_out_of_their_box", "points of faces across an axis lie in them exactly", [
-        ("core/point_sampler.cpp", "p[axis] = std::clamp(p[axis], least, most);", "(void)std::clamp(p[axis], least, most);")]),
-    Mutant("noise_in_world_units", "noise is in diagonals of the mesh's box", [
-        ("core/point_sampler.cpp", "near.sigma * diagonal_", "near.sigma")]),
-    Mutant("points_at_infinity", "points that are not finite are told before they are drawn", [
-        ("core/point_sampler.cpp", "if (!std::isfinite(lower) || !std::isfinite(upper)) return false;", "")]),
-    Mutant("one_stream_for_all", "each point has a stream of random numbers of its own", [
-        ("core/point_sampler.cpp", "Random random(seed_, number);", "Random random(seed_, number / 2);")]),
-    Mutant("another_generator", "the generator is SplitMix64", [
-        ("core/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
-    Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
-        ("core/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
 ]

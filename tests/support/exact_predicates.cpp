@@ -90,7 +90,8 @@ bool exactly_collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool exactly_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   if (!in_box(a, b, c, q)) return false;  // comparisons are exact, and spare most of the work
-  const auto [pa, pb, pc, pq] = integers<4>({a, b, c, q});
+  const std::array<Vector, 4> points = integers<4>({a, b, c, q});
+  const Vector &pa = points[0], &pb = points[1], &pc = points[2], &pq = points[3];
   const Vector normal = cross(minus(pb, pa), minus(pc, pa));
   if (is_zero(normal)) return on_segment(pa, pb, pq) || on_segment(pb, pc, pq) || on_segment(pc, pa, pq);
   const auto left_of = [&](const Vector& from, const Vector& to) {

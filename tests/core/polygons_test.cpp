@@ -425,19 +425,30 @@ TEST(Polygons, AnyMagnitude) {
   }
 }
 
-// A first corner that steps by last bits past the line through the next two, where differences round (Kettner et al.,
-// "Classroom examples of robustness problems in geometric computations", 2008).
+// A first corner that steps by last bits past the line through the next two, where differences round, to either side
+// (Kettner et al., "Classroom examples of robustness problems in geometric computations", 2008).
 TEST(Polygons, DecidedExactly) {
   constexpr double kBit = 0x1p-53;
-  for (int i = 0; i < 32; ++i) {
-    for (int j = 0; j < 32; ++j) {
-      const Vec3 corner{0.5 + i * kBit, 0.5 + j * kBit, 0};
-      TriangleMesh mesh = fan(std::vector<Vec3>{corner, {12, 12, 0}, {24, 24, 0}, {0, 30, 0}});
+  const auto integers = [](const Vec3& p) {
+    return Flat{std::llround(p.x / kBit), std::llround(p.y / kBit)};
+  };  // exact
+  int reflex = 0;
+  for (int i = 0; i < 64; ++i) {
+    for (int j = 0; j < 64; ++j) {
+      const std::vector<Vec3> corners{{0.50000000000002531 + i * kBit, 0.5000000000000171 + j * kBit, 0},
+                                      {17.300000000000001, 17.300000000000001, 0},
+                                      {24.00000000000005, 24.0000000000000517765, 0},
+                                      {0, 30, 0}};
+      TriangleMesh mesh = fan(corners);
       const TriangleMesh before = mesh;
       EXPECT_EQ(cut(mesh), 0U);
-      EXPECT_EQ(mesh.triangles != before.triangles, j < i) << i << " " << j;
+      const bool is_reflex = turn(integers(corners[0]), integers(corners[1]), integers(corners[2])) < 0;
+      EXPECT_EQ(mesh.triangles != before.triangles, is_reflex) << i << " " << j;
+      reflex += is_reflex;
     }
   }
+  EXPECT_GT(reflex, 100);
+  EXPECT_LT(reflex, 64 * 64 - 100);
 }
 
 // Along the area vector a square, along z two triangles over each other.

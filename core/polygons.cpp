@@ -79,16 +79,6 @@ class Polygon {
     return exact_turn(direction_, a, b, c);
   }
 
-  // Starts the polygon at the corner that comes first in space, so that it matters little where a file starts it.
-  void rotate_to_first() {
-    const auto first = std::min_element(corners_.begin(), corners_.end(), [](const Vec3& a, const Vec3& b) {
-      return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-    });
-    const auto shift = first - corners_.begin();
-    std::rotate(corners_.begin(), corners_.begin() + shift, corners_.end());
-    std::rotate(vertices_.begin(), vertices_.begin() + shift, vertices_.end());
-  }
-
  private:
   void add(const TriangleMesh& mesh, std::uint32_t vertex) {
     const Vec3& corner = mesh.vertices[vertex];
@@ -157,9 +147,8 @@ std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const 
 }
 
 std::optional<std::vector<Triangle>> cut(const TriangleMesh& mesh, const PolygonFan& fan) {
-  Polygon polygon(mesh, fan);
+  const Polygon polygon(mesh, fan);
   if (!polygon.has_area()) return std::nullopt;
-  polygon.rotate_to_first();
   auto triangles = cut_polygon(polygon.corners(), polygon.direction());
   if (!triangles) return std::nullopt;
   for (Triangle& triangle : *triangles)

@@ -399,7 +399,7 @@ std::vector<std::array<Vec3, 3>> sorted_triangles(const TriangleMesh& mesh) {
 
 TEST(Polygons, TheFirstCornerDoesNotMatter) {
   Random random(4, 0);
-  for (const Corners& corners : {kL, star_shaped(random, 50), comb(5)}) {
+  for (const Corners& corners : {kL, star_shaped(random, 50), comb(5), spiral(2), spiral(4)}) {
     TriangleMesh first = fan(corners, {});
     cut(first);
     for (std::size_t shift = 1; shift < corners.size(); ++shift) {

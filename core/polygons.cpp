@@ -49,8 +49,11 @@ Vec3 area_direction(std::span<const Vec3> corners) {
 // The corners of a polygon, seen along its area vector.
 class Polygon {
  public:
-  // Corners that repeat the one before are left out, and so is a last one that repeats the first.
-  Polygon(const TriangleMesh& mesh, const PolygonFan& fan) {
+  // Takes the place of what was here before, and its memory. Corners that repeat the one before are left out, and so is
+  // a last one that repeats the first.
+  void assign(const TriangleMesh& mesh, const PolygonFan& fan) {
+    corners_.clear();
+    vertices_.clear();
     add(mesh, mesh.triangles[fan.first][0]);
     add(mesh, mesh.triangles[fan.first][1]);
     for (std::uint64_t i = 0; i < fan.triangles; ++i) add(mesh, mesh.triangles[fan.first + i][2]);
@@ -138,7 +141,11 @@ std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const 
   std::vector<char> concave(fans.size());
   constexpr std::size_t kGrain = 4096;
   parallel_for(fans.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) concave[i] = !is_convex(Polygon(mesh, fans[i]));
+    Polygon polygon;
+    for (std::size_t i = begin; i < end; ++i) {
+      polygon.assign(mesh, fans[i]);
+      concave[i] = !is_convex(polygon);
+    }
   });
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < fans.size(); ++i)
@@ -147,7 +154,8 @@ std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const 
 }
 
 std::optional<std::vector<Triangle>> cut(const TriangleMesh& mesh, const PolygonFan& fan) {
-  const Polygon polygon(mesh, fan);
+  Polygon polygon;
+  polygon.assign(mesh, fan);
   if (!polygon.has_area()) return std::nullopt;
   auto triangles = cut_polygon(polygon.corners(), polygon.direction());
   if (!triangles) return std::nullopt;

@@ -21,8 +21,11 @@ namespace {
 // The corners of a polygon, seen along its area vector.
 class Polygon {
  public:
-  // Corners that repeat the one before are left out, and so is a last one that repeats the first.
-  Polygon(const TriangleMesh& mesh, const PolygonFan& fan) {
+  // Takes the place of what was here before, and its memory. Corners that repeat the one before are left out, and so is
+  // a last one that repeats the first.
+  void assign(const TriangleMesh& mesh, const PolygonFan& fan) {
+    corners_.clear();
+    vertices_.clear();
     add(mesh, mesh.triangles[fan.first][0]);
     add(mesh, mesh.triangles[fan.first][1]);
     for (std::uint64_t i = 0; i < fan.triangles; ++i) add(mesh, mesh.triangles[fan.first + i][2]);
@@ -43,16 +46,6 @@ class Polygon {
   // 1 where corners i, j, k turn left, -1 where they turn right, 0 where they lie on a line.
   [[nodiscard]] int turn(std::size_t i, std::size_t j, std::size_t k) const {
     return raycone::turn(direction_, corners_[i], corners_[j], corners_[k]);
-  }
-
-  // Starts the polygon at the corner that comes first in space, so that it matters little where a file starts it.
-  void rotate_to_first() {
-    const auto first = std::min_element(corners_.begin(), corners_.end(), [](const Vec3& a, const Vec3& b) {
-      return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-    });
-    const auto shift = first - corners_.begin();
-    std::rotate(corners_.begin(), corners_.begin() + shift, corners_.end());
-    std::rotate(vertices_.begin(), vertices_.begin() + shift, vertices_.end());
   }
 
  private:
@@ -114,7 +107,11 @@ std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const 
   std::vector<char> concave(fans.size());
   constexpr std::size_t kGrain = 4096;
   parallel_for(fans.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) concave[i] = !is_convex(Polygon(mesh, fans[i]));
+    Polygon polygon;
+    for (std::size_t i = begin; i < end; ++i) {
+      polygon.assign(mesh, fans[i]);
+      concave[i] = !is_convex(polygon);
+    }
   });
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < fans.size(); ++i)
@@ -123,9 +120,9 @@ std::vector<std::size_t> find_concave(const TriangleMesh& mesh, std::span<const 
 }
 
 std::optional<std::vector<Triangle>> cut(const TriangleMesh& mesh, const PolygonFan& fan) {
-  Polygon polygon(mesh, fan);
+  Polygon polygon;
+  polygon.assign(mesh, fan);
   if (!polygon.has_area()) return std::nullopt;
-  polygon.rotate_to_first();
   auto triangles = cut_polygon(polygon.corners(), polygon.direction());
   if (!triangles) return std::nullopt;
   for (Triangle& triangle : *triangles)

@@ -1,13 +1,18 @@
 // libFuzzer target of one mesh reader, RAYCONE_READER (tests/fuzz/CMakeLists.txt): whatever the bytes, it returns a
-// mesh that keeps the promises of io/read_mesh.h or throws InputError or LimitError.
+// mesh that keeps the promises of io/read_mesh.h or throws InputError or LimitError. Cutting its polygons leaves their
+// boundaries as they were.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "core/polygons.h"
 #include "io/file_error.h"
 #include "io/read_mesh.h"
 
@@ -33,13 +38,40 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
+using Position = std::array<double, 3>;
+
+// How often each edge is run along from its smaller end to the larger, less the other way.
+std::map<std::pair<Position, Position>, int> boundary(const TriangleMesh& mesh) {
+  std::map<std::pair<Position, Position>, int> net;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 &a = mesh.vertices[triangle[i]], &b = mesh.vertices[triangle[(i + 1) % 3]];
+      const Position from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
+      if (from < to) ++net[{from, to}];
+      if (to < from) --net[{to, from}];
+    }
+  }
+  std::erase_if(net, [](const auto& edge) { return edge.second == 0; });
+  return net;
+}
+
+void check_polygons(ParsedMesh parsed) {
+  const auto before = boundary(parsed.mesh);
+  const std::uint64_t bad = cut_concave_polygons(parsed.mesh, parsed.polygons);
+  if (bad > parsed.polygons.size()) std::abort();
+  check(parsed.mesh);
+  if (boundary(parsed.mesh) != before) std::abort();
+}
+
 }  // namespace
 }  // namespace raycone
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    raycone::check(raycone::read(raycone::RAYCONE_READER, {"fuzz", "", bytes}).mesh);
+    raycone::ParsedMesh parsed = raycone::read(raycone::RAYCONE_READER, {"fuzz", "", bytes});
+    raycone::check(parsed.mesh);
+    raycone::check_polygons(std::move(parsed));
   } catch (const raycone::InputError&) {
   } catch (const raycone::LimitError&) {
   }

@@ -176,7 +176,7 @@ add("rows_too_long.ply", ply("ascii", PLY_TEXT.replace(b"\n", b" 7 8\n")), 0, "8
 add("row_too_short.ply", ply("ascii", PLY_TEXT.replace(b"1 0 0\n", b"1 0\n", 1)), 2, "expected the end of the line")
 add("keyword_unknown.ply", ply("ascii", PLY_TEXT).replace(b"element face", b"made_by hand\nelement face"), 0, "1 header line of no known keyword ignored")
 add("keyword_misspelled.ply", ply("ascii", PLY_TEXT).replace(b"element face", b"elements face"), 2, ":")
-for part, cut, fragment in (("header", 9, "expected 'element', 'property' or 'end_header'"),
+for part, cut, fragment in (("header", 9, "expected 'end_header', found the end of the file"),
                             ("first_vertex", -100, "4 elements 'vertex' announced, but only 0 bytes follow"),
                             ("last_vertex", -53, "4 elements 'vertex' announced, but only 47 bytes follow"),
                             ("first_face", -52, "4 elements 'face' announced, but only 0 bytes follow"),
@@ -201,6 +201,9 @@ def stl(count, body, header=b""):
 
 add("solid_only.stl", "solid a\nendsolid a\n", 2, "no triangles")
 add("no_endsolid.stl", "solid a\n" + FACET, 0)
+add("one_line.stl", STL.replace("\n", " "), 0)
+add("facet_in_line_of_solid.stl", STL.replace("\n", " ", 1), 0)
+add("facet_in_name.stl", "solid facet normal 0 0 1 outer\nendsolid\n", 2, "no triangles")
 add("no_vertices.stl", STL.replace("  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n", ""), 2, "no triangles")
 add("two_vertices.stl", STL.replace("  vertex 1 0 0\n", ""), 2, "no triangles")
 add("vertex_short.stl", STL.replace("vertex 1 0 0", "vertex 1 0"), 2, "expected a coordinate, found 'vertex'")

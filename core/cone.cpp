@@ -30,8 +30,10 @@ Cone::Cone(const TriangleMesh& mesh, SimdLevel level) : multiply_chains_(cone_ke
     }
     std::vector<ChainStep>& steps = groups_.back().steps;
     if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
-    const bool has_argument = !projects_to_a_point(mesh.vertices[e.from], mesh.vertices[e.to]);
-    steps.push_back({mesh.vertices[e.to], has_argument, e.multiplicity < 0});
+    const Vec3 &from = mesh.vertices[e.from], &to = mesh.vertices[e.to];
+    const bool along_rays = projects_to_a_point(from, to);
+    if (along_rays) edges_along_rays_.push_back({from, to});
+    steps.push_back({to, !along_rays, e.multiplicity < 0});
     total_multiplicity_ += multiplicity;
     previous = &e;
   }

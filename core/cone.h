@@ -66,8 +66,9 @@ class Cone {
   ConeKernel multiply_chains_;
   std::uint64_t edges_ = 0;
   double total_multiplicity_ = 0.0;
-  std::vector<Group> groups_;
-  std::optional<std::array<Vec3, 3>> plane_;  // through all edges, where there is just one
+  std::vector<Group> groups_;                          // but for the edges along the rays: their steps are unjoined
+  std::vector<std::array<Vec3, 2>> edges_along_rays_;  // without an argument, but part of the rim
+  std::optional<std::array<Vec3, 3>> plane_;           // through all edges, where there is just one
 };
 
 }  // namespace raycone

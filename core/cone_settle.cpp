@@ -112,6 +112,9 @@ void Cone::find_plane() {
 // of all directions, of a query that is on none of the edges. w is then a multiple of 1/2.
 bool Cone::lies_in_plane_of_edges(const Vec3& q) const {
   if (!plane_ || plane_side((*plane_)[0], (*plane_)[1], (*plane_)[2], q) != 0) return false;
+  for (const auto& [a, b] : edges_along_rays_) {
+    if (on_segment(a, b, q)) return false;
+  }
   for (const Group& group : groups_) {
     const ChainStep* previous = nullptr;
     for (const ChainStep& step : group.steps) {

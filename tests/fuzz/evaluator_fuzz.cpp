@@ -1,7 +1,7 @@
 // libFuzzer target of the evaluator: bytes become a small mesh, queries and a lattice. Every engine must give each
 // query the value of its definition (tests/property/check.h), and each sample of the lattice what it gives it as a
-// point. Distances likewise (tests/property/distance_check.h). Rules hold for these values as their definitions say, and
-// points drawn from the mesh lie on it (tests/property/check_samples.h).
+// point. Distances likewise (tests/property/distance_check.h). Rules hold for these values as their definitions say,
+// and points drawn from the mesh lie on it (tests/property/check_samples.h).
 #include <algorithm>
 #include <array>
 #include <bit>

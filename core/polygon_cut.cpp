@@ -13,11 +13,11 @@
 #include "core/polygon_cut.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "core/projection.h"
 
@@ -176,8 +176,10 @@ class PolygonCut {
     return leave(p, edge, low, high);
   }
 
-  // Inserts the edges that start at p, between the gaps `low` and `high`.
+  // Inserts the edges that start at p, between the gaps `low` and `high`. What they are wound around by fits together
+  // unless edges have crossed.
   bool leave(Place p, At next, Gap low, const Gap& high) {
+    if (leaving_.empty() && low.inside != high.inside) return false;
     if (leaving_.empty() && low.inside) low.chain = joined(low.chain, high.chain);
     if (next != edges_.begin()) std::prev(next)->above = low;
     sort_leaving(p);
@@ -189,11 +191,11 @@ class PolygonCut {
       const std::int64_t winding = edge.count + (inside ? 1 : 0);
       if (winding != 0 && winding != 1) return false;
       inside = winding == 1;
+      if (end == leaving_.size() && inside != high.inside) return false;
       if (end == leaving_.size())
         edge.above = high;
       else if (inside)
         edge.above = {true, single(p)};
-      assert(edge.above.inside == inside);
       edges_.insert(next, edge);
       ++ends_[edge.right];
     }

@@ -40,12 +40,21 @@ class Polygon {
   [[nodiscard]] std::size_t size() const { return corners_.size(); }
   [[nodiscard]] const std::vector<Vec3>& corners() const { return corners_; }
   [[nodiscard]] std::uint32_t vertex(std::size_t corner) const { return vertices_[corner]; }
-  [[nodiscard]] const Vec3& direction() const { return direction_; }
   [[nodiscard]] bool has_area() const { return direction_ != Vec3{}; }
 
   // 1 where corners i, j, k turn left, -1 where they turn right, 0 where they lie on a line.
   [[nodiscard]] int turn(std::size_t i, std::size_t j, std::size_t k) const {
     return raycone::turn(direction_, corners_[i], corners_[j], corners_[k]);
+  }
+
+  // Starts the polygon at the corner that comes first in space, so that it matters little where a file starts it.
+  void rotate_to_first() {
+    const auto first = std::min_element(corners_.begin(), corners_.end(), [](const Vec3& a, const Vec3& b) {
+      return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+    });
+    const auto shift = first - corners_.begin();
+    std::rotate(corners_.begin(), corners_.begin() + shift, corners_.end());
+    std::rotate(vertices_.begin(), vertices_.begin() + shift, vertices_.end());
   }
 
  private:
@@ -123,11 +132,24 @@ std::optional<std::vector<Triangle>> cut(const TriangleMesh& mesh, const Polygon
   Polygon polygon;
   polygon.assign(mesh, fan);
   if (!polygon.has_area()) return std::nullopt;
-  auto triangles = cut_polygon(polygon.corners(), polygon.direction());
+  polygon.rotate_to_first();
+  // Anew, since where a sum starts decides how it is rounded.
+  auto triangles = cut_polygon(polygon.corners(), area_direction(polygon.corners()));
   if (!triangles) return std::nullopt;
   for (Triangle& triangle : *triangles)
     for (std::uint32_t& corner : triangle) corner = polygon.vertex(corner);
   return triangles;
+}
+
+// Of the fans at these indices; absent where the polygon is not simple.
+std::vector<std::optional<std::vector<Triangle>>> cut(const TriangleMesh& mesh, std::span<const PolygonFan> fans,
+                                                      std::span<const std::size_t> indices) {
+  std::vector<std::optional<std::vector<Triangle>>> parts(indices.size());
+  constexpr std::size_t kGrain = 64;
+  parallel_for(indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) parts[i] = cut(mesh, fans[indices[i]]);
+  });
+  return parts;
 }
 
 }  // namespace
@@ -141,15 +163,17 @@ std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFa
     const auto first = mesh.triangles.begin();
     result.insert(result.end(), first + static_cast<std::ptrdiff_t>(taken), first + static_cast<std::ptrdiff_t>(end));
   };
-  for (const std::size_t i : find_concave(mesh, fans)) {
-    const auto triangles = cut(mesh, fans[i]);
-    if (!triangles) {
+  const std::vector<std::size_t> concave = find_concave(mesh, fans);
+  const auto parts = cut(mesh, fans, concave);
+  for (std::size_t i = 0; i < concave.size(); ++i) {
+    if (!parts[i]) {
       ++bad;
       continue;
     }
-    take_until(fans[i].first);
-    result.insert(result.end(), triangles->begin(), triangles->end());
-    taken = fans[i].first + fans[i].triangles;
+    const PolygonFan& fan = fans[concave[i]];
+    take_until(fan.first);
+    result.insert(result.end(), parts[i]->begin(), parts[i]->end());
+    taken = fan.first + fan.triangles;
   }
   if (taken == 0) return bad;
   take_until(mesh.triangles.size());

@@ -18,7 +18,7 @@ namespace raycone {
 //   Triangles of zero area join corners that lie on other edges to them, so that the boundary stays what it was.
 // - All others keep their fans.
 // Returns the number of the last kind. The `fans` are in increasing order and disjoint; all their vertices finite. The
-// result does not depend on the number of threads. Time n log n for ordinary polygons of n corners. Throws
+// result does not depend on the number of threads. Time as of cut_polygon(). Throws
 // ThreadsUnavailable.
 std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans);
 

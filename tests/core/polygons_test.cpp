@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "core/polygon_cut.h"
 #include "core/projection.h"
 #include "core/random.h"
 
@@ -394,6 +396,181 @@ TEST(Polygons, ManyCorners) {
     EXPECT_EQ(cut(mesh), 0U);
     EXPECT_EQ(mesh.triangles.size(), corners.size() - 2);
     EXPECT_EQ(defect(mesh, polygon, 40), "");
+  }
+}
+
+// Holes on bridges from one corner.
+Corners bridges_from_a_corner(std::int64_t holes) {
+  Corners corners{{0, 0}, {200 * holes, 0}, {200 * holes, 200 * holes}, {0, 200 * holes}, {0, 0}};
+  for (std::int64_t i = 1; i < holes; ++i) {
+    const Flat q{100 * (holes - i), 100 * i};
+    for (const Flat& c : {q, Flat{q[0], q[1] + 5}, Flat{q[0] + 5, q[1]}, q, Flat{0, 0}}) corners.push_back(c);
+  }
+  return corners;
+}
+
+// All but one on a line, in runs each of which lies in the one before.
+Corners nested_runs(std::int64_t runs) {
+  Corners corners;
+  for (std::int64_t i = 0; i < runs; ++i) {
+    corners.push_back({i, 0});
+    corners.push_back({4 * runs - i, 0});
+  }
+  corners.push_back({runs, 9});
+  return corners;
+}
+
+// All but one on a line, in runs at random.
+Corners random_runs(Random& random, std::uint64_t runs) {
+  Corners corners;
+  for (std::uint64_t i = 0; i < runs; ++i)
+    corners.push_back({static_cast<std::int64_t>(random.bits() % (2 * runs)), 0});
+  corners.push_back({0, 5});
+  return corners;
+}
+
+// Teeth that touch the side opposite to them.
+Corners touching_teeth(std::int64_t teeth) {
+  Corners corners{{0, 0}, {2 * teeth, 0}, {2 * teeth, 7}};
+  for (std::int64_t i = teeth; i-- > 1;) {
+    corners.push_back({2 * i + 1, 5});
+    corners.push_back({2 * i, 0});
+  }
+  corners.push_back({1, 5});
+  return corners;
+}
+
+TEST(Polygons, ManyCornersThatTouch) {
+  Random random(5, 0);
+  for (const Corners& corners :
+       {bridges_from_a_corner(12), nested_runs(20), random_runs(random, 40), touching_teeth(20)})
+    expect_cut(corners);
+}
+
+// Of each kind what took quadratic time would take minutes.
+TEST(Polygons, HundredThousandCornersTakeNoLongTime) {
+  Random random(6, 0);
+  constexpr double kSeconds = 20;  // measured: 0.2 to 0.7 s; sanitizers take ten times as long
+  for (const Corners& corners : {comb(33333), spiral(12500), bridges_from_a_corner(20000), nested_runs(50000),
+                                 random_runs(random, 100000), touching_teeth(50000)}) {
+    TriangleMesh mesh = fan(corners, {{}, {3, -7, 11}, {2, 13, -5}});
+    const std::clock_t start = std::clock();
+    EXPECT_EQ(cut(mesh), 0U);
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, kSeconds);
+  }
+}
+
+// --- Walks on a lattice ---------------------------------------------------------------------------------------------
+
+// Directed unit edges of a lattice.
+class LatticeGraph {
+ public:
+  explicit LatticeGraph(std::int64_t cells) : cells_(cells) {}
+
+  void add(const Flat& a, const Flat& b) { out_[a].push_back(b); }
+
+  // The boundary of random cells, and the two ways of random edges, so many that all are connected.
+  void fill(Random& random) {
+    for (std::int64_t x = 0; x < cells_; ++x)
+      for (std::int64_t y = 0; y < cells_; ++y)
+        if (random.bits() % 2 == 0) add_cell(x, y);
+    for (auto& [from, ends] : out_) cancel(from, ends);
+    for (std::int64_t x = 0; x <= cells_; ++x) {
+      for (std::int64_t y = 0; y <= cells_; ++y) {
+        for (const Flat& to : {Flat{x + 1, y}, Flat{x, y + 1}}) {
+          if (to[0] > cells_ || to[1] > cells_ || random.bits() % 3 != 0) continue;
+          add({x, y}, to);
+          add(to, {x, y});
+        }
+      }
+    }
+  }
+
+  // A closed walk along each edge that can be reached from one end, once (Hierholzer 1873).
+  Corners walk(Random& random) {
+    std::vector<Flat> path{
+        std::find_if(out_.begin(), out_.end(), [](const auto& e) { return !e.second.empty(); })->first};
+    Corners circuit;
+    while (!path.empty()) {
+      std::vector<Flat>& ends = out_[path.back()];
+      if (ends.empty()) {
+        circuit.push_back(path.back());
+        path.pop_back();
+        continue;
+      }
+      std::swap(ends[random.bits() % ends.size()], ends.back());
+      const Flat to = ends.back();
+      ends.pop_back();
+      path.push_back(to);
+    }
+    circuit.pop_back();
+    std::reverse(circuit.begin(), circuit.end());
+    return circuit;
+  }
+
+ private:
+  void add_cell(std::int64_t x, std::int64_t y) {
+    const std::array<Flat, 4> c{Flat{x, y}, Flat{x + 1, y}, Flat{x + 1, y + 1}, Flat{x, y + 1}};
+    for (std::size_t i = 0; i < 4; ++i) add(c[i], c[(i + 1) % 4]);
+  }
+
+  void cancel(const Flat& from, std::vector<Flat>& ends) {
+    std::erase_if(ends, [&](const Flat& to) { return from < to && std::erase(out_[to], from) > 0; });
+  }
+
+  std::int64_t cells_;
+  std::map<Flat, std::vector<Flat>> out_;
+};
+
+// Joins some of the steps in one direction to longer ones.
+Corners joined(Random& random, const Corners& corners) {
+  Corners kept;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Flat &a = kept.empty() ? corners.back() : kept.back(), &b = corners[i],
+               &c = corners[(i + 1) % corners.size()];
+    const bool straight = turn(a, b, c) == 0 && Int(b[0] - a[0]) * (c[0] - b[0]) + Int(b[1] - a[1]) * (c[1] - b[1]) > 0;
+    if (!straight || random.bits() % 3 == 0) kept.push_back(b);
+  }
+  return kept;
+}
+
+// Such walks wind 0 or 1 times and cross nowhere but at corners; they touch and overlap themselves all the time.
+TEST(Polygons, WalksOnALattice) {
+  Random random(8, 0);
+  int cut_up = 0;
+  for (int round = 0; round < 400; ++round) {
+    LatticeGraph graph(2 + static_cast<std::int64_t>(random.bits() % 4));
+    graph.fill(random);
+    Corners corners = scaled(joined(random, graph.walk(random)));
+    if (corners.size() < 4 || doubled_area(corners) == 0 || edges_cross(corners)) continue;
+    if (random.bits() % 2 == 0) std::reverse(corners.begin(), corners.end());
+    TriangleMesh mesh = fan(corners, random_plane(random));
+    ASSERT_EQ(cut(mesh), 0U) << printed(corners);
+    ASSERT_EQ(defect(mesh, corners, 30), "") << printed(corners);
+    ++cut_up;
+  }
+  EXPECT_GT(cut_up, 200);
+}
+
+// What lies along the direction is not seen.
+TEST(Polygons, WarpsDoNotMatter) {
+  Random random(9, 0);
+  for (const Corners& corners : {kL, star_shaped(random, 60), spiral(6), bridges_from_a_corner(5), touching_teeth(6)}) {
+    for (int round = 0; round < 20; ++round) {
+      const Plane plane = random_plane(random);
+      Vec3 direction = cross(plane.u, plane.v);
+      if (doubled_area(corners) < 0) direction = -1.0 * direction;
+      std::vector<Vec3> flat, warped;
+      for (const Flat& corner : corners) {
+        flat.push_back(plane.at(corner));
+        const auto height = static_cast<double>((corner[0] * 7919 + corner[1] * 104729) % 1009);
+        warped.push_back(flat.back() + height * direction);
+      }
+      direction = 0x1p-20 * direction;
+      const auto expected = cut_polygon(flat, direction);
+      ASSERT_TRUE(expected.has_value());
+      EXPECT_EQ(cut_polygon(warped, direction), expected);
+    }
   }
 }
 

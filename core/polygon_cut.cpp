@@ -94,6 +94,11 @@ class PolygonCut {
     return raycone::turn(direction_, at(a), at(b), at(c));
   }
 
+  // Of two runs from a place: 1 where the second is above the first. Those of one group need no exact number to tell.
+  [[nodiscard]] int turn(Place from, const Run& a, const Run& b) const {
+    return a.first == b.first && a.first != kNone ? 0 : turn(from, a.end, b.end);
+  }
+
   // 1 where the place is above the edge, 0 where it is on its line.
   [[nodiscard]] int side(const Edge& edge, Place p) const { return turn(edge.left, edge.right, p); }
 
@@ -186,7 +191,7 @@ class PolygonCut {
     bool inside = low.inside;
     for (std::size_t i = 0, end = 0; i < leaving_.size(); i = end) {
       end = i + 1;
-      while (end < leaving_.size() && turn(p, leaving_[i].end, leaving_[end].end) == 0) ++end;
+      while (end < leaving_.size() && turn(p, leaving_[end - 1], leaving_[end]) == 0) ++end;
       Edge edge = merge(p, i, end);
       const std::int64_t winding = edge.count + (inside ? 1 : 0);
       if (winding != 0 && winding != 1) return false;
@@ -206,7 +211,7 @@ class PolygonCut {
   void sort_leaving(Place p) {
     if (leaving_.size() < 2) return;
     std::sort(leaving_.begin(), leaving_.end(), [&](const Run& a, const Run& b) {
-      const int sign = turn(p, a.end, b.end);
+      const int sign = turn(p, a, b);
       return sign != 0 ? sign > 0 : a.end < b.end;
     });
   }

@@ -20,7 +20,7 @@ namespace raycone {
 namespace {
 
 using Reader = ParsedMesh(const MeshSource&);
-using ReaderOfSeveralFiles = ParsedMesh(const MeshSource&, std::vector<std::string>*);
+using ReaderOfSeveralFiles = ParsedMesh(const MeshSource&, std::vector<FileRead>*);
 
 [[maybe_unused]] ParsedMesh read(Reader* reader, const MeshSource& source) { return reader(source); }
 [[maybe_unused]] ParsedMesh read(ReaderOfSeveralFiles* reader, const MeshSource& source) {

@@ -198,18 +198,35 @@ MUTANTS = [
     Mutant("fan_opens_again", "flat triangles are the first or the last of a fan", [
         ("core/polygons.cpp", "(turn > 0 && place == kBehind) || ", "")]),
     Mutant("turns_in_floating_point", "floating point decides only turns that its error bound vouches for", [
-        ("core/polygons.cpp", "kTrust = 0x1p-49", "kTrust = 0x1p-60")]),
+        ("core/projection.h", "kTurnTrust = 0x1p-49", "kTurnTrust = 0x1p-60")]),
     Mutant("turns_that_underflow", "products that underflow vouch for nothing", [
-        ("core/polygons.cpp", "kUnderflow = 0x1p-960", "kUnderflow = 0.0"),
-        ("core/polygons.cpp", "return exact_turn(direction_, a, b, c);", "return 0;")]),
+        ("core/projection.h", "kTurnUnderflow = 0x1p-960", "kTurnUnderflow = 0.0"),
+        ("core/projection.h", "return exact_turn(direction, a, b, c);", "return 0;")]),
     Mutant("seen_along_z", "polygons are seen along their area vector", [
         ("core/polygons.cpp", "direction_ = area_direction(corners_);", "direction_ = Vec3{0, 0, area_direction(corners_).z};")]),
     Mutant("winding_not_looked_at", "polygons that wind twice, or backwards, are bad", [
-        ("core/polygon_cut.cpp", "if (other->info().winding < 0 || other->info().winding > 1) return false;", "")]),
+        ("core/polygon_cut.cpp", "if (winding != 0 && winding != 1) return false;", "")]),
+    Mutant("ends_not_looked_for", "an edge that crossed another is not where it ends", [
+        ("core/polygon_cut.cpp", "if (ends_[p] != 0 || (edge", "if ((edge")]),
+    Mutant("order_not_looked_at", "a corner is below the next edge, or edges have crossed", [
+        ("core/polygon_cut.cpp",
+         "if (ends_[p] != 0 || (edge != edges_.end() && side(*edge, p) > 0)) return false;",
+         "if (ends_[p] != 0) return false;")]),
     Mutant("bridge_counts_once", "a bridge's two ways cancel", [
         ("core/polygon_cut.cpp", "steps_[kept - 1].direction += each.direction;", "steps_[kept - 1].direction = 1;")]),
     Mutant("edge_stays_split", "a corner on another edge leaves the boundary as it was", [
         ("core/polygon_cut.cpp", "for (std::size_t i = line.size() - 1; i >= 2; --i) add(a, line[i], line[i - 1]);", "")]),
+        ("core/polygon_cut.cpp", "      count += run.count;", "      count = run.count;")]),
+    Mutant("edge_stays_split", "a corner on another edge leaves the boundary as it was", [
+        ("core/polygon_cut.cpp", "      add_flat(edge->first, edge->left, p, -edge->count);\n", "")]),
+    Mutant("overlap_stays_split", "an edge that overlaps others leaves the boundary as it was", [
+        ("core/polygon_cut.cpp", "      add_flat(first, p, run.end, whole);\n", "")]),
+    Mutant("cut_turned_over", "no triangle is turned over", [
+        ("core/polygon_cut.cpp",
+         "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
+         "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
+    Mutant("first_corner_of_the_file", "it does not matter where a file starts a polygon", [
+        ("core/polygons.cpp", "  polygon.rotate_to_first();\n", "")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

@@ -186,8 +186,6 @@ MUTANTS = [
         ("core/polygon_cut.cpp",
          "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
          "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
-    Mutant("first_corner_of_the_file", "it does not matter where a file starts a polygon", [
-        ("core/polygons.cpp", "  polygon.rotate_to_first();\n", "")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

@@ -31,6 +31,34 @@ int volume_sign(const ExactVec3& a, const ExactVec3& b, const Vec3& direction) {
   return static_cast<int>(CGAL::sign(normal[0] * along[0] + normal[1] * along[1] + normal[2] * along[2]));
 }
 
+// Whether floating point can tell that a - b is `difference` without an error (Knuth's two-sum).
+bool is_exact_difference(double a, double b, double difference) {
+  const double part = difference - a;
+  return (a - (difference - part)) - (b + part) == 0.0;
+}
+
+// Whether floating point can tell that a b = c d: rounded products and what was rounded off are the same, and neither
+// under- nor overflows.
+bool is_same_product(double a, double b, double c, double d) {
+  constexpr double kNoUnderflow = 0x1p-900;
+  const double left = a * b, right = c * d;
+  if ((a == 0.0 || b == 0.0) && (c == 0.0 || d == 0.0)) return true;
+  return left == right && std::abs(left) > kNoUnderflow && std::isfinite(left) &&
+         std::fma(a, b, -left) == std::fma(c, d, -right);
+}
+
+// Whether floating point can tell that three points lie on a line in space, as many corners do.
+bool is_surely_collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3;
+    if (!is_exact_difference(b[axis], a[axis], u[axis]) || !is_exact_difference(c[axis], a[axis], v[axis]) ||
+        !is_same_product(u[axis], v[next], u[next], v[axis]))
+      return false;
+  }
+  return true;
+}
+
 Vec3 exact_area_direction(std::span<const Vec3> corners) {
   ExactVec3 area;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -79,6 +107,7 @@ int exact_side(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& 
 
 int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   assert(DefaultFloatingPoint::holds());
+  if (is_surely_collinear(a, b, c)) return 0;
   return volume_sign(difference(b, a), difference(c, a), direction);
 }
 

@@ -602,6 +602,19 @@ TEST(Polygons, AnyMagnitude) {
   }
 }
 
+TEST(Polygons, ExactTurnsOfAnyMagnitude) {
+  const Vec3 direction{0.25, 1, -0.5};
+  const Vec3 b{1, 2, 3}, c{2, 1, 1};
+  ASSERT_EQ(dot(cross(b, c), direction), 6.25);
+  for (int power = -1070; power <= 1020; power += 10) {
+    const double scale = std::ldexp(1.0, power);
+    EXPECT_EQ(exact_turn(direction, {}, scale * b, scale * c), 1) << power;
+    EXPECT_EQ(exact_turn(direction, {}, scale * c, scale * b), -1) << power;
+    EXPECT_EQ(exact_turn(direction, {}, scale * b, -2.0 * scale * b), 0) << power;
+    EXPECT_EQ(exact_turn(direction, -1.0 * scale * c, scale * c, scale * b), -1) << power;
+  }
+}
+
 // A first corner that steps by last bits past the line through the next two, where differences round, to either side
 // (Kettner et al., "Classroom examples of robustness problems in geometric computations", 2008).
 TEST(Polygons, DecidedExactly) {

@@ -202,6 +202,8 @@ MUTANTS = [
     Mutant("turns_that_underflow", "products that underflow vouch for nothing", [
         ("core/projection.h", "kTurnUnderflow = 0x1p-960", "kTurnUnderflow = 0.0"),
         ("core/projection.h", "return exact_turn(direction, a, b, c);", "return 0;")]),
+    Mutant("collinear_by_overflow", "products that overflow are not equal", [
+        ("core/projection.cpp", " && std::isfinite(left)", "")]),
     Mutant("seen_along_z", "polygons are seen along their area vector", [
         ("core/polygons.cpp", "direction_ = area_direction(corners_);", "direction_ = Vec3{0, 0, area_direction(corners_).z};")]),
     Mutant("winding_not_looked_at", "polygons that wind twice, or backwards, are bad", [
@@ -225,8 +227,6 @@ MUTANTS = [
         ("core/polygon_cut.cpp",
          "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
          "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
-    Mutant("first_corner_of_the_file", "it does not matter where a file starts a polygon", [
-        ("core/polygons.cpp", "  polygon.rotate_to_first();\n", "")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

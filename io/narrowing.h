@@ -14,8 +14,9 @@
 namespace raycone {
 
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
-// side of the field's threshold as the double it stands for, compared as float or as double, and a half-integer only if
-// that is one. Half-integers beyond 2^23 are not floats.
+// side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
+// half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
+// magnitude, only for itself. Half-integers beyond 2^23 are not floats.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field) : Narrowing(field, &nearest_float, &next_float) {}
@@ -45,7 +46,9 @@ class Narrowing {
 
   [[nodiscard]] float on_side(float stored, double value) const {
     const double number = stored, nearest_integer = (number + 0x1.8p52) - 0x1.8p52;
-    if (std::abs(number - nearest_integer) == 0.5) stored = number > value ? down(stored) : up(stored);
+    if (std::abs(number - nearest_integer) == 0.5 && (number > value || number < 0.0)) {
+      stored = number > value ? down(stored) : up(stored);
+    }
     if (value >= threshold_) {
       while (static_cast<double>(stored) < high_) stored = up(stored);
     } else {

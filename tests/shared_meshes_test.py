@@ -42,8 +42,17 @@ def expect(condition, mesh, what):
         failures.append(f"{mesh}: {what}")
 
 
+def bits_of(number):
+    return struct.unpack("I", struct.pack("f", number))[0]
+
+
 def as_float(value):
-    return struct.unpack("f", struct.pack("f", value))[0]
+    """The nearest float; but a half-integer, where rules decide, stands only for what reaches it (io/narrowing.h)."""
+    nearest = struct.unpack("f", struct.pack("f", value))[0]
+    if abs(nearest) % 1 != 0.5 or nearest == value or 0 < nearest < value:
+        return nearest
+    towards_zero = abs(nearest) > abs(value)
+    return struct.unpack("f", struct.pack("I", bits_of(nearest) + (-1 if towards_zero else 1)))[0]
 
 
 def compare(mesh, vdb, text, tolerance):

@@ -233,7 +233,11 @@ TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {
     const std::vector<pid_t> workers = wait_for_workers(command);
     EXPECT_TRUE(becomes_true([&workers] { return thread_times(workers).size() >= 2; })) << "two workers";
     std::this_thread::sleep_for(milliseconds(700));
-    EXPECT_LE(thread_times(workers).size(), threads);
+    std::map<std::string, int> busy = thread_times(workers);
+    // TBB starts a worker for each CPU at the start, which then sleeps: a few ticks of the 70 that have passed.
+    std::erase_if(busy, [](const auto& time) { return time.second <= 5; });
+    EXPECT_LE(busy.size(), threads);
+    EXPECT_GE(busy.size(), 2U);
     const std::map<std::string, int> supervisor = thread_times({command.process()});
     for (const auto& [thread, ticks] : supervisor) EXPECT_LT(ticks, 10) << "it mostly sleeps";
   }

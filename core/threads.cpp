@@ -68,8 +68,9 @@ namespace {
 
 constexpr int kPatience = 100'000;  // looks; a system that starts no more threads goes on with fewer
 
-// TBB starts a worker for what is enqueued even where one thread is allowed, and OpenVDB enqueues: where it could not
-// be started then, the process would be terminated.
+// TBB starts a worker for what is enqueued even on a single CPU, and OpenVDB enqueues: where it could not be started
+// then, the process would be terminated. Where there are other workers they do: one that was called for what is
+// enqueued goes on looking for work, beyond the number of threads that is allowed.
 void start_worker_for_enqueued() {
   const auto done = std::make_shared<std::atomic<bool>>(false);
   tbb::task_arena().enqueue([done] { *done = true; });
@@ -86,7 +87,7 @@ void prime_threads() {
     for (int looks = 0; started < count && looks < kPatience; ++looks) std::this_thread::yield();
   });
   try {
-    start_worker_for_enqueued();
+    if (tbb::this_task_arena::max_concurrency() == 1) start_worker_for_enqueued();
   } catch (const std::runtime_error&) {
     throw ThreadsUnavailable();
   }

@@ -96,6 +96,7 @@ class Engine {
   Engine(TriangleMesh mesh, const PowerOfTwo& scale, RayEngine engine, SimdLevel level, Summation summation)
       : scale_(scale),
         inverse_(-scale.exponent()),
+        least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
         engine_(engine),
         level_(level),
         summation_(summation),
@@ -137,9 +138,7 @@ class Engine {
 
   // Whether scaling a query coordinate loses nothing that a predicate could see: scaled down, it may not become
   // subnormal, even where it would keep its bits; so that on an axis of a lattice few intervals answer alike.
-  [[nodiscard]] bool can_take(double x) const {
-    return scale_.exponent() >= 0 || x == 0.0 || std::abs(scale_(x)) >= std::numeric_limits<double>::min();
-  }
+  [[nodiscard]] bool can_take(double x) const { return std::abs(x) >= least_ || x == 0.0; }
   [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
 
   [[nodiscard]] double to_scale(double x) const {
@@ -248,6 +247,7 @@ class Engine {
 
   PowerOfTwo scale_;
   PowerOfTwo inverse_;
+  double least_;  // magnitude of query coordinates, beside 0, that scaling keeps
   RayEngine engine_;
   SimdLevel level_;
   Summation summation_;
@@ -395,6 +395,9 @@ class CoherentOrder {
   // Less than 2^32 points.
   CoherentOrder(const Engine& engine, std::span<const Vec3> points) : CoherentOrder(points, places(engine, points)) {}
 
+  // Whether the engine can take all of the points.
+  [[nodiscard]] bool all_taken() const { return all_taken_; }
+
   // Those of one bucket, in order.
   [[nodiscard]] std::vector<PlacedPoint> operator[](std::size_t bucket) const {
     std::array<std::uint32_t, kPlacesPerBucket + 1> next{};
@@ -408,27 +411,41 @@ class CoherentOrder {
  private:
   static constexpr std::size_t kPlacesPerBucket = ProjectedGrid::kPlaces / kBuckets;
 
-  CoherentOrder(std::span<const Vec3> points, const std::vector<std::uint16_t>& places)
-      : buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
+  struct Places {
+    std::vector<std::uint16_t> of_points;
+    bool all_taken = true;
+  };
+
+  CoherentOrder(std::span<const Vec3> points, const Places& places)
+      : all_taken_(places.all_taken),
+        buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
           for (std::size_t i = begin; i < end; ++i) {
-            emit(places[i] / kPlacesPerBucket, PlacedPoint{points[i], static_cast<std::uint32_t>(i), places[i]});
+            const std::uint16_t place = places.of_points[i];
+            emit(place / kPlacesPerBucket, PlacedPoint{points[i], static_cast<std::uint32_t>(i), place});
           }
         }) {}
 
   // Embree's rays go in the order of the points: they are for comparison.
-  static std::vector<std::uint16_t> places(const Engine& engine, std::span<const Vec3> points) {
-    std::vector<std::uint16_t> places(points.size());
+  static Places places(const Engine& engine, std::span<const Vec3> points) {
+    Places places;
+    places.of_points.resize(points.size());
+    std::atomic<bool> all_taken = true;
     constexpr std::size_t kPointsPerTask = 4096;
     parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      bool taken = true;
       for (std::size_t i = begin; i < end; ++i) {
-        places[i] = engine.engine() == RayEngine::kScan
-                        ? engine.grid().place(engine.to_scale(points[i]))
-                        : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kPlaces + 1));
+        taken = taken && engine.can_take(points[i]);
+        places.of_points[i] = engine.engine() == RayEngine::kScan
+                                  ? engine.grid().place(engine.to_scale(points[i]))
+                                  : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kPlaces + 1));
       }
+      if (!taken) all_taken = false;
     });
+    places.all_taken = all_taken;
     return places;
   }
 
+  bool all_taken_;
   Buckets<PlacedPoint> buckets_;
 };
 
@@ -507,22 +524,12 @@ struct WindingNumberEvaluator::Implementation {
     return *unscaled;
   }
 
-  // Builds what the points need before the loops over them, within which threads would wait for one another.
-  void prepare_for(std::span<const Vec3> points) const {
-    scaled.prepare_points();
-    std::atomic<bool> exact = true;
-    constexpr std::size_t kPointsPerTask = 4096;
-    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-      const auto some = points.subspan(begin, end - begin);
-      if (!std::ranges::all_of(some, [this](const Vec3& p) { return scaled.can_take(p); })) exact = false;
-    });
-    if (!exact) engine_for(false).prepare_points();
-  }
-
   Tally evaluate_batch(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done,
                        const Diagnostics* diagnostics) const {
-    prepare_for(points);
+    // What the points need is built before the loops over them, within which threads would wait for one another.
+    scaled.prepare_points();
     const CoherentOrder order(scaled, points);
+    if (!order.all_taken()) engine_for(false).prepare_points();
     TallySum total;
     parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
       PointTile tile;
@@ -530,7 +537,7 @@ struct WindingNumberEvaluator::Implementation {
       for (std::size_t bucket = begin; bucket < end; ++bucket) {
         const auto placed = order[bucket];
         for (const CoherentOrder::PlacedPoint& p : placed) {
-          const bool exact = scaled.can_take(p.point);
+          const bool exact = order.all_taken() || scaled.can_take(p.point);
           if (!exact) tally += tile.evaluate(scaled, values, diagnostics);
           const Engine& engine = engine_for(exact);
           tile.add(p.index, engine.to_scale(p.point));

@@ -113,8 +113,9 @@ MeshFile read(const MeshOptions& mesh, const RunLimits& limits) {
   MeshFile file = read_mesh(mesh.path, mesh.reading);
   const std::vector<PolygonFan> polygons = std::move(file.parsed.polygons);
   if (const std::uint64_t bad = cut_concave_polygons(file.parsed.mesh, polygons)) {
-    file.parsed.warnings.push_back("bad-polygons: " + std::to_string(bad) + (bad == 1 ? " polygon" : " polygons") +
-                                   " that cross themselves, seen along the area vector, fanned from the first corner");
+    const std::string what = bad == 1 ? " polygon that crosses itself" : " polygons that cross themselves";
+    file.parsed.warnings.push_back("bad-polygons: " + std::to_string(bad) + what +
+                                   ", seen along the area vector, fanned from the first corner");
   }
   return file;
 }

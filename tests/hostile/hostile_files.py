@@ -230,6 +230,17 @@ add("nan_binary.stl", stl(1, RECORD[:12] + struct.pack("<f", float("nan")) + REC
 add("inf_binary.stl", stl(1, RECORD[:-6] + struct.pack("<f", float("inf")) + RECORD[-2:]), 2, "a vertex that faces use")
 add("nan_binary_normal.stl", stl(1, struct.pack("<f", float("nan")) + RECORD[4:]), 0)
 
+
+def binary_stl(*triangles):
+    return b"\0" * 80 + struct.pack("<I", len(triangles)) + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *(x for corner in t for x in corner), 0) for t in triangles)
+
+
+# Vertices whose hashes were equal whatever the seed, so that welding them never ended.
+add("floats_of_one_hash.stl", binary_stl([(1, 1.5, 0.25), (-1, -1.500003814697265625, 0.25), (0, 0, 0)]), 0)
+add("integers_of_one_hash.stl", binary_stl([(10, 262144, 5), (-10, -262145, 5), (0, 0, 0)]), 0)
+
+
 # --- Polygons
 
 BOW = "v 0 0 0\nv 4 3 0\nv 4 0 0\nv 0 2 0\n"

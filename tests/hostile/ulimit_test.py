@@ -6,7 +6,7 @@ faults_test.py). It ends as ever, or with a documented status and one line, and 
 
 import os
 import resource
-import subprocess
+import signal
 import sys
 import tempfile
 
@@ -14,7 +14,9 @@ from runs import CLOSED, OPEN, RAYCONE, Run, fail, is_sanitized, report
 
 LONG = "--long" in sys.argv
 KB = 1024
-# Limits, whether root obeys them, and the values tried. Below 16 kB of stack the dynamic linker itself has too little.
+# What the dynamic linker needs, beside some kilobytes at random and the environment, before any line of ours runs.
+LINKER_STACK = 32 * KB
+# Limits, whether root obeys them, and the values tried.
 LIMITS = [
     ("stack", resource.RLIMIT_STACK, [16 * KB, 32 * KB, 64 * KB, 200 * KB, 256 * KB, 1024 * KB]),
     ("open files", resource.RLIMIT_NOFILE, list(range(4, 40)) if LONG else [4, 6, 8, 10, 12, 16, 24]),
@@ -30,9 +32,15 @@ def disturbed(run, kind, soft, hard):
     return process.returncode, message
 
 
-def check(run, what, status, message):
-    started = not (status == 127 and b"error while loading shared libraries" in message)
-    if started and (status not in run.STATUSES or (status != 0 and not run.is_told(message))):
+def started(status, message, stack=None):
+    """False where the dynamic linker failed: it says so, or has no stack to say so."""
+    if stack is not None and stack < LINKER_STACK and status == -signal.SIGSEGV and not message:
+        return False
+    return not (status == 127 and b"error while loading shared libraries" in message)
+
+
+def check(run, what, status, message, stack=None):
+    if started(status, message, stack) and (status not in run.STATUSES or (status != 0 and not run.is_told(message))):
         fail("%s, %s" % (run.name, what), status, message)
     run.check(what, status, message, status == 0)
 
@@ -42,12 +50,13 @@ def sweep(run):
     for name, kind, values in LIMITS:
         for value in values:
             status, message = disturbed(run, kind, value, value)
-            check(run, "%d of %s" % (value, name), status, message)
+            stack = value if name == "stack" else None
+            check(run, "%d of %s" % (value, name), status, message, stack)
             refused += status != 0
-            if name == "stack" and value < 256 * KB and status != 4:
+            if stack is not None and stack < 256 * KB and status != 4 and started(status, message, stack):
                 fail("%s, a stack of %d bytes" % (run.name, value), status, message)
     # One that may be raised is.
-    status, message = disturbed(run, resource.RLIMIT_STACK, 16 * KB, resource.RLIM_INFINITY)
+    status, message = disturbed(run, resource.RLIMIT_STACK, LINKER_STACK, resource.RLIM_INFINITY)
     if status != 0:
         fail("%s, a stack that may be raised" % run.name, status, message)
     if refused < 6:

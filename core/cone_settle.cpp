@@ -75,10 +75,9 @@ TurnsWithin<Quad> Cone::enclose_closely(const Vec3& q) const {
   TurnsWithin<Quad> cone;
   for (const Group& group : groups_) {
     CloseProduct product;
-    const ChainStep* previous = nullptr;
-    for (const ChainStep& step : group.steps) {
-      if (step.joined) multiply_edge(product, previous->to, step.to, step.reversed, q);
-      previous = &step;
+    for (std::size_t i = 1; i < group.steps.size(); ++i) {
+      const ChainStep& step = group.steps[i];
+      if (step.joined) multiply_edge(product, group.steps[i - 1].to, step.to, step.reversed, q);
     }
     const Quad rest = group.multiplicity * (atan2q(product.z.im, product.z.re) / kTurn);
     cone.whole += group.multiplicity * product.turns;
@@ -116,10 +115,9 @@ bool Cone::lies_in_plane_of_edges(const Vec3& q) const {
     if (on_segment(a, b, q)) return false;
   }
   for (const Group& group : groups_) {
-    const ChainStep* previous = nullptr;
-    for (const ChainStep& step : group.steps) {
-      if (step.joined && on_segment(previous->to, step.to, q)) return false;
-      previous = &step;
+    for (std::size_t i = 1; i < group.steps.size(); ++i) {
+      const ChainStep& step = group.steps[i];
+      if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;
     }
   }
   return true;

@@ -164,7 +164,7 @@ MUTANTS = [
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
         ("core/winding_number.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
-        ("core/cone_settle.cpp", "if (step.joined && on_segment(previous->to, step.to, q)) return false;", "")]),
+        ("core/cone_settle.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
         ("core/cone_settle.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
     Mutant("settled_in_80_bits", "113 bits tell what 80 cannot", [

@@ -24,7 +24,7 @@ bool ensure_stack() {
   limit.rlim_cur = std::min(limit.rlim_max, kComfortable);
   if (limit.rlim_cur < kNeeded || setrlimit(RLIMIT_STACK, &limit) != 0) {
     constexpr std::string_view kMessage = "raycone: the stack is too small, expected 256 kB or more (ulimit -s)\n";
-    if (write(STDERR_FILENO, kMessage.data(), kMessage.size()) < 0) return false;  // nobody left to tell
+    [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
     return false;
   }
   // Threads take the limit that there was when the process began, unless told otherwise.

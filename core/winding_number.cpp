@@ -612,12 +612,12 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   if (parts.size() != 1) return evaluate_parts(*this, lattice, block, parts, values, done, diagnostics);
 
   std::array<std::vector<double>, 3> coordinates;
-  bool exact = true;
+  bool exact = true;  // on each axis for all or none
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::int64_t i = 0; i < block.counts[axis]; ++i) {
       coordinates[axis].push_back(lattice.coordinate(static_cast<int>(axis), block.first[axis] + i));
-      exact = exact && implementation_->scaled.can_take(coordinates[axis].back());
     }
+    exact = exact && implementation_->scaled.can_take(coordinates[axis].front());
   }
   const Engine& engine = implementation_->engine_for(exact);
   if (engine.engine() == RayEngine::kEmbree) engine.prepare_points();

@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "app/batch/worker.h"
-#include "app/exit_code.h"
-#include "app/grid_reader.h"
-#include "app/options.h"
-#include "app/report.h"
-#include "app/run.h"
-#include "app/signals.h"
-#include "app/stack_limit.h"
+#include "app/options/options.h"
+#include "app/process/exit_code.h"
+#include "app/process/signals.h"
+#include "app/process/stack_limit.h"
+#include "app/report/report.h"
+#include "app/run/grid_reader.h"
+#include "app/run/run.h"
 
 namespace raycone {
 namespace {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The layers are kept, and tests/check_layers.sh notices each kind of violation when one is planted in a copy.
+# Third-party libraries keep to their files, and tests/check_layers.sh notices each kind of violation when one is planted in a copy.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 sh "$root/tests/check_layers.sh" "$root"
@@ -26,19 +26,17 @@ plant() {
   mv "$copy/saved" "$copy/$1"
 }
 
-plant core/weld.cpp '#include "io/read_mesh.h"'
-plant core/vec3.h '#  include "app/exit_code.h"'
-plant io/read_mesh.cpp '#include "app/exit_code.h"'
-plant io/read_mesh.h '#include "core/winding_number.h"'
-plant core/weld.cpp '#include <embree3/rtcore.h>'
-plant core/weld.cpp '#include <CGAL/Origin.h>'
-plant app/exit_code.h '#include <tbb/parallel_for.h>'
-plant core/weld.cpp '#include <hwy/highway.h>'
-plant app/exit_code.h '#include <openvdb/openvdb.h>'
-plant io/read_mesh.cpp '#include <nlohmann/json.hpp>'
-plant io/read_mesh.cpp '#include <nettle/sha2.h>'
-plant app/exit_code.h '#include <CLI/CLI.hpp>'
-plant app/exit_code.h '#include <zlib.h>'
-plant io/read_mesh.cpp '#include <png.h>'
-plant tests/support/direct_winding_number.cpp '#include "core/predicates.h"'
-plant tests/support/exact_predicates.h '#include "core/direct_sum.h"'
+plant core/mesh/weld.cpp '#include "../exact/predicates.h"'
+plant core/mesh/weld.cpp '#  include "weld.h"'
+plant core/mesh/weld.cpp '#include <embree3/rtcore.h>'
+plant core/mesh/weld.cpp '#include <CGAL/Origin.h>'
+plant app/process/exit_code.h '#include <tbb/parallel_for.h>'
+plant core/mesh/weld.cpp '#include <hwy/highway.h>'
+plant app/process/exit_code.h '#include <openvdb/openvdb.h>'
+plant io/mesh/read_mesh.cpp '#include <nlohmann/json.hpp>'
+plant io/mesh/read_mesh.cpp '#include <nettle/sha2.h>'
+plant app/process/exit_code.h '#include <CLI/CLI.hpp>'
+plant app/process/exit_code.h '#include <zlib.h>'
+plant io/mesh/read_mesh.cpp '#include <png.h>'
+plant tests/support/direct_winding_number.cpp '#include "core/exact/predicates.h"'
+plant tests/support/exact_predicates.h '#include "core/exact/direct_sum.h"'

@@ -9,10 +9,10 @@ trap 'rm -rf "$copy"' EXIT
 cp -RL "$root/core" "$root/io" "$root/app" "$copy"
 echo '#include <CGAL/Triangulation_2.h>' >>"$copy/core/projection.cpp"
 if output=$(sh "$root/tests/check_licences.sh" "$copy" 2>&1); then
-  echo "not noticed: CGAL/Triangulation_2.h in core/projection.cpp" >&2
+  echo "not noticed: CGAL/Triangulation_2.h in core/exact/projection.cpp" >&2
   exit 1
 fi
 case $output in
-  *core/projection.cpp*CGAL/Triangulation_2.h*) ;;
+  *core/exact/projection.cpp*CGAL/Triangulation_2.h*) ;;
   *) echo "noticed, but not named: $output" >&2; exit 1 ;;
 esac

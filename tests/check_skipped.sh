@@ -25,7 +25,7 @@ allow() {
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'clock|system_calls'
 # Containers may forbid to trace.
 strace -o /dev/null true 2>/dev/null || allow 'system_calls'
-# ThreadSanitizer has a thread of its own, and core/threads.h another implementation.
+# ThreadSanitizer has a thread of its own, and core/machine/threads.h another implementation.
 [ "$(setting RAYCONE_SANITIZE)" != thread ] || allow 'BatchInterruption\.NeverMoreThreadsAreBusyThanAllowed'
 # Containers may forbid file systems of one's own.
 unshare --user --map-root-user --mount true 2>/dev/null || allow 'full_disk'

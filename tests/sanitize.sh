@@ -39,4 +39,4 @@ sh tests/check_skipped.sh build/asan-ubsan/ctest.log build/asan-ubsan
 export TSAN_OPTIONS=$tls:suppressions=$PWD/tests/tsan.supp
 cmake --preset tsan
 cmake --build --preset tsan --parallel "$jobs" --target raycone
-black_box tsan -E NeverMoreThreadsAreBusyThanAllowed  # it counts those of core/threads.cpp, which this build replaces
+black_box tsan -E NeverMoreThreadsAreBusyThanAllowed  # it counts those of core/machine/threads.cpp, which this build replaces

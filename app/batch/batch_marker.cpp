@@ -7,8 +7,8 @@
 #include <optional>
 #include <system_error>
 
-#include "io/file_error.h"
-#include "io/read_file.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {

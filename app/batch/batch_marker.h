@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "io/temporary_file.h"
+#include "io/files/temporary_file.h"
 
 namespace raycone {
 

@@ -9,9 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "app/usage_error.h"
-#include "io/read_file.h"
-#include "io/read_mesh.h"
+#include "app/process/usage_error.h"
+#include "io/files/read_file.h"
+#include "io/mesh/read_mesh.h"
 
 namespace raycone {
 namespace {

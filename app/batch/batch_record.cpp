@@ -3,8 +3,8 @@
 #include <charconv>
 #include <utility>
 
-#include "app/parse_value.h"
-#include "io/read_file.h"
+#include "app/text/parse_value.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "app/progress.h"
+#include "app/process/progress.h"
 
 namespace raycone {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "io/file_error.h"
-#include "io/read_file.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {

@@ -1,6 +1,6 @@
 #include "app/batch/html.h"
 
-#include "app/plain_text.h"
+#include "app/text/plain_text.h"
 
 namespace raycone {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/parse_value.h"
+#include "app/text/parse_value.h"
 
 namespace raycone {
 namespace {

@@ -15,13 +15,13 @@
 #include "app/batch/html.h"
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
-#include "app/limits.h"
-#include "app/run_steps.h"
-#include "app/usage_error.h"
-#include "app/version.h"
-#include "io/file_error.h"
-#include "io/file_identity.h"
-#include "io/output_file.h"
+#include "app/process/limits.h"
+#include "app/process/usage_error.h"
+#include "app/process/version.h"
+#include "app/run/run_steps.h"
+#include "io/files/file_error.h"
+#include "io/files/file_identity.h"
+#include "io/files/output_file.h"
 
 namespace raycone {
 namespace {

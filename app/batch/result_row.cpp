@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 
-#include "app/parse_value.h"
+#include "app/text/parse_value.h"
 
 namespace raycone {
 namespace {

@@ -13,9 +13,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/file_error.h"
-#include "io/output_file.h"
-#include "io/read_file.h"
+#include "io/files/file_error.h"
+#include "io/files/output_file.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {

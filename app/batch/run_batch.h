@@ -1,8 +1,8 @@
 // `raycone batch`: lattices or samples of many meshes.
 #pragma once
 
-#include "app/exit_code.h"
-#include "app/options.h"
+#include "app/options/options.h"
+#include "app/process/exit_code.h"
 
 namespace raycone {
 

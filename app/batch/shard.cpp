@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
-#include "app/parse_value.h"
-#include "app/usage_error.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
 
 namespace raycone {
 namespace {

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "app/batch/worker_process.h"
-#include "app/exit_code.h"
-#include "app/limits.h"
-#include "app/signals.h"
-#include "io/temporary_file.h"
+#include "app/process/exit_code.h"
+#include "app/process/limits.h"
+#include "app/process/signals.h"
+#include "io/files/temporary_file.h"
 
 namespace raycone {
 namespace {

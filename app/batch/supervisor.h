@@ -8,7 +8,7 @@
 
 #include "app/batch/job.h"
 #include "app/batch/schedule.h"
-#include "app/signals.h"
+#include "app/process/signals.h"
 
 namespace raycone {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lattice.h"
+#include "core/data/lattice.h"
 
 namespace raycone {
 

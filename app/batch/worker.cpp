@@ -16,17 +16,17 @@
 
 #include "app/batch/job.h"
 #include "app/batch/thumbnail.h"
-#include "app/batch_options.h"
-#include "app/limits.h"
-#include "app/options.h"
-#include "app/report.h"
-#include "app/run_lattice.h"
-#include "app/run_points.h"
-#include "app/run_steps.h"
-#include "app/signals.h"
-#include "core/threads.h"
-#include "io/base64.h"
-#include "io/read_file.h"
+#include "app/command_line/batch_options.h"
+#include "app/options/options.h"
+#include "app/process/limits.h"
+#include "app/process/signals.h"
+#include "app/report/report.h"
+#include "app/run/run_lattice.h"
+#include "app/run/run_points.h"
+#include "app/run/run_steps.h"
+#include "core/machine/threads.h"
+#include "io/files/base64.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "io/file_error.h"
+#include "io/files/file_error.h"
 
 namespace raycone {
 namespace {

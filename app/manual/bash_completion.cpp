@@ -2,8 +2,8 @@
 #include <set>
 #include <vector>
 
-#include "app/command_spec.h"
-#include "app/commands.h"
+#include "app/command_line/command_spec.h"
+#include "app/command_line/commands.h"
 #include "app/manual/completion.h"
 #include "app/manual/shell_words.h"
 #include "app/manual/value_candidates.h"

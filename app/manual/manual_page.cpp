@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "app/command_spec.h"
-#include "app/commands.h"
-#include "app/version.h"
+#include "app/command_line/command_spec.h"
+#include "app/command_line/commands.h"
+#include "app/process/version.h"
 
 namespace raycone {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "app/picture/image.h"
-#include "core/vec3.h"
+#include "core/data/vec3.h"
 
 namespace raycone {
 

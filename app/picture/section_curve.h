@@ -5,7 +5,7 @@
 
 #include "app/picture/image.h"
 #include "app/picture/plane_view.h"
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone {
 

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "core/lattice.h"
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
-#include "io/read_mesh.h"
+#include "core/data/lattice.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"

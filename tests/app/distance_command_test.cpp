@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/direct_distance.h"
-#include "io/read_mesh.h"
+#include "core/exact/direct_distance.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"

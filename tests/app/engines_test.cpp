@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/simd.h"
+#include "core/machine/simd.h"
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"

@@ -1,5 +1,5 @@
 // The lattice rules of the command line, on boxes of every kind.
-#include "app/lattice_choice.h"
+#include "app/run/lattice_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "app/usage_error.h"
-#include "io/file_error.h"
+#include "app/process/usage_error.h"
+#include "io/files/file_error.h"
 
 namespace raycone::test {
 namespace {

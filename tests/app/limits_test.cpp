@@ -1,11 +1,11 @@
 // Limits read from made-up system directories, and their printing.
-#include "app/limits.h"
+#include "app/process/limits.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "io/file_error.h"
+#include "io/files/file_error.h"
 #include "tests/app/meshes.h"
 #include "tests/support/temporary_directory.h"
 

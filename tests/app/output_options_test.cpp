@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/depfile.h"
+#include "app/report/depfile.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"

@@ -1,5 +1,5 @@
 // Numbers on the command line.
-#include "app/parse_value.h"
+#include "app/text/parse_value.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "app/plain_text.h"
+#include "app/text/plain_text.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "app/batch/html.h"
-#include "app/report.h"
+#include "app/report/report.h"
 
 namespace raycone {
 namespace {

@@ -1,5 +1,5 @@
 // How lattices are cut for evaluation.
-#include "app/slabs.h"
+#include "app/run/slabs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/verify.h"
+#include "app/run/verify.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "app/report.h"
-#include "core/weld.h"
+#include "app/report/report.h"
+#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {

@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/threads.h"
-#include "core/winding_number.h"
-#include "io/field_writer.h"
-#include "io/read_mesh.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "io/fields/field_writer.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::bench {

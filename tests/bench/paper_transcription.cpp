@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/threads.h"
+#include "core/machine/threads.h"
 
 namespace raycone::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <span>
 
-#include "core/lattice.h"
-#include "core/triangle_mesh.h"
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone::bench {
 

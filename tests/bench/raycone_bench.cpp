@@ -18,11 +18,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/lattice.h"
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
-#include "io/read_mesh.h"
+#include "core/data/lattice.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/bench/io_bench.h"
 #include "tests/bench/paper_transcription.h"
 #include "tests/support/temporary_directory.h"

@@ -1,11 +1,11 @@
-#include "core/angle.h"
+#include "core/boundary/angle.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/near_edge.h"
+#include "core/boundary/near_edge.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

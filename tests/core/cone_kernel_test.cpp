@@ -1,4 +1,4 @@
-#include "core/cone_kernel.h"
+#include "core/boundary/cone_kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/angle.h"
-#include "core/floating_point.h"
+#include "core/boundary/angle.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 

@@ -1,5 +1,5 @@
 // The oracle of distances, on what can be told without one.
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/direct_sum.h"
+#include "core/exact/direct_sum.h"
 
 #include <gtest/gtest.h>
 

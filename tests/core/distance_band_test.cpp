@@ -1,5 +1,5 @@
 // The two ways to a lattice's distances, against the tree and each other.
-#include "core/distance_band.h"
+#include "core/distance/distance_band.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Distances on lattices and at points, against the oracle and each other.
-#include "core/distance.h"
+#include "core/distance/distance.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/distance.h"
-#include "core/winding_number.h"
+#include "core/distance/distance.h"
+#include "core/evaluation/winding_number.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-#include "core/equal_vertices.h"
+#include "core/mesh/equal_vertices.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/support/shapes.h"
 

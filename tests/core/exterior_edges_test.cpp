@@ -1,4 +1,4 @@
-#include "core/exterior_edges.h"
+#include "core/mesh/exterior_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/edge_uses.h"
-#include "core/mesh_statistics.h"
+#include "core/mesh/edge_uses.h"
+#include "core/mesh/mesh_statistics.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

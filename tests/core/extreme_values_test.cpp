@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "core/direct_sum.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/direct_sum.h"
+#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/direct_sum.h"
-#include "core/rule.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/data/rule.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/direct_sum.h"
+#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -1,5 +1,5 @@
 // Sums over the samples of lattices, by every way to cut a lattice.
-#include "core/lattice_sums.h"
+#include "core/crossings/lattice_sums.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <set>
 #include <vector>
 
-#include "core/exterior_edges.h"
-#include "core/slab_order.h"
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/crossings/slab_order.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 

@@ -8,10 +8,10 @@
 #include <limits>
 #include <thread>
 
-#include "core/floating_point.h"
-#include "core/predicates.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/predicates.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/support/shapes.h"
 

@@ -1,5 +1,5 @@
 // Counts of edges, faces and components, and the volume, against their definitions on meshes with every kind of defect.
-#include "core/mesh_statistics.h"
+#include "core/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/edge_uses.h"
-#include "core/exterior_edges.h"
-#include "core/threads.h"
+#include "core/machine/threads.h"
+#include "core/mesh/edge_uses.h"
+#include "core/mesh/exterior_edges.h"
 #include "tests/support/exact_predicates.h"
 #include "tests/support/shapes.h"
 

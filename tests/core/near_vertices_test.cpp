@@ -1,4 +1,4 @@
-#include "core/near_vertices.h"
+#include "core/mesh/near_vertices.h"
 
 #include <gtest/gtest.h>
 

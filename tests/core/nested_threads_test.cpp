@@ -18,10 +18,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/distance.h"
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/distance/distance.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "core/threads.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/support/shapes.h"
 

@@ -1,11 +1,11 @@
-#include "core/point_sampler.h"
+#include "core/sampling/point_sampler.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -2,7 +2,7 @@
 //
 // Polygons have integer coordinates (s, t) in a plane that is put into space by integer vectors, so that everything is
 // exact and the oracle need not know how the code projects.
-#include "core/polygons.h"
+#include "core/mesh/polygons.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include <numeric>
 #include <utility>
 
-#include "core/polygon_cut.h"
-#include "core/projection.h"
-#include "core/random.h"
+#include "core/exact/projection.h"
+#include "core/mesh/polygon_cut.h"
+#include "core/sampling/random.h"
 
 namespace raycone {
 namespace {

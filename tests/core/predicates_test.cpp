@@ -1,4 +1,4 @@
-#include "core/predicates.h"
+#include "core/exact/predicates.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "core/floating_point.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/exact_predicates.h"
 #include "tests/support/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "core/projected_grid.h"
+#include "core/crossings/projected_grid.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/crossings.h"
-#include "core/floating_point.h"
+#include "core/crossings/crossings.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

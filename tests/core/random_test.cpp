@@ -1,4 +1,4 @@
-#include "core/random.h"
+#include "core/sampling/random.h"
 
 #include <gtest/gtest.h>
 

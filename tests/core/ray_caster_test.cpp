@@ -1,4 +1,4 @@
-#include "core/ray_caster.h"
+#include "core/crossings/ray_caster.h"
 
 #include <gtest/gtest.h>
 #include <xmmintrin.h>

@@ -1,4 +1,4 @@
-#include "core/rule.h"
+#include "core/data/rule.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/point_sampler.h"
-#include "core/threads.h"
+#include "core/machine/threads.h"
+#include "core/sampling/point_sampler.h"
 #include "tests/support/shapes.h"
 #include "tests/support/statistics.h"
 

@@ -1,13 +1,13 @@
-#include "core/solid_angles.h"
+#include "core/boundary/solid_angles.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "core/exterior_edges.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 

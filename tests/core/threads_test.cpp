@@ -1,4 +1,4 @@
-#include "core/threads.h"
+#include "core/machine/threads.h"
 
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/floating_point.h"
+#include "core/machine/floating_point.h"
 
 namespace raycone {
 namespace {

@@ -1,11 +1,11 @@
-#include "core/triangle_distance.h"
+#include "core/distance/triangle_distance.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 #include "tests/property/triangle_cases.h"
 
 namespace raycone {

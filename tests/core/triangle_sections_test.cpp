@@ -1,4 +1,4 @@
-#include "core/triangle_sections.h"
+#include "core/crossings/triangle_sections.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/crossings.h"
-#include "core/floating_point.h"
+#include "core/crossings/crossings.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

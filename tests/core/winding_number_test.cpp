@@ -1,5 +1,5 @@
 // The evaluator against the oracle, against the laws of winding numbers, and on every kind of degeneracy.
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
 
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/predicates.h"
-#include "core/threads.h"
-#include "core/weld.h"
+#include "core/exact/predicates.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"

@@ -14,9 +14,9 @@
 #include <span>
 #include <vector>
 
-#include "core/lattice.h"
-#include "core/weld.h"
-#include "core/winding_number.h"
+#include "core/data/lattice.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/property/check_samples.h"
 #include "tests/property/distance_check.h"

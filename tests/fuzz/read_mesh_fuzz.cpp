@@ -1,5 +1,5 @@
 // libFuzzer target of one mesh reader, RAYCONE_READER (tests/fuzz/CMakeLists.txt): whatever the bytes, it returns a
-// mesh that keeps the promises of io/read_mesh.h or throws InputError or LimitError. Cutting its polygons leaves their
+// mesh that keeps the promises of io/mesh/read_mesh.h or throws InputError or LimitError. Cutting its polygons leaves their
 // boundaries as they were.
 #include <array>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/polygons.h"
-#include "io/file_error.h"
-#include "io/read_mesh.h"
+#include "core/mesh/polygons.h"
+#include "io/files/file_error.h"
+#include "io/mesh/read_mesh.h"
 
 namespace raycone {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "io/file_error.h"
-#include "io/read_points.h"
+#include "io/files/file_error.h"
+#include "io/points/read_points.h"
 
 namespace raycone {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/read_file.h"
+#include "io/files/read_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

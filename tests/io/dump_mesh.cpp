@@ -8,8 +8,8 @@
 #include <iostream>
 #include <string>
 
-#include "core/polygons.h"
-#include "io/read_mesh.h"
+#include "core/mesh/polygons.h"
+#include "io/mesh/read_mesh.h"
 
 namespace {
 

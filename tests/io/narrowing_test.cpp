@@ -1,4 +1,4 @@
-#include "io/narrowing.h"
+#include "io/fields/narrowing.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/rule.h"
+#include "core/data/rule.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-#include "io/output_file.h"
+#include "io/files/output_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "io/file_error.h"
-#include "io/spool_file.h"
-#include "io/temporary_file.h"
+#include "io/files/file_error.h"
+#include "io/files/spool_file.h"
+#include "io/files/temporary_file.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

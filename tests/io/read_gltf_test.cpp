@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "io/file_error.h"
-#include "io/read_file.h"
-#include "io/read_mesh.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {

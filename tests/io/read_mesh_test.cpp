@@ -1,5 +1,5 @@
 // Dispatch, loading from files, and all shared real meshes in OBJ, PLY, STL and OFF.
-#include "io/read_mesh.h"
+#include "io/mesh/read_mesh.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 #include <map>
 #include <sstream>
 
-#include "io/file_error.h"
-#include "io/mesh_signature.h"
-#include "io/read_file.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
+#include "io/mesh/mesh_signature.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "io/read_mesh.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/reader_checks.h"
 
 namespace raycone {

@@ -3,8 +3,8 @@
 
 #include <bit>
 
-#include "io/ply.h"
-#include "io/read_mesh.h"
+#include "io/mesh/ply.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/reader_checks.h"
 
 namespace raycone {

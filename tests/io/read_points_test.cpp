@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "io/file_error.h"
-#include "io/read_points.h"
+#include "io/files/file_error.h"
+#include "io/points/read_points.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {

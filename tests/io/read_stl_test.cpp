@@ -1,7 +1,7 @@
 // The STL reader on good and on broken files, ASCII and binary.
 #include <gtest/gtest.h>
 
-#include "io/read_mesh.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/support/reader_checks.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-#include "io/temporary_file.h"
+#include "io/files/temporary_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "io/output_file.h"
+#include "io/files/output_file.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/field_writer.h"
+#include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

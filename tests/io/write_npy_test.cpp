@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/field_writer.h"
+#include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

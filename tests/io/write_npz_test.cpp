@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/field_writer.h"
-#include "io/zip_writer.h"
+#include "io/fields/field_writer.h"
+#include "io/files/zip_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

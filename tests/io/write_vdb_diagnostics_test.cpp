@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/field_writer.h"
-#include "io/read_vdb.h"
+#include "io/fields/field_writer.h"
+#include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

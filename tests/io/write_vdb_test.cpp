@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/threads.h"
-#include "io/field_writer.h"
-#include "io/file_error.h"
-#include "io/read_vdb.h"
+#include "core/machine/threads.h"
+#include "io/fields/field_writer.h"
+#include "io/files/file_error.h"
+#include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "io/field_writer.h"
-#include "io/file_error.h"
+#include "io/fields/field_writer.h"
+#include "io/files/file_error.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 

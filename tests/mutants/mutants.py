@@ -16,38 +16,38 @@ class Mutant(NamedTuple):
 MUTANTS = [
     # --- One perturbation ---
     Mutant("tie_is_no_side", "edge side: ties are decided by the perturbation, not dropped", [
-        ("core/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
+        ("core/exact/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
          "  if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};\n", "")]),
     Mutant("tie_is_positive", "edge side: a tie depends on the direction of the edge", [
-        ("core/predicates.h", "return sign != 0 ? EdgeSide{sign, false} : broken_tie(a, b);",
+        ("core/exact/predicates.h", "return sign != 0 ? EdgeSide{sign, false} : broken_tie(a, b);",
          "return sign != 0 ? EdgeSide{sign, false} : EdgeSide{broken_tie(a, b).sign != 0, true};")]),
     Mutant("tie_by_y_before_z", "edge side: e2 >> e3, so a_z - b_z decides before b_y - a_y", [
-        ("core/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
+        ("core/exact/predicates.h", "if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};\n"
          "  if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};",
          "if (a.y != b.y) return {b.y > a.y ? 1 : -1, true};\n"
          "  if (a.z != b.z) return {a.z > b.z ? 1 : -1, true};")]),
     Mutant("plane_is_crossed", "crossing: orient3d = 0 is none", [
-        ("core/crossings.cpp", "if (side(middle) == -result.sigma) {", "if (side(middle) != result.sigma) {")]),
+        ("core/crossings/crossings.cpp", "if (side(middle) == -result.sigma) {", "if (side(middle) != result.sigma) {")]),
     Mutant("on_surface_not_at_ties", "on the surface: also where the line meets an edge or vertex", [
-        ("core/crossings.cpp", "  } else {\n    find_samples_on(a, b, c, row, result);\n", "")]),
+        ("core/crossings/crossings.cpp", "  } else {\n    find_samples_on(a, b, c, row, result);\n", "")]),
     Mutant("on_surface_cancels", "on the surface: duplicated faces that cancel are surface, too", [
-        ("core/lattice_sums.cpp", "std::atomic_ref(flags[first + i]).store(1, std::memory_order_relaxed);",
+        ("core/crossings/lattice_sums.cpp", "std::atomic_ref(flags[first + i]).store(1, std::memory_order_relaxed);",
          "flags[first + i] ^= 1;")]),
     Mutant("degenerate_without_box", "ties count for triangles whose closed box meets the closed ray", [
-        ("core/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle\n", "")]),
+        ("core/crossings/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle\n", "")]),
 
     # --- Exact signs, shared ---
     Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [
-        ("core/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
+        ("core/boundary/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
          "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
     Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
-        ("core/cone_kernel.cpp", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
+        ("core/boundary/cone_kernel.cpp", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
     Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
-        ("core/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
+        ("core/exact/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
     Mutant("side_filter_without_underflow", "products that underflow vouch for nothing", [
-        ("core/predicates.h", "kSideUnderflow = 0x1p-1000", "kSideUnderflow = 0.0")]),
+        ("core/exact/predicates.h", "kSideUnderflow = 0x1p-1000", "kSideUnderflow = 0.0")]),
     Mutant("float_crossings", "crossings are decided on double coordinates", [
-        ("core/crossings.cpp",
+        ("core/crossings/crossings.cpp",
          "triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,\n"
          "                                   const TrianglePlane* plane) {\n",
          "triangle_crossing(const Vec3& u, const Vec3& v, const Vec3& w, const Row& row,\n"
@@ -55,103 +55,103 @@ MUTANTS = [
          "  const auto rounded = [](const Vec3& p) { return Vec3{float(p.x), float(p.y), float(p.z)}; };\n"
          "  const Vec3 a = rounded(u), b = rounded(v), c = rounded(w);\n")]),
     Mutant("plane_error_too_small", "the place of a crossing along a row is only trusted beyond its error", [
-        ("core/crossings.cpp", "error = 1.01 * u *", "error = 0.01 * u *")]),
+        ("core/crossings/crossings.cpp", "error = 1.01 * u *", "error = 0.01 * u *")]),
     Mutant("grid_error_too_small", "single precision decides for points only beyond its error", [
-        ("core/projected_grid.cpp", "6.01 * v *", "0.06 * v *"), ("core/projected_grid.cpp", "3.01 * v *", "0.03 * v *")]),
+        ("core/crossings/projected_grid.cpp", "6.01 * v *", "0.06 * v *"), ("core/crossings/projected_grid.cpp", "3.01 * v *", "0.03 * v *")]),
     Mutant("grid_without_lines", "a triangle is listed where the lines of its edges tie, too", [
-        ("core/projected_grid.cpp", "    if (intersection(slab, edge.z).empty()) continue;\n",
+        ("core/crossings/projected_grid.cpp", "    if (intersection(slab, edge.z).empty()) continue;\n",
          "    if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
     Mutant("grid_cuts_too_early", "rays from behind a triangle alone miss it", [
-        ("core/projected_grid.cpp", "rounded_up(result_.local({upper, 0, 0}).x)",
+        ("core/crossings/projected_grid.cpp", "rounded_up(result_.local({upper, 0, 0}).x)",
          "static_cast<float>(result_.local({upper, 0, 0}).x - 0x1p-30)")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
-        ("core/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
+        ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [
-        ("core/triangle_sections.h", "kError = 8 * 0x1p-53, kUnderflow = 0x1p-1000", "kError = 0, kUnderflow = 0")]),
+        ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kUnderflow = 0x1p-1000", "kError = 0, kUnderflow = 0")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
-        ("core/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
+        ("core/crossings/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
-        ("core/threads.cpp", "    const DefaultFloatingPoint guard;\n", "")]),
+        ("core/machine/threads.cpp", "    const DefaultFloatingPoint guard;\n", "")]),
 
     # --- Slabs and sums ---
     Mutant("slabs_miss_triangles", "a slab looks at all triangles that meet it", [
-        ("core/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
+        ("core/crossings/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
     Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
-        ("core/lattice_sums.cpp", "  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);\n", "")]),
+        ("core/crossings/lattice_sums.cpp", "  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);\n", "")]),
     Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [
-        ("core/winding_number.cpp", "  across.evaluate(engine, values);\n", "")]),
+        ("core/evaluation/winding_number.cpp", "  across.evaluate(engine, values);\n", "")]),
     Mutant("level_edges_dropped", "only an edge along the rays has no argument anywhere", [
-        ("core/cone.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
+        ("core/boundary/cone.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
 
     # --- The cone's factors ---
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
-        ("core/predicates.h", "<= std::abs(b.y - q.y) + std::abs(b.z - q.z);",
+        ("core/exact/predicates.h", "<= std::abs(b.y - q.y) + std::abs(b.z - q.z);",
          "> std::abs(b.y - q.y) + std::abs(b.z - q.z);"),
-        ("core/cone_kernel.cpp", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
+        ("core/boundary/cone_kernel.cpp", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
     Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
-        ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, sum, square), s, n);",
+        ("core/boundary/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, sum, square), s, n);",
          "store(hn::IfNegativeThenElse(px, sum, hn::Sub(sum, hn::Add(px, px))), s, n);"),
-        ("core/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
+        ("core/boundary/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
          "store(hn::Set(d, 1.0), t, n);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
-        ("core/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
-        ("core/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
+        ("core/boundary/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
+        ("core/boundary/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
     Mutant("vertex_behind_counts", "an end at or behind the query gives no argument", [
-        ("core/tied_factor.h", "return a.x > q.x ?", "return true ?"),
-        ("core/tied_factor.h", "return b.x > q.x ?", "return true ?")]),
+        ("core/boundary/tied_factor.h", "return a.x > q.x ?", "return true ?"),
+        ("core/boundary/tied_factor.h", "return b.x > q.x ?", "return true ?")]),
     Mutant("meeting_side_ignored", "half a turn only if the edge meets the line ahead of the query", [
-        ("core/tied_factor.h", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
+        ("core/boundary/tied_factor.h", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
     Mutant("edge_at_query_counts", "no argument if the edge meets the line at the query", [
-        ("core/tied_factor.h", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
+        ("core/boundary/tied_factor.h", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
     Mutant("no_near_edge_factor", "near an edge z cancels, in any precision", [
-        ("core/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
+        ("core/boundary/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
     Mutant("near_edge_normal_in_double", "N must be known to full relative precision", [
-        ("core/exact_determinant.h", "  return sum.rounded();", "  const auto in_double = [](const Difference& x) { return x.plus + x.minus; };\n"
+        ("core/exact/exact_determinant.h", "  return sum.rounded();", "  const auto in_double = [](const Difference& x) { return x.plus + x.minus; };\n"
          "  return in_double(a) * in_double(d) - in_double(b) * in_double(c);")]),
     Mutant("near_edge_form_always_plain", "the better conditioned of z and z' is taken", [
-        ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "true ||")]),
+        ("core/boundary/near_edge.cpp", "plain.condition() <= normal.condition() ||", "true ||")]),
     Mutant("near_edge_form_always_normal", "the better conditioned of z and z' is taken", [
-        ("core/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
+        ("core/boundary/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
     Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
-        ("core/cone_kernel.cpp", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
+        ("core/boundary/cone_kernel.cpp", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
          "return (void)ordinary, square;"),
-        ("core/edge_factor.cpp", "return square > kSmallest && square < kLargest && std::abs(x) < kLargestX;",
+        ("core/boundary/edge_factor.cpp", "return square > kSmallest && square < kLargest && std::abs(x) < kLargestX;",
          "return true;")]),
 
     # --- The sum over triangles ---
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
-        ("core/solid_angle_kernel.cpp", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
+        ("core/boundary/solid_angle_kernel.cpp", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
     Mutant("no_care_next_to_triangles", "next to a triangle z_T cancels", [
-        ("core/solid_angle_kernel.cpp", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
-        ("core/solid_angle_kernel.cpp", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
+        ("core/boundary/solid_angle_kernel.cpp", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
+        ("core/boundary/solid_angle_kernel.cpp", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
     Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
-        ("core/solid_angle_kernel.cpp", "if (crossing.crossed > 0) products", "if (false) products")]),
+        ("core/boundary/solid_angle_kernel.cpp", "if (crossing.crossed > 0) products", "if (false) products")]),
     Mutant("triangles_as_they_come", "the order of faces changes no bit", [
-        ("core/solid_angles.cpp", "  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });\n", "")]),
+        ("core/boundary/solid_angles.cpp", "  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });\n", "")]),
 
     # --- The product ---
     Mutant("turns_by_comparison", "turns are told by sign bits: -0 is below the axis", [
-        ("core/product_lanes-inl.h", "std::signbit(before) != std::signbit(product_im)",
+        ("core/boundary/product_lanes-inl.h", "std::signbit(before) != std::signbit(product_im)",
          "(before < 0) != (product_im < 0)"),
-        ("core/product_lanes-inl.h", "std::signbit(im) ? -1.0 : 1.0;", "im < 0 ? -1.0 : 1.0;")]),
+        ("core/boundary/product_lanes-inl.h", "std::signbit(im) ? -1.0 : 1.0;", "im < 0 ? -1.0 : 1.0;")]),
     Mutant("no_turns", "the running product's turns are counted", [
-        ("core/product_lanes-inl.h", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))",
+        ("core/boundary/product_lanes-inl.h", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))",
          "z.passages")]),
     Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
-        ("core/product_lanes-inl.h", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
+        ("core/boundary/product_lanes-inl.h", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
     Mutant("product_never_scaled", "the power of two is taken out of the product", [
-        ("core/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
+        ("core/boundary/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
     Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
-        ("core/product_lanes-inl.h", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
-        ("core/product_lanes-inl.h", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
+        ("core/boundary/product_lanes-inl.h", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
+        ("core/boundary/product_lanes-inl.h", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
     Mutant("blocks_of_any_size", "a block may underflow or overflow, and is then multiplied factor by factor", [
-        ("core/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
-        ("core/product_lanes-inl.h", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
+        ("core/boundary/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
+        ("core/boundary/product_lanes-inl.h", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
     Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
-        ("core/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
+        ("core/boundary/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
 
     Mutant("crowds_in_double", "arguments that are multiplied by hundreds have 64 bits", [
-        ("core/cone.cpp", "kLargestInDouble = 256;", "kLargestInDouble = 2'000'000'000;")]),
+        ("core/boundary/cone.cpp", "kLargestInDouble = 256;", "kLargestInDouble = 2'000'000'000;")]),
     *[Mutant(f"{kernel}_off_by_{by}", "a value is right, and --verify finds out where it is not", [
         (f"core/{kernel}_kernel.cpp", "  finish(products, samples.count);\n",
          "  finish(products, samples.count);\n"
@@ -160,143 +160,143 @@ MUTANTS = [
 
     # --- Rules ---
     Mutant("halves_by_rounding", "in the plane of an opening w is 1/2 exactly", [
-        ("core/winding_number.cpp", "      settle_halves(scratch.tile, values.subspan(begin, scratch.tile.count));\n", "")]),
+        ("core/evaluation/winding_number.cpp", "      settle_halves(scratch.tile, values.subspan(begin, scratch.tile.count));\n", "")]),
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
-        ("core/winding_number.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
+        ("core/evaluation/winding_number.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
-        ("core/cone_settle.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
+        ("core/boundary/cone_settle.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
-        ("core/cone_settle.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
+        ("core/boundary/cone_settle.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
     Mutant("settled_in_80_bits", "113 bits tell what 80 cannot", [
-        ("core/cone_settle.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
+        ("core/boundary/cone_settle.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
     Mutant("settled_to_the_wrong_side", "a value is on the side of a half-integer on which w is", [
-        ("core/cone_settle.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
+        ("core/boundary/cone_settle.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
 
     # --- Magnitudes ---
     Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [
-        ("core/scale.cpp", "const PowerOfTwo scale(-exponent);", "const PowerOfTwo scale(0);"),
-        ("core/scale.cpp", "const PowerOfTwo inverse(exponent);", "const PowerOfTwo inverse(0);")]),
+        ("core/exact/scale.cpp", "const PowerOfTwo scale(-exponent);", "const PowerOfTwo scale(0);"),
+        ("core/exact/scale.cpp", "const PowerOfTwo inverse(exponent);", "const PowerOfTwo inverse(0);")]),
     Mutant("mesh_scaled_at_a_loss", "no scaling where it would cost a vertex bits", [
-        ("core/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
+        ("core/exact/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
     Mutant("query_scaled_at_a_loss", "no scaling where it would cost a query bits", [
-        ("core/winding_number.cpp", "return std::abs(x) >= least_ || x == 0.0;", "return least_ >= 0.0 || x == 0.0;")]),
+        ("core/evaluation/winding_number.cpp", "return std::abs(x) >= least_ || x == 0.0;", "return least_ >= 0.0 || x == 0.0;")]),
     Mutant("query_not_clamped", "queries beyond 2^1000 mesh sizes are taken to be there", [
-        ("core/winding_number.cpp", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
+        ("core/evaluation/winding_number.cpp", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
 
     Mutant("long_triangles_trusted", "a factor of a triangle with one minute and two huge corners is not trusted", [
-        ("core/solid_angles.cpp", "kLongest = 0x1p60;", "kLongest = HUGE_VAL;")]),
+        ("core/boundary/solid_angles.cpp", "kLongest = 0x1p60;", "kLongest = HUGE_VAL;")]),
     Mutant("scale_by_block", "whether a sample is evaluated in scale depends on no other sample", [
-        ("core/winding_number.cpp", "if (parts.size() != 1) return evaluate_parts", "if (parts.empty()) return evaluate_parts")]),
+        ("core/evaluation/winding_number.cpp", "if (parts.size() != 1) return evaluate_parts", "if (parts.empty()) return evaluate_parts")]),
 
     # --- Polygons ---
     Mutant("concave_fanned", "concave polygons are cut", [
-        ("core/polygons.cpp", "if (polygon.size() <= 3) return true;", "if (polygon.size() <= 6) return true;")]),
+        ("core/mesh/polygons.cpp", "if (polygon.size() <= 3) return true;", "if (polygon.size() <= 6) return true;")]),
     Mutant("left_turns_are_convex", "what turns left everywhere may still wind twice", [
-        ("core/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "never_turns_right(polygon)")]),
+        ("core/mesh/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "never_turns_right(polygon)")]),
     Mutant("fan_without_turns", "convex polygons never turn right", [
-        ("core/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "fan_opens_once(polygon)")]),
+        ("core/mesh/polygons.cpp", "never_turns_right(polygon) && fan_opens_once(polygon)", "fan_opens_once(polygon)")]),
     Mutant("fan_opens_again", "flat triangles are the first or the last of a fan", [
-        ("core/polygons.cpp", "(turn > 0 && place == kBehind) || ", "")]),
+        ("core/mesh/polygons.cpp", "(turn > 0 && place == kBehind) || ", "")]),
     Mutant("turns_in_floating_point", "floating point decides only turns that its error bound vouches for", [
-        ("core/projection.h", "kTurnTrust = 0x1p-49", "kTurnTrust = 0x1p-60")]),
+        ("core/exact/projection.h", "kTurnTrust = 0x1p-49", "kTurnTrust = 0x1p-60")]),
     Mutant("turns_that_underflow", "products that underflow vouch for nothing", [
-        ("core/projection.h", "kTurnUnderflow = 0x1p-960", "kTurnUnderflow = 0.0"),
-        ("core/projection.h", "return exact_turn(direction, a, b, c);", "return 0;")]),
+        ("core/exact/projection.h", "kTurnUnderflow = 0x1p-960", "kTurnUnderflow = 0.0"),
+        ("core/exact/projection.h", "return exact_turn(direction, a, b, c);", "return 0;")]),
     Mutant("collinear_by_overflow", "products that overflow are not equal", [
-        ("core/projection.cpp", " && std::isfinite(left)", "")]),
+        ("core/exact/projection.cpp", " && std::isfinite(left)", "")]),
     Mutant("seen_along_z", "polygons are seen along their area vector", [
-        ("core/polygons.cpp", "direction_ = area_direction(corners_);", "direction_ = Vec3{0, 0, area_direction(corners_).z};")]),
+        ("core/mesh/polygons.cpp", "direction_ = area_direction(corners_);", "direction_ = Vec3{0, 0, area_direction(corners_).z};")]),
     Mutant("winding_not_looked_at", "polygons that wind twice, or backwards, are bad", [
-        ("core/polygon_cut.cpp", "if (winding != 0 && winding != 1) return false;", "")]),
+        ("core/mesh/polygon_cut.cpp", "if (winding != 0 && winding != 1) return false;", "")]),
     Mutant("ends_not_looked_for", "an edge that crossed another is not where it ends", [
-        ("core/polygon_cut.cpp", "if (ends_[p] != 0 || (edge", "if ((edge")]),
+        ("core/mesh/polygon_cut.cpp", "if (ends_[p] != 0 || (edge", "if ((edge")]),
     Mutant("order_not_looked_at", "a corner is below the next edge, or edges have crossed", [
-        ("core/polygon_cut.cpp",
+        ("core/mesh/polygon_cut.cpp",
          "if (ends_[p] != 0 || (edge != edges_.end() && side(*edge, p) > 0)) return false;",
          "if (ends_[p] != 0) return false;")]),
     Mutant("bridge_counts_once", "a bridge's two ways cancel", [
-        ("core/polygon_cut.cpp", "      count += run.count;", "      count = run.count;")]),
+        ("core/mesh/polygon_cut.cpp", "      count += run.count;", "      count = run.count;")]),
     Mutant("edge_stays_split", "a corner on another edge leaves the boundary as it was", [
-        ("core/polygon_cut.cpp", "      add_flat(edge->first, edge->left, p, -edge->count);\n", "")]),
+        ("core/mesh/polygon_cut.cpp", "      add_flat(edge->first, edge->left, p, -edge->count);\n", "")]),
     Mutant("overlap_stays_split", "an edge that overlaps others leaves the boundary as it was", [
-        ("core/polygon_cut.cpp", "      add_flat(first, p, run.end, whole);\n", "")]),
+        ("core/mesh/polygon_cut.cpp", "      add_flat(first, p, run.end, whole);\n", "")]),
     Mutant("cut_turned_over", "no triangle is turned over", [
-        ("core/polygon_cut.cpp",
+        ("core/mesh/polygon_cut.cpp",
          "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
          "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [
-        ("core/exterior_edges.cpp", "return order != 0 ? order < 0 : i < j;", "return order == 0 ? false : i < j;")]),
+        ("core/mesh/exterior_edges.cpp", "return order != 0 ? order < 0 : i < j;", "return order == 0 ? false : i < j;")]),
     Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
-        ("core/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
+        ("core/mesh/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
     Mutant("equal_hashes_are_equal", "vertices are merged by their coordinates, never by a hash alone", [
-        ("core/equal_vertices.cpp", "if (all_equal(vertices, first)) return first;", "return first;")]),
+        ("core/mesh/equal_vertices.cpp", "if (all_equal(vertices, first)) return first;", "return first;")]),
     Mutant("near_within_a_run", "a vertex joins a representative within the distance, also across runs of coordinates", [
-        ("core/near_vertices.cpp", "runs_[run + 1].first - x <= distance_;", "runs_[run + 1].first - x < 0;")]),
+        ("core/mesh/near_vertices.cpp", "runs_[run + 1].first - x <= distance_;", "runs_[run + 1].first - x < 0;")]),
     Mutant("near_any_representative", "of several representatives within the distance the first is joined", [
-        ("core/near_vertices.cpp", "first = std::min(first, r);", "first = r;")]),
+        ("core/mesh/near_vertices.cpp", "first = std::min(first, r);", "first = r;")]),
     Mutant("loops_take_part_in_others", "who waits for a loop within a loop takes no part in the outer one", [
-        ("core/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
+        ("core/machine/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
     Mutant("error_bound_too_small", "the error bound is rigorous", [
-        ("core/winding_number.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
+        ("core/evaluation/winding_number.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
-        ("core/winding_number.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
+        ("core/evaluation/winding_number.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
 
     # --- Points that are drawn ---
     Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [
-        ("core/point_sampler.cpp", "return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);",
+        ("core/sampling/point_sampler.cpp", "return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);",
          "return ((void)in_range, (void)kThinnest, (void)exact_doubled_area, product);")]),
     Mutant("area_filter_too_small", "doubles decide an area only where its error bound vouches for it", [
-        ("core/point_sampler.cpp", "kThinnest = 0x1p-20", "kThinnest = 0x1p-60")]),
+        ("core/sampling/point_sampler.cpp", "kThinnest = 0x1p-20", "kThinnest = 0x1p-60")]),
     Mutant("area_in_world_units", "areas may be below the range of doubles", [
-        ("core/point_sampler.cpp", "std::scalbn(s, -exponent)", "((void)exponent, s)")]),
+        ("core/sampling/point_sampler.cpp", "std::scalbn(s, -exponent)", "((void)exponent, s)")]),
     Mutant("triangle_without_root", "points are uniform within a triangle", [
-        ("core/point_sampler.cpp", "from_a = std::sqrt(random.uniform())", "from_a = random.uniform()")]),
+        ("core/sampling/point_sampler.cpp", "from_a = std::sqrt(random.uniform())", "from_a = random.uniform()")]),
     Mutant("points_out_of_their_box", "points of faces across an axis lie in them exactly", [
-        ("core/point_sampler.cpp", "p[axis] = std::clamp(p[axis], least, most);", "(void)std::clamp(p[axis], least, most);")]),
+        ("core/sampling/point_sampler.cpp", "p[axis] = std::clamp(p[axis], least, most);", "(void)std::clamp(p[axis], least, most);")]),
     Mutant("noise_in_world_units", "noise is in diagonals of the mesh's box", [
-        ("core/point_sampler.cpp", "near.sigma * diagonal_", "near.sigma")]),
+        ("core/sampling/point_sampler.cpp", "near.sigma * diagonal_", "near.sigma")]),
     Mutant("points_at_infinity", "points that are not finite are told before they are drawn", [
-        ("core/point_sampler.cpp", "if (!std::isfinite(lower) || !std::isfinite(upper)) return false;", "")]),
+        ("core/sampling/point_sampler.cpp", "if (!std::isfinite(lower) || !std::isfinite(upper)) return false;", "")]),
     Mutant("one_stream_for_all", "each point has a stream of random numbers of its own", [
-        ("core/point_sampler.cpp", "Random random(seed_, number);", "Random random(seed_, number / 2);")]),
+        ("core/sampling/point_sampler.cpp", "Random random(seed_, number);", "Random random(seed_, number / 2);")]),
     Mutant("another_generator", "the generator is SplitMix64", [
-        ("core/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
+        ("core/sampling/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
     Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
-        ("core/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
+        ("core/sampling/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
 
     # --- Distances ---
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
-        ("core/distance_tree.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
+        ("core/distance/distance_tree.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
-        ("core/distance_tree.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
+        ("core/distance/distance_tree.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
     Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
-        ("core/distance_band.cpp", "std::min(band_ + radius, distance + length(center - from))",
+        ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + length(center - from))",
          "std::min(band_, distance + length(center - from))")]),
     Mutant("bands_without_slack", "what rounds may be just outside of what it is intersected with", [
-        ("core/distance_band.cpp", "reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13;",
+        ("core/distance/distance_band.cpp", "reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13;",
          "reach_ = band;")]),
     Mutant("no_sample_is_far", "lattices may be larger than what squares hold", [
-        ("core/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
+        ("core/distance/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
          "return std::abs(to_unit(coordinate)) <= std::numeric_limits<double>::max();")]),
     Mutant("band_ends_with_what_is_near", "samples that are not far may be farther than that from the mesh", [
-        ("core/distance.cpp", "std::min(to_unit(band), 4 * kFar)", "std::min(to_unit(band), kFar)")]),
+        ("core/distance/distance.cpp", "std::min(to_unit(band), 4 * kFar)", "std::min(to_unit(band), kFar)")]),
     Mutant("origin_has_a_size", "squares of distances to a mesh without a size underflow", [
-        ("core/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),
+        ("core/distance/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),
     Mutant("distances_without_care", "next to the surface or a needle rounding shows", [
-        ("core/triangle_distance.cpp", "return least >= sure_from_ || least <= sure_up_to_ ?", "return least >= 0 ?")]),
+        ("core/distance/triangle_distance.cpp", "return least >= sure_from_ || least <= sure_up_to_ ?", "return least >= 0 ?")]),
     Mutant("needles_are_segments", "a thin triangle is its edges from some distance only", [
-        ("core/triangle_distance.cpp", "4e12 *", "4e4 *")]),
+        ("core/distance/triangle_distance.cpp", "4e12 *", "4e4 *")]),
     Mutant("needles_are_proper", "beyond which edges a point lies is not known of needles", [
-        ("core/triangle_distance.cpp", "constexpr double kProper = 0x1p-8;", "constexpr double kProper = 1e-30;")]),
+        ("core/distance/triangle_distance.cpp", "constexpr double kProper = 0x1p-8;", "constexpr double kProper = 1e-30;")]),
     Mutant("tiny_triangles_are_proper", "squares of small normals underflow", [
-        ("core/triangle_distance.cpp", "constexpr double kTiny = 1e-130;", "constexpr double kTiny = 0;")]),
+        ("core/distance/triangle_distance.cpp", "constexpr double kTiny = 1e-130;", "constexpr double kTiny = 0;")]),
     Mutant("rest_is_not_corrected", "a residual holds the error of the coordinates that it is of", [
-        ("core/triangle_distance.cpp", "return square(rest - dot(rest, to_v_) * edges_[0] + dot(rest, to_w_) * edges_[2]);",
+        ("core/distance/triangle_distance.cpp", "return square(rest - dot(rest, to_v_) * edges_[0] + dot(rest, to_w_) * edges_[2]);",
          "return square(rest);")]),
     Mutant("inside_of_two_edges", "a point is inside of a thin triangle within all three edges", [
-        ("core/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
+        ("core/distance/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
     Mutant("no_segments", "a triangle without height is its edges", [
-        ("core/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
+        ("core/distance/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 ]

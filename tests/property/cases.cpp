@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/weld.h"
+#include "core/mesh/weld.h"
 
 namespace raycone::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {

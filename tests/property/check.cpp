@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "core/floating_point.h"
-#include "core/winding_number.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/exact_predicates.h"
 

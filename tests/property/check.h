@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone::test {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/floating_point.h"
-#include "core/point_sampler.h"
-#include "core/rule.h"
+#include "core/data/rule.h"
+#include "core/machine/floating_point.h"
+#include "core/sampling/point_sampler.h"
 #include "tests/support/exact_predicates.h"
 #include "tests/support/quad_distance.h"
 

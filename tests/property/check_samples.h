@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 #include "tests/property/check.h"
 
 namespace raycone::test {

@@ -6,12 +6,12 @@
 #include <limits>
 #include <string>
 
-#include "core/direct_distance.h"
-#include "core/distance.h"
-#include "core/distance_band.h"
-#include "core/distance_tree.h"
-#include "core/floating_point.h"
-#include "core/scale.h"
+#include "core/distance/distance.h"
+#include "core/distance/distance_band.h"
+#include "core/distance/distance_tree.h"
+#include "core/exact/direct_distance.h"
+#include "core/exact/scale.h"
+#include "core/machine/floating_point.h"
 
 namespace raycone::test {
 namespace {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "core/triangle_distance.h"
-#include "core/weld.h"
-#include "io/file_error.h"
-#include "io/read_mesh.h"
+#include "core/distance/triangle_distance.h"
+#include "core/mesh/weld.h"
+#include "io/files/file_error.h"
+#include "io/mesh/read_mesh.h"
 #include "tests/property/cases.h"
 #include "tests/property/distance_check.h"
 #include "tests/property/triangle_cases.h"

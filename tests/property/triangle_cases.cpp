@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/direct_distance.h"
+#include "core/exact/direct_distance.h"
 
 namespace raycone::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/vec3.h"
+#include "core/data/vec3.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/floating_point.h"
+#include "core/machine/floating_point.h"
 #include "tests/support/exact_predicates.h"
 
 namespace raycone::test {

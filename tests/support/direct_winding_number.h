@@ -3,7 +3,7 @@
 // decided by exact_predicates.h, and it is not the direct sum of --verify.
 #pragma once
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone::test {
 

@@ -1,8 +1,8 @@
-// Signs of determinants in integer arithmetic of any length: the oracle of core/predicates.h, with which it shares
+// Signs of determinants in integer arithmetic of any length: the oracle of core/exact/predicates.h, with which it shares
 // no code. Exact for all finite doubles, given denormal numbers (DefaultFloatingPoint). Microseconds each.
 #pragma once
 
-#include "core/vec3.h"
+#include "core/data/vec3.h"
 
 namespace raycone::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/field_writer.h"
+#include "io/fields/field_writer.h"
 #include "tests/support/run_command.h"
 
 namespace raycone::test {

@@ -1,7 +1,7 @@
 // Distances by brute force: all triangles, one after the other, in 113-bit precision and by other formulas than core's.
 #pragma once
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone::test {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/file_error.h"
-#include "io/read_mesh.h"
+#include "io/files/file_error.h"
+#include "io/mesh/read_mesh.h"
 
 namespace raycone::test {
 

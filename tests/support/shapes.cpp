@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/weld.h"
+#include "core/mesh/weld.h"
 
 namespace raycone::test {
 namespace {

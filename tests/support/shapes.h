@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "core/triangle_mesh.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone::test {
 

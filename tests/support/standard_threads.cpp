@@ -1,4 +1,4 @@
-// core/threads.h on standard threads, in place of core/threads.cpp in builds for ThreadSanitizer: Debian's TBB is not
+// core/machine/threads.h on standard threads, in place of core/machine/threads.cpp in builds for ThreadSanitizer: Debian's TBB is not
 // built for it, so that every hand-over between TBB's threads looks like a race and the real ones drown.
 #include <algorithm>
 #include <atomic>
@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/floating_point.h"
-#include "core/threads.h"
+#include "core/machine/floating_point.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {

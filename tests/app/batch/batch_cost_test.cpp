@@ -5,9 +5,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "app/batch_options.h"
-#include "app/run_lattice.h"
-#include "app/run_steps.h"
+#include "app/command_line/batch_options.h"
+#include "app/run/run_lattice.h"
+#include "app/run/run_steps.h"
 #include "tests/app/batch/batch_fixture.h"
 
 namespace raycone::test {

@@ -224,7 +224,7 @@ TEST_F(BatchInterruption, ABatchOnAnotherHostHasEndedWhenItIsSilent) {
 
 TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {
 #ifdef __SANITIZE_THREAD__
-  GTEST_SKIP() << "ThreadSanitizer has a thread of its own, and core/threads.h another implementation";
+  GTEST_SKIP() << "ThreadSanitizer has a thread of its own, and core/machine/threads.h another implementation";
 #endif
   put_long();
   for (const std::size_t threads : {2U, 3U, 5U}) {

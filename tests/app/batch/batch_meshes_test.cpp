@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "app/usage_error.h"
-#include "io/file_error.h"
+#include "app/process/usage_error.h"
+#include "io/files/file_error.h"
 #include "tests/app/meshes.h"
 #include "tests/support/temporary_directory.h"
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/file_error.h"
+#include "io/files/file_error.h"
 #include "tests/app/meshes.h"
 #include "tests/support/temporary_directory.h"
 

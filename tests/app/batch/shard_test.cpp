@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "app/usage_error.h"
+#include "app/process/usage_error.h"
 
 namespace raycone::test {
 namespace {

@@ -1,0 +1,148 @@
+// raycone batch: the options of raycone lattice and --sample, but for those about one file, and its own.
+#include "app/command_line/batch_options.h"
+
+#include <algorithm>
+#include <set>
+
+#include "app/command_line/common_options.h"
+#include "app/command_line/lattice_options.h"
+#include "app/command_line/points_options.h"
+#include "app/command_line/sample_options.h"
+#include "app/process/usage_error.h"
+
+namespace raycone {
+namespace {
+
+// Options of lattices that batches understand in their own way, or not at all.
+const std::set<std::string> kOfOneFile{"--output", "--report", "--depfile"};
+const std::set<std::string> kOfSamples{"--sample", "--seed"};  // and lattices have none of these
+const std::set<std::string> kOfBatches{"--format", "--threads", "--memory-limit", "--timeout", "--progress", "--quiet"};
+
+// `formats`: those of lattices.
+OptionGroup batch_group(const std::string& formats) {
+  return {
+      "Batch",
+      {{"--out-dir", "DIR", "Where outputs and results.csv go"},
+       {"--format", formats + "|npz|none", "Format of outputs (default: vdb, or npz of samples); none: measure only"},
+       {"--full-names", "", "Keep the extension of the mesh: a.stl.vdb"},
+       {"-0,--null", "", "Lists are separated by NUL, not by line feeds"},
+       {"--jobs", "J", "Meshes at a time (default: as --threads allows)"},
+       {"--shard", "I/N|slurm", "Do the I-th of N parts; slurm: that of this array task"},
+       {"--retry-failed", "", "Try all again that failed"},
+       {"--keep-going", "", "Go on when a mesh fails (default)"},
+       {"--fail-fast", "", "Stop when a mesh fails"},
+       {"--dry-run", "", "List what would be done, with the reason"}}};
+}
+
+OptionGroup batch_run_group() {
+  OptionGroup group = run_group();
+  for (OptionSpec& option : group.options) {
+    if (option.names == "--threads")
+      option.description = "Busy threads in all (default: RAYCONE_THREADS, else the CPUs)";
+    if (option.names == "--memory-limit") option.description = "Memory of a mesh (default: an equal share)";
+    if (option.names == "--timeout") option.description = "Give a mesh up after S seconds (default: 3600)";
+  }
+  return group;
+}
+
+OptionGroup batch_sample_group() {
+  OptionGroup group = sample_group();
+  std::erase_if(group.options, [](const OptionSpec& option) { return !kOfSamples.contains(option.names); });
+  return group;
+}
+
+// The options that are handed on as they are.
+bool is_handed_on(const std::string& name) {
+  static const OptionNames lattice = option_names(lattice_spec());
+  if (kOfOneFile.contains(name) || kOfBatches.contains(name)) return false;
+  return contains(lattice, name) || kOfSamples.contains(name);
+}
+
+// Throws UsageError for options that belong to the other one of lattices and samples.
+std::vector<std::string> mesh_options_in(const Values& values) {
+  const bool sampled = values.given("--sample");
+  const OptionNames known = option_names(sampled ? points_spec() : lattice_spec());
+  std::vector<std::string> options;
+  for (const auto& [name, given] : values.all()) {
+    if (!is_handed_on(name)) continue;
+    if (!contains(known, name)) {
+      if (sampled) throw UsageError("--sample: cannot be combined with " + name);
+      invalid(name, given.back(), "--sample with it");
+    }
+    options.push_back(known.flags.contains(name) ? name : name + '=' + given.back());
+  }
+  return options;
+}
+
+// How outputs are written if nothing else is said.
+std::string default_format(bool sampled) { return sampled ? "npz" : "vdb"; }
+
+}  // namespace
+
+CommandSpec batch_spec() {
+  CommandSpec spec = lattice_spec();
+  spec.name = "batch";
+  spec.description = "Lattices or samples of many meshes: resumable, each mesh on its own";
+  spec.operands = {{"MESH|DIR|@LIST", "Mesh, directory to search, or list of them; @- for a list on standard input",
+                    OperandCount::kMany}};
+  std::string formats;
+  for (OptionGroup& group : spec.groups) {
+    if (group.heading == "Run") group = batch_run_group();
+    std::erase_if(group.options, [&formats](const OptionSpec& option) {
+      const std::string name = names_of(option).back();
+      if (name == "--format") formats = option.value;
+      return kOfOneFile.contains(name) || name == "--format";
+    });
+  }
+  spec.groups.insert(spec.groups.begin(), batch_group(formats));
+  const auto field = std::ranges::find(spec.groups, "Field", &OptionGroup::heading);
+  spec.groups.insert(field, batch_sample_group());
+  spec.examples = {"raycone batch meshes --out-dir fields --resolution 128",
+                   "raycone batch meshes --out-dir fields --resolution 128    again: what is missing or out of date",
+                   "raycone batch meshes --out-dir measured --format none --resolution 50,50,50",
+                   "raycone batch meshes --out-dir samples --sample uniform=100000,near=100000:0.01",
+                   "find . -name '*.stl' -size -10M -print0 | raycone batch @- -0 --out-dir fields",
+                   "raycone report fields"};
+  std::erase_if(spec.later.with_value, [](const std::string& name) { return kOfOneFile.contains(name); });
+  return spec;
+}
+
+MeshCommand mesh_command_of(const std::string& format, const std::vector<std::string>& options) {
+  const bool sampled = std::ranges::any_of(options, [](const auto& word) { return word.starts_with("--sample="); });
+  // What writes nothing accepts what any format does.
+  const bool writes = format != "none";
+  std::vector<std::string> words{sampled ? "points" : "lattice", "--output=-", "--quiet", "--progress=never"};
+  words.push_back("--format=" + (writes ? format : default_format(sampled)));
+  words.insert(words.end(), options.begin(), options.end());
+  words.insert(words.end(), {"--", "MESH"});
+  const auto finish = [writes](auto command) -> MeshCommand {
+    if (!writes) command.output.format = FieldFormat::kNone;
+    return command;
+  };
+  const Command command = parse_command_line(words);
+  return sampled ? finish(std::get<PointsCommand>(command)) : finish(std::get<LatticeCommand>(command));
+}
+
+Command parse_batch(const Values& values) {
+  if (!values.given("--out-dir")) throw UsageError("no directory given, expected --out-dir DIR" + help_hint("batch"));
+  values.exclude("--fail-fast", {"--keep-going"});
+  BatchCommand command;
+  command.format = values.given("--format") ? values.text("--format") : default_format(values.given("--sample"));
+  std::ranges::transform(command.format, command.format.begin(),
+                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  command.mesh_options = mesh_options_in(values);
+  (void)mesh_command_of(command.format, command.mesh_options);  // throws where they are wrong
+  command.directory = values.text("--out-dir");
+  const bool full_names = values.given("--full-names") || command.format == "none";  // no outputs, no collisions
+  command.search = {values.texts("MESH|DIR|@LIST"), values.given("--null"), full_names, command.format};
+  if (values.given("--shard")) command.shard = shard_from(values.text("--shard"));
+  command.run = parse_run(values);
+  constexpr std::int64_t kMaxJobs = 1024;  // each has open files
+  if (values.given("--jobs")) command.jobs = static_cast<int>(values.integer("--jobs", 1, kMaxJobs));
+  command.retry_failed = values.given("--retry-failed");
+  command.fail_fast = values.given("--fail-fast");
+  command.dry_run = values.given("--dry-run");
+  return command;
+}
+
+}  // namespace raycone

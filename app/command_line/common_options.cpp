@@ -1,0 +1,127 @@
+#include "app/command_line/common_options.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "app/process/limits.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
+
+namespace raycone {
+namespace {
+
+Weld parse_weld(const Values& values) {
+  const std::string text = values.text("--weld");
+  if (text.empty() || text == "exact") return {WeldMode::kExact, 0.0};
+  if (text == "none") return {WeldMode::kNone, 0.0};
+  const std::optional<double> distance = number_from(text);
+  if (!distance || !(*distance > 0.0)) invalid("--weld", text, "exact, none or a positive distance");
+  return {WeldMode::kDistance, *distance};
+}
+
+FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
+  if (formats.only) return *formats.only;
+  const bool named = values.given("--format");
+  if (!named && output == "-") return FieldFormat::kCsv;
+  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::string name =
+      named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
+  const std::optional<FieldFormat> format = field_format_from_name(name);
+  if (format && std::ranges::count(formats.written, *format) > 0) return *format;
+  if (named) invalid("--format", values.text("--format"), formats.listed);
+  throw UsageError(output + ": its extension names no format, expected " + formats.listed + ", or --format");
+}
+
+}  // namespace
+
+OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB file; - for standard input"}; }
+
+OptionGroup mesh_group() {
+  return {"Mesh",
+          {{"--mesh-format", "obj|ply|stl|off|gltf|glb", "Format of the mesh on standard input"},
+           {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
+           {"--scale", "S", "Multiply all coordinates by S"},
+           {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"}}};
+}
+
+MeshOptions parse_mesh(const Values& values) {
+  MeshOptions mesh;
+  mesh.path = values.text("MESH");
+  if (mesh.path.empty()) throw UsageError("MESH: expected a file, not an empty name");
+  if (values.given("--mesh-format")) {
+    mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));
+    if (!mesh.reading.format) invalid("--mesh-format", values.text("--mesh-format"), "obj, ply, stl, off, gltf or glb");
+  }
+  if (values.given("--scale")) mesh.reading.scale = values.positive("--scale");
+  mesh.reading.y_up_to_z_up = values.given("--up");
+  if (values.given("--up") && values.text("--up") != "y-to-z") invalid("--up", values.text("--up"), "y-to-z");
+  mesh.weld = parse_weld(values);
+  return mesh;
+}
+
+OptionGroup output_group(const std::string& formats) {
+  const bool is_choice = formats.find('|') != std::string::npos;
+  return {
+      "Output",
+      {{"-o,--output", "OUT", "File to write; - for standard output"},
+       {"--format", formats,
+        is_choice ? "Format of OUT (default: by its extension, csv for -)" : "Format of OUT, whatever its extension"},
+       {"--no-clobber", "", "Never replace an existing file"},
+       {"--report", "FILE.json", "Write what was done, for machines"},
+       {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
+}
+
+OutputFiles parse_output_files(const Values& values) {
+  OutputFiles output;
+  output.path = values.given("--output") ? values.text("--output") : "-";
+  output.no_clobber = values.given("--no-clobber");
+  if (values.given("--report")) output.report = values.text("--report");
+  if (values.given("--depfile")) output.depfile = values.text("--depfile");
+  if (output.depfile == output.path) throw UsageError("--depfile " + output.path + ": is the output too");
+  if (output.report == output.path) throw UsageError("--report " + output.path + ": is the output too");
+  return output;
+}
+
+OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
+  OutputOptions output;
+  static_cast<OutputFiles&>(output) = parse_output_files(values);
+  output.format = parse_format(values, output.path, formats);
+  return output;
+}
+
+OptionGroup run_group() {
+  return {"Run",
+          {{"--threads", "T", "Threads (default: RAYCONE_THREADS, else the CPUs that may be used)"},
+           {"--memory-limit", "8G", "Refuse what needs more memory (default: what is available)"},
+           {"--timeout", "S", "Give up after S seconds"},
+           {"--progress", "always|never|auto", "Progress on standard error (default: on a terminal)"},
+           {"--quiet", "", "Print errors only"},
+           {"--strict", "", "Treat warnings about the mesh as errors"},
+           {"-h,--help", "", "Print this help"}}};
+}
+
+RunOptions parse_run(const Values& values) {
+  RunOptions run;
+  if (values.given("--threads")) run.threads = static_cast<int>(values.integer("--threads", 1, kMaxThreads));
+  if (values.given("--timeout")) run.timeout = values.positive("--timeout");
+  if (values.given("--memory-limit")) {
+    run.memory_limit = byte_count_from(values.text("--memory-limit"));
+    if (!run.memory_limit) {
+      invalid("--memory-limit", values.text("--memory-limit"), "bytes, with K, M, G or T behind the number if need be");
+    }
+  }
+  if (values.given("--progress")) {
+    const std::map<std::string, ProgressMode> modes{
+        {"always", ProgressMode::kAlways}, {"never", ProgressMode::kNever}, {"auto", ProgressMode::kAuto}};
+    const auto mode = modes.find(values.text("--progress"));
+    if (mode == modes.end()) invalid("--progress", values.text("--progress"), "always, never or auto");
+    run.progress = mode->second;
+  }
+  run.quiet = values.given("--quiet");
+  run.strict = values.given("--strict");
+  return run;
+}
+
+}  // namespace raycone

@@ -1,0 +1,14 @@
+// The options that say what is evaluated, with their conversion.
+#pragma once
+
+#include "app/command_line/command_spec.h"
+#include "app/command_line/values.h"
+#include "app/options/options.h"
+
+namespace raycone {
+
+[[nodiscard]] OptionGroup field_group();
+[[nodiscard]] OptionGroup unlisted_field_group();
+[[nodiscard]] FieldOptions parse_field(const Values& values);
+
+}  // namespace raycone

@@ -1,0 +1,160 @@
+#include "app/command_line/lattice_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/command_line/common_options.h"
+#include "app/command_line/field_options.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
+
+namespace raycone {
+namespace {
+
+std::variant<LongestSide, SampleCounts> parse_resolution(const std::string& text) {
+  constexpr std::int64_t kMaxCount = std::int64_t{1} << 53;
+  const std::vector<std::int64_t> counts = integers_from(text).value_or(std::vector<std::int64_t>());
+  const bool valid = std::ranges::all_of(counts, [](std::int64_t n) { return n >= 1 && n <= kMaxCount; });
+  if (valid && counts.size() == 1) return LongestSide{counts[0]};
+  if (valid && counts.size() == 3) return SampleCounts{{counts[0], counts[1], counts[2]}};
+  invalid("--resolution", text, "N or NX,NY,NZ, integers of at least 1");
+}
+
+VoxelSize parse_voxel_size(const std::string& text) {
+  const std::vector<double> sizes = numbers_from(text).value_or(std::vector<double>());
+  const bool valid = std::ranges::all_of(sizes, [](double size) { return size > 0.0; });
+  if (valid && sizes.size() == 1) return {{sizes[0], sizes[0], sizes[0]}};
+  if (valid && sizes.size() == 3) return {{sizes[0], sizes[1], sizes[2]}};
+  invalid("--voxel-size", text, "H or HX,HY,HZ, positive numbers");
+}
+
+// A file name may contain colons: the grid's name starts behind the last ".vdb:".
+GridReference parse_like(const std::string& text) {
+  const std::size_t end = text.rfind(".vdb:");
+  if (end == std::string::npos) return {text, ""};
+  return {text.substr(0, end + 4), text.substr(end + 5)};
+}
+
+// An array of a lattice has one axis per axis of the lattice.
+void check_npy(const LatticeCommand& command) {
+  if (command.output.format != FieldFormat::kNpy) return;
+  constexpr const char* kReason = "npy holds one number per sample, expected vdb, csv or vti";
+  if (command.field.diagnostics) throw UsageError(std::string("--diagnostics: ") + kReason);
+  if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
+}
+
+// A level set needs the band on the outside too.
+void make_room_for_band(const Values& values, LatticeCommand& command) {
+  if (values.given("--padding") || values.given("--bounds") || values.given("--like")) return;
+  constexpr double kMost = 1e6;
+  if (command.field.band > kMost) invalid("--band", values.text("--band"), "at most a million voxels");
+  const auto samples = static_cast<std::int64_t>(std::ceil(command.field.band + 1));
+  std::get<LatticeRequest>(command.lattice).padding = VoxelPadding{samples};
+}
+
+// What only grids of OpenVDB have.
+void parse_grid_options(const Values& values, LatticeCommand& command) {
+  OutputOptions& output = command.output;
+  values.exclude("--half", {"--double"});
+  for (const char* const name : {"--half", "--grid-name"}) {
+    if (values.given(name) && output.format != FieldFormat::kVdb) {
+      throw UsageError(std::string(name) + ": is for grids, expected the format vdb");
+    }
+  }
+  output.half_precision = values.given("--half");
+  if (!values.given("--grid-name")) return;
+  output.grid_name = values.text("--grid-name");
+  if (command.field.fields.size() > 1) {
+    throw UsageError("--grid-name " + *output.grid_name + ": names a single grid, expected one field");
+  }
+  for (const FieldDescription& other : describe_diagnostics(command.field)) {
+    if (other.grid == *output.grid_name)
+      invalid("--grid-name", *output.grid_name, "another name than the diagnostics'");
+  }
+}
+
+}  // namespace
+
+OptionGroup lattice_group() {
+  return {"Lattice",
+          {{"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to sample (default: that of the mesh)"},
+           {"--padding", "P|Nv", "Widen the box by P, or by N voxels, on every side"},
+           {"--resolution", "N|NX,NY,NZ", "Samples along the longest side (64), or along each"},
+           {"--voxel-size", "H|HX,HY,HZ", "Samples at the multiples of H"},
+           {"--like", "GRID.vdb[:NAME]", "Transform and extent of an existing grid"},
+           {"--centers", "", "Samples at the centres of cells instead of their corners"}}};
+}
+
+Box parse_bounds(const std::string& text) {
+  const std::optional<std::vector<double>> numbers = numbers_from(text);
+  if (!numbers || numbers->size() != 6) invalid("--bounds", text, "six numbers X0,Y0,Z0,X1,Y1,Z1");
+  const std::vector<double>& n = *numbers;
+  const Box box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.lower[axis] > box.upper[axis]) invalid("--bounds", text, "X0 <= X1, Y0 <= Y1, Z0 <= Z1");
+  }
+  return box;
+}
+
+std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text) {
+  if (text.ends_with('v')) {
+    const std::optional<std::int64_t> samples = integer_from(std::string_view(text).substr(0, text.size() - 1));
+    if (samples) return VoxelPadding{*samples};
+  } else if (const std::optional<double> width = number_from(text)) {
+    return WorldPadding{*width};
+  }
+  invalid("--padding", text, "a distance, or an integer number of voxels such as 3v");
+}
+
+std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values) {
+  values.exclude("--like", {"--resolution", "--voxel-size", "--bounds", "--padding", "--centers"});
+  values.exclude("--resolution", {"--voxel-size"});
+  if (values.given("--like")) return parse_like(values.text("--like"));
+  LatticeRequest request;
+  if (values.given("--bounds")) request.bounds = parse_bounds(values.text("--bounds"));
+  if (values.given("--padding")) request.padding = parse_padding(values.text("--padding"));
+  if (values.given("--voxel-size")) request.sampling = parse_voxel_size(values.text("--voxel-size"));
+  if (values.given("--resolution")) {
+    std::visit([&](const auto& sampling) { request.sampling = sampling; },
+               parse_resolution(values.text("--resolution")));
+  }
+  request.centers = values.given("--centers");
+  return request;
+}
+
+CommandSpec lattice_spec() {
+  OptionGroup output = output_group("vdb|csv|npy|vti");
+  output.options.push_back({"--double", "", "64-bit values in VDB, NPY and VTI (default: 32-bit)"});
+  output.options.push_back({"--half", "", "16-bit values in VDB"});
+  output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
+  return {.name = "lattice",
+          .description = "Values on a regular lattice",
+          .operands = {mesh_operand()},
+          .groups = {mesh_group(), lattice_group(), field_group(), unlisted_field_group(), output, run_group()},
+          .examples = {"raycone lattice bunny.obj -o bunny.vdb                     64 samples along the longest side",
+                       "raycone lattice bunny.obj -o bunny.npy --resolution 50,50,50",
+                       "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
+                       "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
+                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"}};
+}
+
+Command parse_lattice(const Values& values) {
+  if (!values.given("--output")) throw UsageError("no output given, expected -o OUT" + help_hint("lattice"));
+  LatticeCommand command;
+  command.field = parse_field(values);
+  command.mesh = parse_mesh(values);
+  command.run = parse_run(values);
+  command.lattice = parse_lattice_request(values);
+  if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
+  command.output = parse_output(
+      values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti}, "vdb, csv, npy or vti"});
+  command.output.double_precision = values.given("--double");
+  parse_grid_options(values, command);
+  check_npy(command);
+  return command;
+}
+
+}  // namespace raycone

@@ -1,0 +1,21 @@
+// raycone lattice: its options, and those of its box, which others share.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "app/command_line/command_spec.h"
+#include "app/command_line/values.h"
+#include "app/options/options.h"
+
+namespace raycone {
+
+[[nodiscard]] CommandSpec lattice_spec();
+[[nodiscard]] Command parse_lattice(const Values& values);
+
+[[nodiscard]] OptionGroup lattice_group();
+[[nodiscard]] std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values);
+[[nodiscard]] Box parse_bounds(const std::string& text);
+[[nodiscard]] std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text);
+
+}  // namespace raycone

@@ -1,0 +1,185 @@
+// The command line, from words to a Command. CLI11 checks it against the specification of the command and prints the
+// help; values stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
+#include "app/options/options.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <string_view>
+
+#include "app/command_line/arguments.h"
+#include "app/command_line/command_spec.h"
+#include "app/command_line/commands.h"
+#include "app/command_line/values.h"
+#include "app/process/usage_error.h"
+#include "app/process/version.h"
+
+namespace raycone {
+namespace {
+
+// ---- Specifications as CLI11 wants them --------------------------------------------------------------------------
+
+void add_operand(CLI::App& app, const OperandSpec& spec) {
+  CLI::Option* const operand = app.add_option(spec.name)->description(spec.description)->option_text(" ");
+  operand->required(spec.count != OperandCount::kOptional);
+  if (spec.count == OperandCount::kMany)
+    operand->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
+}
+
+void add_option(CLI::App& app, const std::string& group, const OptionSpec& spec) {
+  if (spec.value.empty()) {
+    app.add_flag(spec.names)->description(spec.description)->group(group);
+  } else {
+    app.add_option(spec.names)->option_text(spec.value)->description(spec.description)->take_last()->group(group);
+  }
+}
+
+std::string footer(const CommandSpec& spec) {
+  std::string text = "Examples:";
+  for (const std::string& example : spec.examples) text += "\n  " + example;
+  if (!spec.notes.empty()) text += '\n';
+  for (const NoteSpec& note : spec.notes) text += '\n' + note.heading + ": " + note.text;
+  return text;
+}
+
+void declare(CLI::App& app, const CommandSpec& spec) {
+  app.set_help_flag();  // the specification has it
+  for (const OperandSpec& operand : spec.operands) add_operand(app, operand);
+  for (const OptionGroup& group : spec.groups) {
+    for (const OptionSpec& option : group.options) add_option(app, group.heading, option);
+  }
+  app.footer(footer(spec));
+}
+
+void declare_all(CLI::App& root) {
+  root.require_subcommand(1);
+  root.get_formatter()->column_width(36);
+  root.get_formatter()->label("Positionals", "Operands");
+  root.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  declare(root, program_spec());
+  for (const CommandEntry& entry : commands()) {
+    declare(*root.add_subcommand(entry.spec.name, entry.spec.description)->group("Commands"), entry.spec);
+  }
+}
+
+// CLI11's formatter leaves two blank lines between groups and none below the description.
+std::string help_text(const CLI::App& app, const std::string& program) {
+  std::string text = app.help(program);
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) text.erase(at, 1);
+  return text.insert(text.find("\nUsage:"), 1, '\n');
+}
+
+std::string help_of(const std::string& command) {
+  CLI::App root(program_spec().description, program_spec().name);
+  declare_all(root);
+  return command.empty() ? help_text(root, "") : help_text(*root.get_subcommand(command), program_spec().name);
+}
+
+// `arguments` in a form that CLI11 cannot take for anything else.
+std::vector<std::string> unmistakable(const Arguments& arguments) {
+  std::vector<std::string> result{arguments.command};
+  for (const OptionArgument& option : arguments.options) {
+    const bool joined_by_equals = option.name.starts_with("--") && !option.value.empty();
+    result.push_back(option.name + (joined_by_equals ? "=" : "") + option.value);
+  }
+  result.push_back("--");
+  result.insert(result.end(), arguments.operands.begin(), arguments.operands.end());
+  return result;
+}
+
+// Its own name() is empty for options without a heading.
+std::string long_name(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
+}
+
+Values parse_with_cli11(const Arguments& arguments) {
+  CLI::App root(program_spec().description, program_spec().name);
+  declare_all(root);
+  std::vector<std::string> reversed = unmistakable(arguments);
+  std::ranges::reverse(reversed);
+  try {
+    root.parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(std::string(error.what()) + help_hint(arguments.command));
+  }
+  std::map<std::string, std::vector<std::string>> given;
+  for (const CLI::Option* const option : root.get_subcommand(arguments.command)->get_options()) {
+    if (option->count() > 0) given[long_name(*option)] = option->results();
+  }
+  return Values(std::move(given));
+}
+
+// ---- What CLI11 would not notice, or say less well ---------------------------------------------------------------
+
+// Option names of all commands; each takes a value in every command that has it, or in none.
+OptionNames all_option_names() {
+  OptionNames all = option_names(program_spec());
+  for (const CommandEntry& entry : commands()) {
+    const OptionNames names = option_names(entry.spec);
+    all.with_value.insert(names.with_value.begin(), names.with_value.end());
+    all.flags.insert(names.flags.begin(), names.flags.end());
+  }
+  return all;
+}
+
+bool given(const Arguments& arguments, std::initializer_list<std::string_view> names) {
+  return std::ranges::any_of(arguments.options,
+                             [&](const OptionArgument& option) { return std::ranges::count(names, option.name) > 0; });
+}
+
+// "lattice, points or info"
+std::string listed_commands() {
+  std::string text;
+  for (std::size_t i = 0; i < commands().size(); ++i) {
+    if (i > 0) text += i + 1 < commands().size() ? ", " : " or ";
+    text += commands()[i].spec.name;
+  }
+  return text;
+}
+
+const CommandEntry& command_named(const std::string& name) {
+  const auto found = std::ranges::find(commands(), name, [](const CommandEntry& entry) { return entry.spec.name; });
+  if (found != commands().end()) return *found;
+  const std::string what = name.empty() ? "no command given" : "unknown command " + name;
+  throw UsageError(what + ", expected " + listed_commands() + help_hint(""));
+}
+
+// CLI11 would ask for missing operands before it names a wrong option.
+void check_options(const CommandSpec& spec, const Arguments& arguments) {
+  const OptionNames known = option_names(spec);
+  for (const OptionArgument& option : arguments.options) {
+    if (!contains(known, option.name)) {
+      throw UsageError("unknown option " + option.name + help_hint(arguments.command));
+    }
+    if (contains(spec.later, option.name)) not_available(option.name);
+  }
+}
+
+// CLI11 would list its own end-of-options mark among them.
+void check_operand_count(const CommandSpec& spec, const Arguments& arguments) {
+  const std::size_t most = spec.operands.size();
+  if (arguments.operands.size() <= most || spec.operands.back().count == OperandCount::kMany) return;
+  throw UsageError("unexpected operand " + arguments.operands[most] + help_hint(arguments.command));
+}
+
+std::string version_text() { return std::string("raycone ") + kVersion + " (" + kCommit + ")\n" + kLibraries + "\n"; }
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& words) {
+  const Arguments arguments = split_arguments(words, all_option_names());
+  if (given(arguments, {"--version"})) return PrintCommand{version_text()};
+  const bool help = given(arguments, {"-h", "--help"});
+  if (help && arguments.command.empty()) return PrintCommand{help_of("")};
+  if (arguments.command.empty()) check_options(program_spec(), arguments);
+  const CommandEntry& command = command_named(arguments.command);
+  if (help) return PrintCommand{help_of(arguments.command)};
+  check_options(command.spec, arguments);
+  check_operand_count(command.spec, arguments);
+  return command.parse(parse_with_cli11(arguments));
+}
+
+}  // namespace raycone

@@ -1,0 +1,103 @@
+#include "app/command_line/points_options.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command_line/common_options.h"
+#include "app/command_line/field_options.h"
+#include "app/command_line/sample_options.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
+
+namespace raycone {
+namespace {
+
+ReadPointsOptions parse_point_columns(const Values& values) {
+  ReadPointsOptions options;
+  if (!values.given("--columns")) return options;
+  constexpr std::int64_t kMaxColumn = 1'000'000;
+  const std::string text = values.text("--columns");
+  const std::vector<std::int64_t> columns = integers_from(text).value_or(std::vector<std::int64_t>());
+  const bool valid = std::ranges::all_of(columns, [](std::int64_t n) { return n >= 1 && n <= kMaxColumn; });
+  if (!valid || columns.size() != 3) invalid("--columns", text, "three column numbers such as 2,3,4");
+  options.columns = {static_cast<int>(columns[0]), static_cast<int>(columns[1]), static_cast<int>(columns[2])};
+  return options;
+}
+
+std::optional<RawPrecision> parse_raw(const Values& values) {
+  if (!values.given("--raw")) return std::nullopt;
+  values.exclude("--raw", {"--format", "--columns", "--sample"});
+  const std::string text = values.text("--raw");
+  if (text == "f64") return RawPrecision::kDouble;
+  if (text == "f32") return RawPrecision::kFloat;
+  invalid("--raw", text, "f64 or f32");
+}
+
+OutputFormats output_formats(const PointsCommand& command) {
+  if (command.sample) return {{FieldFormat::kNpz, FieldFormat::kCsv}, "npz or csv"};
+  OutputFormats formats{{FieldFormat::kCsv, FieldFormat::kNpy}, "csv or npy"};
+  if (command.reading.raw) {
+    const bool single = *command.reading.raw == RawPrecision::kFloat;
+    formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;
+  }
+  return formats;
+}
+
+// One of a file of points and a description of those to draw.
+void parse_points_source(const Values& values, PointsCommand& command) {
+  command.sample = parse_sample(values);
+  command.points = values.text("POINTS");
+  if (command.sample) {
+    if (values.given("POINTS")) throw UsageError("POINTS " + command.points + ": cannot be combined with --sample");
+    values.exclude("--sample", {"--columns"});
+    // What networks are trained on.
+    if (!values.given("--field")) command.field.fields = {Field::kWinding, Field::kInside, Field::kDistance};
+    return;
+  }
+  if (!values.given("POINTS")) throw UsageError("POINTS is required, or --sample" + help_hint("points"));
+  if (command.points.empty()) throw UsageError("POINTS: expected a file, not an empty name");
+  if (command.mesh.path == "-" && command.points == "-") {
+    throw UsageError("MESH and POINTS cannot both be standard input");
+  }
+}
+
+}  // namespace
+
+CommandSpec points_spec() {
+  return {.name = "points",
+          .description = "Values at given points",
+          .operands = {mesh_operand(),
+                       {"POINTS", "CSV, TSV or blank-separated text, NPY or PLY file; - for text on standard input",
+                        OperandCount::kOptional}},
+          .groups = {mesh_group(),
+                     {"Points",
+                      {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
+                       {"--raw", "f64|f32", "Little-endian triples in, values out, nothing else"}}},
+                     sample_group(),
+                     field_group(),
+                     unlisted_field_group(),
+                     output_group("csv|npy|npz"),
+                     run_group()},
+          .examples = {
+              "raycone points bunny.obj points.csv > values.csv", "raycone points bunny.obj points.npy -o values.npy",
+              "raycone points bunny.obj cloud.ply -o values.csv", "raycone points bunny.obj table.tsv --columns 2,3,4",
+              "echo 0 0.1 0 | raycone points bunny.obj -",
+              "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"}};
+}
+
+Command parse_points(const Values& values) {
+  PointsCommand command;
+  command.field = parse_field(values);
+  command.mesh = parse_mesh(values);
+  command.run = parse_run(values);
+  parse_points_source(values, command);
+  command.reading = parse_point_columns(values);
+  command.reading.raw = parse_raw(values);
+  command.output = parse_output(values, output_formats(command));
+  return command;
+}
+
+}  // namespace raycone

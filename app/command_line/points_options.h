@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/command_line/command_spec.h"
+#include "app/command_line/values.h"
+#include "app/options/options.h"
+
+namespace raycone {
+
+[[nodiscard]] CommandSpec points_spec();
+[[nodiscard]] Command parse_points(const Values& values);
+
+}  // namespace raycone

@@ -1,0 +1,27 @@
+// raycone report: a page about a batch.
+#include "app/command_line/report_options.h"
+
+#include "app/process/usage_error.h"
+
+namespace raycone {
+
+CommandSpec report_spec() {
+  return {
+      .name = "report",
+      .description = "A page about a batch and its shards",
+      .operands = {{"DIR", "The --out-dir of a batch"}},
+      .groups = {{"Output",
+                  {{"-o,--output", "REPORT.html", "File to write; - for standard output (default: DIR/report.html)"},
+                   {"-h,--help", "", "Print this help"}}}},
+      .examples = {"raycone report fields", "raycone report fields -o fields.html"}};
+}
+
+Command parse_report(const Values& values) {
+  ReportCommand command;
+  command.directory = values.text("DIR");
+  if (command.directory.empty()) throw UsageError("DIR: expected a directory, not an empty name");
+  command.output = values.given("--output") ? values.text("--output") : command.directory + "/report.html";
+  return command;
+}
+
+}  // namespace raycone

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/command_line/command_spec.h"
+#include "app/command_line/values.h"
+#include "app/options/options.h"
+
+namespace raycone {
+
+[[nodiscard]] CommandSpec report_spec();
+[[nodiscard]] Command parse_report(const Values& values);
+
+}  // namespace raycone

@@ -1,0 +1,160 @@
+#include "app/command_line/slice_options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/command_line/common_options.h"
+#include "app/command_line/lattice_options.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::int64_t kMostPixels = 1'000'000;  // along a side
+
+std::string lowered(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return c < 128 ? std::tolower(c) : c; });
+  return text;
+}
+
+// There is one format; its name and extension are checked as those of other commands.
+void check_format(const Values& values, const std::string& output) {
+  if (values.given("--format")) {
+    if (lowered(values.text("--format")) != "png") invalid("--format", values.text("--format"), "png");
+    return;
+  }
+  if (output == "-" || lowered(std::filesystem::path(output).extension().string()) == ".png") return;
+  throw UsageError(output + ": its extension names no format, expected png, or --format");
+}
+
+std::variant<Percentage, double> parse_at(const std::string& text) {
+  const bool percent = text.ends_with('%');
+  const std::optional<double> number = number_from(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
+  if (!number) invalid("--at", text, "a coordinate, or a percentage of the box such as 50%");
+  if (percent) return Percentage{*number};
+  return *number;
+}
+
+AxisPlane parse_axis_plane(const Values& values) {
+  AxisPlane plane;
+  if (values.given("--axis")) {
+    const std::string axis = values.text("--axis");
+    const std::size_t index = std::string_view("xyz").find(axis);
+    if (axis.size() != 1 || index == std::string_view::npos) invalid("--axis", axis, "x, y or z");
+    plane.axis = static_cast<int>(index);
+  }
+  if (values.given("--at")) plane.at = parse_at(values.text("--at"));
+  return plane;
+}
+
+Vec3 vector_from(const std::string& name, const std::string& text) {
+  const std::vector<double> numbers = numbers_from(text).value_or(std::vector<double>());
+  if (numbers.size() != 3) invalid(name, text, "three numbers X,Y,Z");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Vec3 direction_from(const std::string& name, const std::string& text) {
+  const Vec3 direction = vector_from(name, text);
+  if (direction == Vec3{}) invalid(name, text, "a direction, not all of it 0");
+  return direction;
+}
+
+ObliquePlane parse_oblique_plane(const Values& values, const Values& up) {
+  ObliquePlane plane;
+  plane.normal = direction_from("--normal", values.text("--normal"));
+  if (values.given("--origin")) plane.origin = vector_from("--origin", values.text("--origin"));
+  if (up.given("--up")) plane.up = direction_from("--up", up.text("--up"));
+  return plane;
+}
+
+SliceRequest parse_request(const Values& values, const Values& up) {
+  SliceRequest request;
+  values.exclude("--normal", {"--axis", "--at"});
+  if (values.given("--normal")) {
+    request.plane = parse_oblique_plane(values, up);
+  } else {
+    if (values.given("--origin")) throw UsageError("--origin: needs --normal");
+    if (up.given("--up")) throw UsageError("--up " + up.text("--up") + ": needs --normal");
+    request.plane = parse_axis_plane(values);
+  }
+  if (values.given("--bounds")) request.bounds = parse_bounds(values.text("--bounds"));
+  if (values.given("--padding")) request.padding = parse_padding(values.text("--padding"));
+  if (values.given("--size")) request.size = values.integer("--size", 1, kMostPixels);
+  return request;
+}
+
+// --up has two meanings here, told apart by their values: how the mesh is turned, as with all commands, and which
+// direction is up in the picture. The last one of either counts.
+struct Ups {
+  Values mesh;
+  Values picture;
+};
+
+Ups split_ups(const Values& values) {
+  std::vector<std::string> mesh;
+  std::vector<std::string> picture;
+  for (const std::string& text : values.texts("--up")) {
+    (text.find(',') == std::string::npos ? mesh : picture).push_back(text);
+  }
+  return {values.with("--up", mesh), values.with("--up", picture)};
+}
+
+OptionGroup mesh_group_with_both_ups() {
+  OptionGroup group = mesh_group();
+  const auto up = std::ranges::find(group.options, "--up", &OptionSpec::names);
+  up->value += "|X,Y,Z";
+  up->description += "; or what is up in the picture";
+  return group;
+}
+
+}  // namespace
+
+CommandSpec slice_spec() {
+  OptionGroup output = output_group("png");
+  output.options.push_back({"--values", "OUT.npy", "The numbers too, float64, (height, width), row 0 at the top"});
+  output.options.push_back({"--no-legend", "", "No colour bar in the picture"});
+  return {.name = "slice",
+          .description = "A picture of one cross-section",
+          .operands = {mesh_operand()},
+          .groups = {mesh_group_with_both_ups(),
+                     {"Plane",
+                      {{"--axis", "x|y|z", "Axis across the plane (default: z)"},
+                       {"--at", "Z|P%", "Where on the axis: coordinate, or part of the box (default: 50%)"},
+                       {"--normal", "X,Y,Z", "Any other plane: its normal, towards the viewer"},
+                       {"--origin", "X,Y,Z", "A point of that plane (default: the middle of the box)"},
+                       {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to show (default: that of the mesh)"},
+                       {"--padding", "P|Nv", "Widen the box by P, or the picture by N pixels, on every side"},
+                       {"--size", "N", "Pixels along the longer side (default: 1024)"}}},
+                     output,
+                     run_group()},
+          .examples = {"raycone slice bunny.obj -o bunny.png",
+                       "raycone slice bunny.obj -o foot.png --axis y --at 10% --padding 0.02",
+                       "raycone slice part.stl -o cut.png --normal 1,1,0 --origin 0,0,5 --up 0,0,1",
+                       "raycone slice part.stl -o part.png --size 4096 --values part.npy"}};
+}
+
+Command parse_slice(const Values& values) {
+  if (!values.given("--output")) throw UsageError("no output given, expected -o OUT.png" + help_hint("slice"));
+  const Ups ups = split_ups(values);
+  SliceCommand command;
+  command.mesh = parse_mesh(ups.mesh);
+  command.run = parse_run(values);
+  command.slice = parse_request(values, ups.picture);
+  command.output = parse_output_files(values);
+  check_format(values, command.output.path);
+  command.legend = !values.given("--no-legend");
+  if (values.given("--values")) command.values = values.text("--values");
+  if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
+  if (command.values && command.values == command.output.report) {
+    throw UsageError("--values " + *command.values + ": is the report too");
+  }
+  return command;
+}
+
+}  // namespace raycone

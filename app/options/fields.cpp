@@ -1,0 +1,156 @@
+#include "app/options/fields.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "app/text/parse_value.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// Samples per task of loops that do next to nothing for each.
+constexpr std::size_t kGrain = std::size_t{1} << 14;
+
+FieldDescription describe_field(Field field, const Rule& rule, double band_width) {
+  FieldDescription description;
+  switch (field) {
+    case Field::kWinding:
+      break;
+    case Field::kInside:
+      description = {"inside", "inside", "inside", FieldKind::kFlag, holds(rule, 0.0) ? 1.0 : 0.0, name_of(rule)};
+      break;
+    case Field::kDensity:
+      description = {"density", "density", "density", FieldKind::kDensity, 0.0, ""};
+      break;
+    case Field::kDistance:
+      description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
+      break;
+  }
+  description.threshold = rule.threshold;
+  description.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
+  return description;
+}
+
+}  // namespace
+
+bool FieldOptions::has(Field field) const { return std::ranges::count(fields, field) > 0; }
+
+std::optional<Field> field_from_name(std::string_view name) {
+  if (name == "winding") return Field::kWinding;
+  if (name == "inside") return Field::kInside;
+  if (name == "density") return Field::kDensity;
+  if (name == "sdf") return Field::kDistance;
+  return std::nullopt;
+}
+
+std::optional<Rule> rule_from_name(std::string_view name) {
+  if (name == "nonzero") return Rule{RuleKind::kNonzero, 0.5};
+  if (name == "positive") return Rule{RuleKind::kPositive, 0.5};
+  if (name == "odd") return Rule{RuleKind::kOdd, 0.5};
+  for (const auto& [prefix, kind] :
+       {std::pair("threshold=", RuleKind::kThreshold), std::pair("abs=", RuleKind::kAbs)}) {
+    if (!name.starts_with(prefix)) continue;
+    const std::optional<double> threshold = number_from(name.substr(std::string_view(prefix).size()));
+    return threshold ? std::optional(Rule{kind, *threshold}) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::string name_of(const Rule& rule) {
+  switch (rule.kind) {
+    case RuleKind::kNonzero:
+      return "nonzero";
+    case RuleKind::kPositive:
+      return "positive";
+    case RuleKind::kOdd:
+      return "odd";
+    case RuleKind::kThreshold:
+    case RuleKind::kAbs:
+      break;
+  }
+  std::array<char, 32> number;
+  char* const end = std::to_chars(number.data(), number.data() + number.size(), rule.threshold).ptr;
+  return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
+}
+
+std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options) {
+  std::vector<FieldDescription> descriptions;
+  if (!options.diagnostics) return descriptions;
+  for (const auto& [name, kind] :
+       {std::pair("crossings", FieldKind::kCount), std::pair("degenerate", FieldKind::kCount),
+        std::pair("on_surface", FieldKind::kFlag), std::pair("error_bound", FieldKind::kBound)}) {
+    descriptions.push_back({name, name, name, kind, 0.0, ""});
+  }
+  return descriptions;
+}
+
+std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
+  std::vector<FieldDescription> descriptions;
+  for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
+  const std::vector<FieldDescription> diagnostics = describe_diagnostics(options);
+  descriptions.insert(descriptions.end(), diagnostics.begin(), diagnostics.end());
+  return descriptions;
+}
+
+FieldSamples::FieldSamples(const FieldOptions& options) : options_(options) {
+  if (options.diagnostics) diagnostics_.emplace();
+}
+
+std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
+  std::size_t bytes = sizeof(double);  // the winding number, which all others come from
+  for (const Field field : options.fields) {
+    if (field == Field::kInside) bytes += sizeof(std::uint8_t);
+    if (field == Field::kDensity || field == Field::kDistance) bytes += sizeof(double);
+  }
+  if (options.diagnostics) bytes += 2 * sizeof(std::int64_t) + sizeof(std::uint8_t) + sizeof(double);
+  return bytes;
+}
+
+FieldValues FieldSamples::values_of(Field field) const {
+  switch (field) {
+    case Field::kWinding:
+      break;
+    case Field::kInside:
+      return std::span(inside_);
+    case Field::kDensity:
+      return std::span(density_);
+    case Field::kDistance:
+      return std::span(distances_);
+  }
+  return std::span(winding_numbers_);
+}
+
+void FieldSamples::resize(std::size_t count) {
+  winding_numbers_.resize(count);
+  if (options_.has(Field::kInside)) inside_.resize(count);
+  if (options_.has(Field::kDensity)) density_.resize(count);
+  if (options_.has(Field::kDistance)) distances_.resize(count);
+  fields_.clear();
+  for (const Field field : options_.fields) fields_.push_back(values_of(field));
+  if (!diagnostics_) return;
+  crossings_.resize(count);
+  degenerate_.resize(count);
+  on_surface_.resize(count);
+  error_bound_.resize(count);
+  *diagnostics_ = {crossings_, degenerate_, on_surface_, error_bound_};
+  fields_.insert(fields_.end(), {std::span<const std::int64_t>(crossings_), std::span<const std::int64_t>(degenerate_),
+                                 std::span<const std::uint8_t>(on_surface_), std::span<const double>(error_bound_)});
+}
+
+void FieldSamples::derive() {
+  const bool inside = options_.has(Field::kInside), density = options_.has(Field::kDensity);
+  const bool distance = options_.has(Field::kDistance);
+  if (!inside && !density && !distance) return;
+  parallel_for(winding_numbers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const double w = winding_numbers_[n];
+      if (inside) inside_[n] = holds(options_.rule, w) ? 1 : 0;
+      if (density) density_[n] = std::clamp(w, 0.0, 1.0);
+      if (distance && holds(options_.rule, w)) distances_[n] = -distances_[n];
+    }
+  });
+}
+
+}  // namespace raycone

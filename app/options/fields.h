@@ -1,0 +1,104 @@
+// The fields of a job: their names, what they are computed from, and room for their numbers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/data/diagnostics.h"
+#include "core/data/rule.h"
+#include "core/evaluation/winding_number.h"
+#include "core/machine/simd.h"
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+enum class Field {
+  kWinding,
+  kInside,    // whether the rule holds
+  kDensity,   // the winding number, clamped to [0, 1]
+  kDistance,  // to the triangles, signed: negative inside
+};
+
+// "winding", "inside", "density" or "sdf".
+[[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
+
+// As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
+[[nodiscard]] std::optional<Rule> rule_from_name(std::string_view name);
+[[nodiscard]] std::string name_of(const Rule& rule);
+
+struct FieldOptions {
+  std::vector<Field> fields{Field::kWinding};  // at least one, none twice
+  Rule rule;
+  double band = 3.0;  // voxels; of distances on lattices
+  bool diagnostics = false;
+  std::uint64_t verify = 0;             // samples to be computed again by definition
+  RayEngine engine = RayEngine::kScan;  // no value depends on these two
+  SimdLevel simd = SimdLevel::kBest;
+
+  [[nodiscard]] bool has(Field field) const;
+};
+
+// What is written of each sample, in this order: the fields, then crossings, degenerate, on_surface and error_bound
+// where diagnostics are wanted. `band_width`: where distances are cut off, in world units.
+[[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width);
+
+// The latter part of that list alone.
+[[nodiscard]] std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options);
+
+// Numbers of some samples; those of fields that are not wanted are missing.
+struct SampleNumbers {
+  std::span<const double> winding{};
+  std::span<const std::uint8_t> inside{};
+  std::span<const double> density{};
+  std::span<const double> distance{};  // signed
+};
+
+// Room for all numbers of a slab or batch of samples.
+class FieldSamples {
+ public:
+  explicit FieldSamples(const FieldOptions& options);
+  FieldSamples(const FieldSamples&) = delete;  // fields_ and diagnostics_ refer to its vectors
+  FieldSamples& operator=(const FieldSamples&) = delete;
+
+  [[nodiscard]] static std::size_t bytes_per_sample(const FieldOptions& options);
+
+  // What was obtained from here before is no longer valid.
+  void resize(std::size_t count);
+
+  [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
+  // Unsigned until derive(). Empty where they are not wanted.
+  [[nodiscard]] std::span<double> distances() { return distances_; }
+  // Null where they are not wanted.
+  [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
+
+  // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
+  void derive();
+
+  // After derive().
+  [[nodiscard]] SampleNumbers numbers() const { return {winding_numbers_, inside_, density_, distances_}; }
+
+  // As describe_fields() lists them.
+  [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }
+
+ private:
+  [[nodiscard]] FieldValues values_of(Field field) const;
+
+  FieldOptions options_;
+  std::vector<double> winding_numbers_;
+  std::vector<std::uint8_t> inside_;
+  std::vector<double> density_;
+  std::vector<double> distances_;
+  std::vector<std::int64_t> crossings_;
+  std::vector<std::int64_t> degenerate_;
+  std::vector<std::uint8_t> on_surface_;
+  std::vector<double> error_bound_;
+  std::optional<Diagnostics> diagnostics_;
+  std::vector<FieldValues> fields_;
+};
+
+}  // namespace raycone

@@ -1,0 +1,18 @@
+// How large output will be at least, to be refused where the disk has no room for it.
+#pragma once
+
+#include <cstdint>
+
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+// Bytes of `samples` on a lattice or at points. Exact but for a header where numbers have a width (NPY, VTI, NPZ, raw);
+// of CSV what numbers of one digit would take; 0 for VDB, where constant blocks cost nothing, whatever their number.
+// 2^62 where there are more.
+[[nodiscard]] std::uint64_t least_lattice_file(FieldFormat format, const OutputDescription& description,
+                                               std::uint64_t samples);
+[[nodiscard]] std::uint64_t least_point_file(FieldFormat format, const OutputDescription& description,
+                                             std::uint64_t samples);
+
+}  // namespace raycone

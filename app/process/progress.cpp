@@ -1,0 +1,85 @@
+// Plain text without colours, so that NO_COLOR has nothing to switch off.
+#include "app/process/progress.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace raycone {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kInterval{100};
+
+std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
+  const auto count = static_cast<double>(done);
+  const double rate = seconds > 0.0 ? count / seconds : 0.0;
+  if (!total) return std::to_string(done) + " samples  " + readable_count(rate) + "samples/s";
+  const auto all = static_cast<double>(*total);
+  std::string line =
+      std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_count(rate) + "samples/s";
+  if (rate > 0.0) line += "  " + readable_time((all - count) / rate) + " left";
+  return line;
+}
+
+}  // namespace
+
+std::string readable_count(double count) {
+  constexpr const char* kPrefixes[] = {"", "k", "M", "G"};
+  std::size_t prefix = 0;
+  for (; count >= 1000.0 && prefix + 1 < std::size(kPrefixes); ++prefix) count /= 1000.0;
+  char text[48];
+  std::snprintf(text, sizeof text, "%.3g %s", count, kPrefixes[prefix]);
+  return text;
+}
+
+std::string readable_time(double seconds) {
+  const long long whole = std::llround(seconds);
+  char text[48];
+  if (whole < 3600) {
+    std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
+  }
+  return text;
+}
+
+bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output) {
+  if (quiet || mode == ProgressMode::kNever) return false;
+  if (mode == ProgressMode::kAlways) return true;
+  const bool results_on_terminal = output == "-" && isatty(STDOUT_FILENO);
+  return isatty(STDERR_FILENO) && !results_on_terminal;
+}
+
+Progress::Progress(bool shown, std::optional<std::uint64_t> total) : total_(total) {
+  if (total_ == 0U) total_.reset();
+  if (shown) thread_ = std::thread([this] { show_until_stopped(); });
+}
+
+Progress::~Progress() { stop(); }
+
+void Progress::stop() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+  std::fputs("\r\033[K", stderr);
+}
+
+void Progress::show_until_stopped() {
+  const Clock::time_point start = Clock::now();
+  std::unique_lock lock(mutex_);
+  do {
+    const std::chrono::duration<double> elapsed = Clock::now() - start;
+    std::fprintf(stderr, "\r\033[K%s", progress_line(done_, total_, elapsed.count()).c_str());
+    std::fflush(stderr);
+  } while (!changed_.wait_for(lock, kInterval, [this] { return stopped_; }));
+}
+
+}  // namespace raycone

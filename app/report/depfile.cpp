@@ -1,0 +1,33 @@
+#include "app/report/depfile.h"
+
+#include <set>
+
+namespace raycone {
+namespace {
+
+// As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled.
+std::string escaped(const std::string& name) {
+  std::string text;
+  std::string backslashes;
+  for (const char c : name) {
+    if (c == ' ' || c == '\t' || c == '#') text += backslashes + '\\';
+    if (c == '$') text += '$';
+    text += c;
+    backslashes = c == '\\' ? backslashes + c : "";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string depfile_text(const std::string& output, const std::vector<std::string>& inputs) {
+  if (output == "-") return "";
+  std::string text = escaped(output) + ":";
+  std::set<std::string> listed{"-"};
+  for (const std::string& input : inputs) {
+    if (listed.insert(input).second) text += " \\\n  " + escaped(input);
+  }
+  return text + "\n";
+}
+
+}  // namespace raycone

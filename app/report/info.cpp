@@ -1,0 +1,107 @@
+// Text for people; machines take json.h.
+#include "app/report/info.h"
+
+#include <cstdio>
+#include <vector>
+
+#include "app/run/lattice_choice.h"
+#include "app/text/plain_text.h"
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+// Cost model of a lattice on one thread, measured (docs/benchmarks.md): each face is scanned once, each sample written
+// once, and takes one complex factor per exterior edge.
+constexpr double kSecondsPerFace = 25e-9;
+constexpr double kSecondsPerSample = 3e-9;
+constexpr double kSecondsPerEdgeAndSample = 2.1e-9;
+
+// 1234567 as "1 234 567".
+std::string readable(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t end = digits.size(); end > 3; end -= 3) digits.insert(end - 3, 1, ' ');
+  return digits;
+}
+
+std::string printed(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
+}
+
+std::string printed(const Vec3& point) {
+  return "(" + printed(point.x) + ", " + printed(point.y) + ", " + printed(point.z) + ")";
+}
+
+std::string readable_seconds(double seconds) {
+  char text[48];
+  if (seconds < 0.1) {
+    std::snprintf(text, sizeof text, "less than 0.1 s");
+  } else if (seconds < 120.0) {
+    std::snprintf(text, sizeof text, "about %.2g s", seconds);
+  } else if (seconds < 7200.0) {
+    std::snprintf(text, sizeof text, "about %.0f minutes", seconds / 60.0);
+  } else {
+    std::snprintf(text, sizeof text, "about %.3g hours", seconds / 3600.0);
+  }
+  return text;
+}
+
+std::string cost_of_lattice(const MeshInfo& info, std::int64_t resolution, int threads) {
+  LatticeRequest request;
+  request.sampling = LongestSide{resolution};
+  std::vector<std::string> warnings;  // of flat sides: none with one count for all axes
+  const Lattice lattice = choose_lattice(info.bounds, request, warnings);
+  const auto [nx, ny, nz] = lattice.counts;
+  const double samples = static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz);
+  const double edges = static_cast<double>(info.statistics.exterior_edges);
+  const double seconds = (static_cast<double>(info.faces) * kSecondsPerFace +
+                          samples * (kSecondsPerSample + edges * kSecondsPerEdgeAndSample)) /
+                         threads;
+  return readable_seconds(seconds) + " for " + std::to_string(nx) + " x " + std::to_string(ny) + " x " +
+         std::to_string(nz) + " samples";
+}
+
+class Table {
+ public:
+  void row(const std::string& name, const std::string& value) {
+    char line[48];
+    std::snprintf(line, sizeof line, "  %-20s ", name.c_str());
+    text_ += line + value + "\n";
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+std::string info_text(const MeshInfo& info, int threads) {
+  const MeshStatistics& s = info.statistics;
+  Table table;
+  table.row("faces", readable(info.faces));
+  if (info.skipped_faces > 0) table.row("skipped faces", readable(info.skipped_faces) + " of fewer than three corners");
+  table.row("vertices", readable(info.vertices) + ", after welding " + readable(info.welded_vertices));
+  table.row("components", readable(s.components));
+  table.row("surface", s.closed() ? "closed" : "open");
+  table.row("exterior edges", readable(s.exterior_edges));
+  table.row("inconsistent edges", readable(s.inconsistent_edges) + " of two faces in the same direction");
+  table.row("non-manifold edges", readable(s.nonmanifold_edges) + " of more than two faces");
+  table.row("degenerate faces", readable(s.degenerate_faces) + " of zero area");
+  table.row("duplicate faces", readable(s.duplicate_faces));
+  table.row("bounds", printed(info.bounds.lower) + " to " + printed(info.bounds.upper));
+  table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
+  table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
+  const std::string on_threads = threads == 1 ? "1 thread" : std::to_string(threads) + " threads";
+  try {
+    table.row("cost on " + on_threads, cost_of_lattice(info, 64, threads));
+    table.row("", cost_of_lattice(info, 256, threads));
+  } catch (const LimitError& error) {
+    table.row("no lattice", error.what());
+  }
+  return plain_text(info.mesh, "?") + "\n" + table.text();
+}
+
+}  // namespace raycone

@@ -1,0 +1,25 @@
+// `raycone info`: what a mesh is, and what evaluation will cost.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/data/triangle_mesh.h"
+#include "core/mesh/mesh_statistics.h"
+
+namespace raycone {
+
+struct MeshInfo {
+  std::string mesh;  // as named on the command line
+  std::uint64_t faces = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t welded_vertices = 0;
+  std::uint64_t skipped_faces = 0;  // of one or two corners
+  Box bounds;
+  MeshStatistics statistics;  // of the welded mesh
+};
+
+// Aligned text for people; the costs are those of `threads` threads.
+[[nodiscard]] std::string info_text(const MeshInfo& info, int threads);
+
+}  // namespace raycone

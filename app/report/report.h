@@ -1,0 +1,68 @@
+// What a run tells its user: warnings and one summary line on standard error, errors, and the numbers behind them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/process/exit_code.h"
+#include "app/run/verify.h"
+#include "core/data/lattice.h"
+#include "core/evaluation/winding_number.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+
+struct Seconds {
+  double read = 0.0;      // mesh and points: parsing and hashing
+  double prepare = 0.0;   // all that depends on the mesh alone: welding, exterior edges, acceleration structures
+  double evaluate = 0.0;  // the rest of the evaluation
+  double write = 0.0;
+  double total = 0.0;
+};
+
+struct RunReport {
+  std::string mesh;                     // files as named on the command line
+  std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
+  std::vector<FileRead> companions;     // what the mesh refers to
+  std::string sha256;
+  std::string output;
+  std::uint64_t vertices = 0;  // as read, before welding
+  std::uint64_t faces = 0;
+  std::uint64_t exterior_edges = 0;
+  std::uint64_t samples = 0;
+  std::optional<Lattice> lattice;  // absent for points
+  int threads = 0;
+  Tally tally;
+  std::optional<Verification> verification;  // where asked for
+  std::uint64_t peak_memory_bytes = 0;
+  std::vector<std::string> warnings;
+  Seconds seconds;
+};
+
+// "bunny.obj: 69451 faces, 223 exterior edges, 125000 samples in 0.42 s (read 0.05, ...) -> bunny.vdb", and, where
+// asked for, ", verified 100 samples, largest difference 3e-16"
+[[nodiscard]] std::string summary_line(const RunReport& report);
+
+// "raycone: ", `message` and a line feed: one line that moves no terminal, whatever bytes its file
+// names hold.
+[[nodiscard]] std::string message_line(std::string_view message);
+
+// Writes that line to standard error.
+void print_message(std::string_view message);
+
+// How a run failed: its exit status, and what to tell the user.
+struct Failure {
+  ExitCode code = ExitCode::kInternal;
+  std::string message;
+};
+
+// The exception being handled. Call in a catch block.
+[[nodiscard]] Failure current_failure();
+
+// Prints it and returns its exit status.
+[[nodiscard]] ExitCode report_current_exception();
+
+}  // namespace raycone

@@ -1,0 +1,76 @@
+#include "app/run/field_evaluator.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+bool has_rule(const FieldOptions& options) { return options.has(Field::kInside) || options.has(Field::kDistance); }
+
+Vec3 point_of(const Lattice& lattice, const LatticeBlock& block, std::size_t number) {
+  const auto n = static_cast<std::int64_t>(number);
+  const std::int64_t row = n / block.counts[0];
+  return {lattice.coordinate(0, block.first[0] + n % block.counts[0]),
+          lattice.coordinate(1, block.first[1] + row % block.counts[1]),
+          lattice.coordinate(2, block.first[2] + row / block.counts[1])};
+}
+
+}  // namespace
+
+FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options)
+    : band_(options.band),
+      thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
+      distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(mesh) : std::nullopt),
+      winding_number_(std::move(mesh), options.engine, options.simd) {}
+
+void FieldEvaluator::prepare_points() const {
+  winding_number_.prepare_points();
+  if (distance_) distance_->prepare_points();
+}
+
+template <class Point>
+void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
+  const double doubt = winding_number_.doubt();
+  if (thresholds_.empty() || doubt == 0.0) return;
+  const std::span<double> values = samples.winding_numbers();
+  constexpr std::size_t kGrain = std::size_t{1} << 10;
+  parallel_for(values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for (const double threshold : thresholds_) {
+        if (std::abs(values[n] - threshold) > doubt) continue;
+        const double settled = winding_number_.settle(point(n), values[n], threshold);
+        if (samples.diagnostics() && settled != values[n]) {
+          double& bound = samples.diagnostics()->error_bound[n];
+          bound = std::nextafter(bound + std::abs(settled - values[n]), std::numeric_limits<double>::infinity());
+        }
+        values[n] = settled;
+      }
+    }
+  });
+}
+
+Tally FieldEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, FieldSamples& samples,
+                               std::atomic<std::uint64_t>* done) const {
+  samples.resize(static_cast<std::size_t>(block.size()));
+  const Tally tally = winding_number_.evaluate(lattice, block, samples.winding_numbers(), done, samples.diagnostics());
+  settle([&](std::size_t n) { return point_of(lattice, block, n); }, samples);
+  if (distance_) distance_->evaluate(lattice, block, band_ * lattice.spacing.x, samples.distances());
+  samples.derive();
+  return tally;
+}
+
+Tally FieldEvaluator::evaluate(std::span<const Vec3> points, FieldSamples& samples,
+                               std::atomic<std::uint64_t>* done) const {
+  samples.resize(points.size());
+  const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
+  settle([&](std::size_t n) { return points[n]; }, samples);
+  if (distance_) distance_->evaluate(points, samples.distances());
+  samples.derive();
+  return tally;
+}
+
+}  // namespace raycone

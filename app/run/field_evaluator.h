@@ -1,0 +1,47 @@
+// Fields of one mesh, from whatever each of them takes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "app/options/fields.h"
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
+#include "core/evaluation/winding_number.h"
+
+namespace raycone {
+
+class FieldEvaluator {
+ public:
+  // Prepares what `options` need, but for prepare_points(). `mesh` as for WindingNumberEvaluator.
+  FieldEvaluator(TriangleMesh mesh, const FieldOptions& options);
+
+  [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
+
+  // Builds the search structures that points need and lattices do not.
+  void prepare_points() const;
+
+  // Fills `samples`, made for the options of this, with all fields of a block or of finite points. On lattices, which
+  // have cubic voxels then, distances are cut off at the band. `done`, where given, grows by one per sample while the
+  // call runs.
+  Tally evaluate(const Lattice& lattice, const LatticeBlock& block, FieldSamples& samples,
+                 std::atomic<std::uint64_t>* done) const;
+  Tally evaluate(std::span<const Vec3> points, FieldSamples& samples, std::atomic<std::uint64_t>* done) const;
+
+ private:
+  // Where a rule is asked for: winding numbers on the side of its threshold on which the true ones are. `point` gives
+  // that of a sample's number.
+  template <class Point>
+  void settle(const Point& point, FieldSamples& samples) const;
+
+  double band_;
+  std::vector<double> thresholds_;             // that values may have to be settled for
+  std::optional<DistanceEvaluator> distance_;  // where wanted
+  WindingNumberEvaluator winding_number_;
+};
+
+}  // namespace raycone

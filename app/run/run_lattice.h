@@ -1,0 +1,22 @@
+// `raycone lattice`: values on a regular lattice.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "app/options/options.h"
+#include "app/report/report.h"
+#include "app/run/run_steps.h"
+#include "core/data/lattice.h"
+
+namespace raycone {
+
+// Told of each slab, in turn, with the winding numbers of its samples: x fastest, then y, then z.
+using SlabObserver = std::function<void(const Lattice&, const LatticeBlock&, std::span<const double>)>;
+
+// Evaluates and writes the lattice within `limits`; the output is complete when this returns. Warnings about the mesh
+// are printed, the report is not. Throws UsageError, InputError, OutputError, LimitError, VerificationError.
+[[nodiscard]] RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits,
+                                    const SlabObserver& observe = {});
+
+}  // namespace raycone

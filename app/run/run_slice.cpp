@@ -1,0 +1,116 @@
+// A straight line: outputs opened, mesh read, welded, evaluator built, pixels evaluated, drawn and written.
+#include "app/run/run_slice.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/picture/slice_picture.h"
+#include "app/process/limits.h"
+#include "app/process/progress.h"
+#include "app/process/stopwatch.h"
+#include "app/process/version.h"
+#include "app/run/slice_choice.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/weld.h"
+#include "io/fields/write_npy.h"
+#include "io/fields/write_png.h"
+#include "io/files/output_file.h"
+
+namespace raycone {
+namespace {
+
+// Points evaluated at a time.
+constexpr std::int64_t kPointBatch = std::int64_t{1} << 18;
+
+// Refuses pictures that cannot fit, before any work on them.
+void check_slice_memory(const Slice& slice, const std::string& mesh, const RunLimits& limits) {
+  const double pixels = static_cast<double>(slice.view.width) * static_cast<double>(slice.view.height);
+  check_memory(mesh, pixels * (sizeof(double) + kSlicePictureBytes), limits.memory());
+}
+
+// Lattices have their lowest row first, pictures their uppermost.
+void turn_rows_over(std::span<double> values, std::int64_t width, std::int64_t height) {
+  const auto row = [&](std::int64_t n) { return values.subspan(static_cast<std::size_t>(n * width)).begin(); };
+  for (std::int64_t n = 0; n < height / 2; ++n) std::swap_ranges(row(n), row(n) + width, row(height - 1 - n));
+}
+
+Tally evaluate_view(const WindingNumberEvaluator& evaluator, const PlaneView& view, std::span<double> values,
+                    Progress& progress) {
+  Tally tally;
+  std::vector<Vec3> points;
+  const std::int64_t pixels = view.width * view.height;
+  for (std::int64_t first = 0; first < pixels; first += kPointBatch) {
+    const std::int64_t count = std::min(kPointBatch, pixels - first);
+    points.clear();
+    for (std::int64_t n = first; n < first + count; ++n) points.push_back(view.centre(n % view.width, n / view.width));
+    const auto part = values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    tally += evaluator.evaluate(points, part, progress.done());
+  }
+  return tally;
+}
+
+Tally evaluate(const WindingNumberEvaluator& evaluator, const Slice& slice, std::span<double> values,
+               Progress& progress) {
+  if (!slice.lattice) return evaluate_view(evaluator, slice.view, values, progress);
+  const Tally tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), values, progress.done());
+  turn_rows_over(values, slice.view.width, slice.view.height);
+  return tally;
+}
+
+void write_picture(OutputFile& output, const Image& image, const std::string& mesh, const std::string& place) {
+  const std::string name = std::filesystem::path(mesh).filename().string();
+  const PngDescription description{image.width(),
+                                   image.height(),
+                                   {{"Title", name},
+                                    {"Description", "winding number at " + place},
+                                    {"Software", std::string("raycone ") + kVersion}}};
+  static_assert(sizeof(Rgb) == 3);
+  write_png(output, description,
+            {reinterpret_cast<const std::uint8_t*>(image.pixels().data()), 3 * image.pixels().size()});
+}
+
+}  // namespace
+
+RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
+  RunReport report = report_on(command.mesh, command.output, limits);
+  auto total = std::make_optional<Stopwatch>(report.seconds.total);
+  OutputFile output(command.output.path, command.output.no_clobber);
+  std::unique_ptr<OutputFile> values_file;
+  if (command.values) values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber);
+
+  MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
+  describe(file, report);
+  refuse_to_replace_input(files_written(command), report.files_read);
+  const TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
+  report.warnings = std::move(file.parsed.warnings);
+  file.parsed.mesh = {};
+  const Slice slice = choose_slice(bounding_box(mesh), command.slice, report.warnings);
+  report.lattice = slice.lattice;
+  report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
+  warn(report.warnings, command.run, command.mesh.path);
+  check_slice_memory(slice, report.mesh, limits);
+  if (values_file) values_file->reserve(report.samples * sizeof(double));
+
+  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(mesh); });
+  report.exterior_edges = evaluator.exterior_edges();
+  Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
+  std::vector<double> values(report.samples);
+  report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, values, progress); });
+  timed(report.seconds.write, [&] {
+    write_picture(output, slice_picture(slice.view, values, mesh, command.legend), report.mesh, slice.place);
+    if (values_file) write_npy_rows(*values_file, slice.view.height, slice.view.width, values);
+  });
+  progress.stop();
+  total.reset();
+  report.peak_memory_bytes = peak_memory();
+  return report;
+}
+
+}  // namespace raycone

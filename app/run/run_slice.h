@@ -1,0 +1,14 @@
+// `raycone slice`: a picture of one cross-section.
+#pragma once
+
+#include "app/options/options.h"
+#include "app/report/report.h"
+#include "app/run/run_steps.h"
+
+namespace raycone {
+
+// Evaluates the pixels and writes picture and numbers within `limits`; the files are complete when this returns.
+// Warnings about the mesh are printed, the report is not. Throws UsageError, InputError, OutputError, LimitError.
+[[nodiscard]] RunReport run_slice(const SliceCommand& command, const RunLimits& limits);
+
+}  // namespace raycone

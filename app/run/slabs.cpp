@@ -1,0 +1,80 @@
+// Slabs are large enough to keep all threads busy and small enough to be no burden beside the mesh.
+#include "app/run/slabs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/crossings/lattice_sums.h"
+
+namespace raycone {
+namespace {
+
+// OpenVDB stores blocks of 8^3 voxels.
+constexpr double kLeafSide = 8.0;
+constexpr double kLeafVoxels = kLeafSide * kLeafSide * kLeafSide;
+
+std::int64_t floor_to_multiple(std::int64_t value, std::int64_t of) {
+  const std::int64_t remainder = value % of;
+  return value - (remainder < 0 ? remainder + of : remainder);
+}
+
+double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description) {
+  const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
+  const double samples = layer * static_cast<double>(lattice.counts[2]);
+  // Those of leaves that a surface through the whole lattice meets at least.
+  const double at_surface = kLeafVoxels * std::pow(samples / kLeafVoxels, 2.0 / 3.0);
+  const double blocks_in_the_making = kLeafSide * layer;
+  const bool open = description.exterior_edges > 0;
+  const double real_bytes = description.double_precision ? sizeof(double) : sizeof(float);
+  switch (field.kind) {
+    case FieldKind::kReal:
+    case FieldKind::kDensity:
+      return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
+    case FieldKind::kDistance:
+      return real_bytes * (at_surface + blocks_in_the_making);
+    case FieldKind::kBound:
+      return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
+    case FieldKind::kCount:
+      return sizeof(float) * blocks_in_the_making;
+    case FieldKind::kFlag:
+      return sizeof(std::uint8_t) * blocks_in_the_making;
+  }
+  return 0.0;
+}
+
+double bytes_per_sample(const FieldOptions& options) {
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample;
+}
+
+}  // namespace
+
+LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
+                       std::int64_t samples) {
+  LatticeBlock slab = whole(lattice);
+  const auto a = static_cast<std::size_t>(axis);
+  slab.counts[a] = 1;
+  const std::int64_t layers = std::max<std::int64_t>(samples / slab.size(), 1);
+  std::int64_t end = floor_to_multiple(first + layers, alignment);
+  if (end <= first) end = floor_to_multiple(first, alignment) + alignment;
+  slab.first[a] = first;
+  slab.counts[a] = std::min(end, lattice.index_max(axis) + 1) - first;
+  return slab;
+}
+
+std::int64_t slab_samples(const FieldOptions& options, double left) {
+  const double samples = left / 3 / bytes_per_sample(options);
+  return static_cast<std::int64_t>(std::clamp(samples, 1.0, static_cast<double>(kSlabSamples)));
+}
+
+double slab_memory(const LatticeBlock& slab, const FieldOptions& options) {
+  return bytes_per_sample(options) * static_cast<double>(slab.size());
+}
+
+double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {
+  if (format != FieldFormat::kVdb) return 0.0;
+  double bytes = 0.0;
+  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description);
+  return bytes;
+}
+
+}  // namespace raycone

@@ -1,0 +1,30 @@
+// How a lattice is cut for evaluation and writing, and the memory that takes.
+#pragma once
+
+#include <cstdint>
+
+#include "app/options/fields.h"
+#include "core/data/lattice.h"
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+// Samples of a slab where nothing speaks against it.
+inline constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
+
+// The slab of `lattice` that starts at index `first` along `axis`: as many whole layers as make up about `samples`,
+// ending where a multiple of `alignment` begins or at the lattice's end; at least one layer, or one aligned group.
+[[nodiscard]] LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
+                                     std::int64_t samples = kSlabSamples);
+
+// Samples of slabs that take a third of `left` bytes, at most kSlabSamples.
+[[nodiscard]] std::int64_t slab_samples(const FieldOptions& options, double left);
+
+// Bytes that a slab takes: its numbers, and what is needed to find and to write them.
+[[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options);
+
+// Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding
+// numbers of an open mesh and their error bounds differ everywhere; all else only at a surface.
+[[nodiscard]] double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description);
+
+}  // namespace raycone

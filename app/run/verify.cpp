@@ -1,0 +1,307 @@
+#include "app/run/verify.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/exact/direct_distance.h"
+#include "core/exact/direct_sum.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// The output function of SplitMix64 (Steele, Lea, Flood 2014), which is one-to-one.
+std::uint64_t rank_of(std::uint64_t number) {
+  std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return z ^ (z >> 31);
+}
+
+bool by_rank(const DrawnSample& a, const DrawnSample& b) { return a.rank < b.rank; }
+
+DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, const SampleNumbers& numbers,
+                  std::size_t n) {
+  DrawnSample sample{number, rank, point, numbers.winding[n]};
+  if (!numbers.inside.empty()) sample.inside = numbers.inside[n] != 0;
+  if (!numbers.density.empty()) sample.density = numbers.density[n];
+  if (!numbers.distance.empty()) sample.distance = numbers.distance[n];
+  return sample;
+}
+
+// Shortest text that reads back as the same double.
+std::string text(double number) {
+  std::array<char, 32> characters;
+  return {characters.data(), std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr};
+}
+
+std::string place_of(const DrawnSample& sample) {
+  return "sample " + std::to_string(sample.number) + " at (" + text(sample.point.x) + ", " + text(sample.point.y) +
+         ", " + text(sample.point.z) + ")";
+}
+
+// All numbers of a sample under the names that users know, in one order.
+struct NamedNumber {
+  std::string name;
+  double number;
+};
+std::vector<NamedNumber> numbers_of(const DrawnSample& sample) {
+  std::vector<NamedNumber> numbers{{"winding", sample.winding}};
+  if (sample.inside) numbers.push_back({"inside", *sample.inside ? 1.0 : 0.0});
+  if (sample.density) numbers.push_back({"density", *sample.density});
+  if (sample.distance) numbers.push_back({"sdf", *sample.distance});
+  return numbers;
+}
+
+[[noreturn]] void fail(const std::string& name, const DrawnSample& sample, const NamedNumber& number,
+                       const std::string& expected) {
+  throw VerificationError(name + ": " + place_of(sample) + " has the " + number.name + " " + text(number.number) +
+                          ", " + expected);
+}
+
+// --- By definition ---
+
+Quad absolute(Quad x) { return x < 0 ? -x : x; }
+
+// What a sample's numbers are, in 113 bits.
+struct Truth {
+  QuadWithin winding{};
+  Quad distance = 0;
+};
+
+// floor(w + 1/2)
+Quad nearest_integer(Quad w) {
+  const auto nearest = static_cast<Quad>(static_cast<std::int64_t>(w));  // towards zero
+  const Quad rest = w - nearest;
+  return rest >= Quad(0.5) ? nearest + 1 : rest < Quad(-0.5) ? nearest - 1 : nearest;
+}
+
+bool rule_holds(const Rule& rule, Quad w) {
+  switch (rule.kind) {
+    case RuleKind::kThreshold:
+      return w >= rule.threshold;
+    case RuleKind::kAbs:
+      return absolute(w) >= rule.threshold;
+    case RuleKind::kNonzero:
+      return nearest_integer(w) != 0;
+    case RuleKind::kPositive:
+      return nearest_integer(w) > 0;
+    case RuleKind::kOdd:
+      return static_cast<std::int64_t>(nearest_integer(w)) % 2 != 0;
+  }
+  return false;
+}
+
+// The number where the rule changes its mind that is nearest to w.
+Quad nearest_threshold(const Rule& rule, Quad w) {
+  if (rule.kind == RuleKind::kThreshold) return rule.threshold;
+  if (rule.kind == RuleKind::kAbs) return w < 0 ? -Quad(rule.threshold) : Quad(rule.threshold);
+  return nearest_integer(w - Quad(0.5)) + Quad(0.5);
+}
+
+// Nothing where w is just so far from the threshold that its error decides whether it counts as reaching it.
+std::optional<bool> rule_by_definition(const Rule& rule, const QuadWithin& w) {
+  const Quad threshold = nearest_threshold(rule, w.value), distance = absolute(w.value - threshold);
+  if (distance > kIndistinguishable + w.error) return rule_holds(rule, w.value);
+  if (distance < kIndistinguishable - w.error) return rule_holds(rule, threshold);
+  return std::nullopt;
+}
+
+void check_number(const std::string& name, const DrawnSample& sample, const NamedNumber& number, Quad expected,
+                  double tolerance, double& largest) {
+  const Quad difference = absolute(number.number - expected);
+  if (!(difference <= tolerance)) {  // nor NaN
+    fail(name, sample, number,
+         "but by definition it is " + text(static_cast<double>(expected)) + ", " +
+             text(static_cast<double>(difference)) + " away, expected at most " + text(tolerance));
+  }
+  largest = std::max(largest, static_cast<double>(difference));
+}
+
+void check_side(const std::string& name, const DrawnSample& sample, const Expectations& expectations,
+                const Truth& truth) {
+  const std::optional<bool> inside = rule_by_definition(expectations.rule, truth.winding);
+  if (!inside) return;
+  const std::string rule = "expected " + std::string(*inside ? "inside" : "outside") + " by " +
+                           name_of(expectations.rule) + ": by definition the winding number is " +
+                           text(static_cast<double>(truth.winding.value));
+  if (holds(expectations.rule, sample.winding) != *inside) fail(name, sample, {"winding", sample.winding}, rule);
+  if (sample.inside && *sample.inside != *inside) fail(name, sample, {"inside", *sample.inside ? 1.0 : 0.0}, rule);
+  if (sample.distance && *sample.distance != 0.0 && std::signbit(*sample.distance) != *inside) {
+    fail(name, sample, {"sdf", *sample.distance}, rule);
+  }
+}
+
+// See verify_by_definition().
+double distance_tolerance(const TriangleMesh& mesh, const Vec3& q, Quad distance) {
+  const Box box = bounding_box(mesh);
+  double size = 0.0, largest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    size = std::max(size, box.upper[axis] / 2 - box.lower[axis] / 2);
+    largest = std::max({largest, std::abs(box.upper[axis]), std::abs(box.lower[axis]), std::abs(q[axis])});
+  }
+  constexpr double u = 0x1p-53;
+  return std::max(2e-12 * size + 1e-12 * static_cast<double>(distance), 4 * u * largest) +
+         std::numeric_limits<double>::denorm_min();
+}
+
+void check_distance(const std::string& name, const DrawnSample& sample, const TriangleMesh& mesh,
+                    const Expectations& expectations, const Truth& truth, double& largest) {
+  const Quad expected = std::min(truth.distance, Quad(expectations.band_width));
+  const double tolerance = distance_tolerance(mesh, sample.point, truth.distance);
+  check_number(name, sample, {"sdf", *sample.distance}, std::signbit(*sample.distance) ? -expected : expected,
+               tolerance, largest);
+}
+
+void check(const std::string& name, const DrawnSample& sample, const TriangleMesh& mesh,
+           const Expectations& expectations, const Truth& truth, Verification& verification) {
+  double& largest = verification.largest_difference;
+  const Quad w = truth.winding.value;
+  check_number(name, sample, {"winding", sample.winding}, w, expectations.accuracy, largest);
+  if (sample.density) {
+    const Quad expected = std::clamp(w, Quad(0), Quad(1));
+    check_number(name, sample, {"density", *sample.density}, expected, expectations.accuracy, largest);
+  }
+  if (sample.inside || sample.distance) check_side(name, sample, expectations, truth);
+  if (sample.distance) {
+    if (!verification.largest_distance_difference) verification.largest_distance_difference = 0.0;
+    check_distance(name, sample, mesh, expectations, truth, *verification.largest_distance_difference);
+  }
+}
+
+void check_bound(const std::string& name, const DrawnSample& sample, double bound, const Truth& truth) {
+  double largest = 0.0;
+  check_number(name, sample, {"winding", sample.winding}, truth.winding.value,
+               bound + static_cast<double>(2 * truth.winding.error), largest);
+}
+
+std::vector<Truth> truths_of(const TriangleMesh& mesh, std::span<const DrawnSample> samples) {
+  std::vector<Truth> truths(samples.size());
+  parallel_for(samples.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      truths[n].winding = perturbed_direct_sum(mesh, samples[n].point);
+      if (samples[n].distance) truths[n].distance = direct_distance(mesh, samples[n].point);
+    }
+  });
+  return truths;
+}
+
+// Errors of direct sums are far smaller than this part of the accuracy, whatever the mesh.
+constexpr double kResolved = 1e-3;
+
+// --- Evaluated again ---
+
+double cut_off(double distance, double band_width) {
+  return std::abs(distance) < band_width ? distance : std::copysign(band_width, distance);
+}
+
+void check_repeated(const std::string& name, const DrawnSample& sample, const DrawnSample& repeated) {
+  const std::vector<NamedNumber> numbers = numbers_of(sample), again = numbers_of(repeated);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (std::bit_cast<std::uint64_t>(numbers[i].number) == std::bit_cast<std::uint64_t>(again[i].number)) continue;
+    fail(name, sample, numbers[i], "but evaluated again " + text(again[i].number) + ", expected the same bits");
+  }
+}
+
+double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& mesh) {
+  // No mesh has more exterior edges than sides of faces, whatever the evaluator says.
+  constexpr double u = 0x1p-53;
+  const double most = 3 * u * static_cast<double>(mesh.triangles.size());
+  return std::clamp(evaluator.accuracy(), 1e-10, std::max(1e-10, most));
+}
+
+}  // namespace
+
+bool SampleDraw::takes(std::uint64_t rank) const {
+  return samples_.size() < count_ || (count_ > 0 && rank < samples_.front().rank);
+}
+
+void SampleDraw::keep(const DrawnSample& sample) {
+  if (samples_.size() == count_) {
+    std::ranges::pop_heap(samples_, by_rank);
+    samples_.pop_back();
+  }
+  samples_.push_back(sample);
+  std::ranges::push_heap(samples_, by_rank);
+}
+
+void SampleDraw::offer(const Lattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers) {
+  if (count_ == 0) return;
+  const auto place = [&](std::size_t axis, std::int64_t index) {
+    return static_cast<std::uint64_t>(index - lattice.index_min[axis]);
+  };
+  const auto nx = static_cast<std::uint64_t>(lattice.counts[0]), ny = static_cast<std::uint64_t>(lattice.counts[1]);
+  std::size_t n = 0;
+  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
+    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
+      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i, ++n) {
+        const std::uint64_t number = (place(2, k) * ny + place(1, j)) * nx + place(0, i);
+        const std::uint64_t rank = rank_of(number);
+        if (!takes(rank)) continue;
+        keep(drawn(number, rank, {lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)},
+                   numbers, n));
+      }
+    }
+  }
+}
+
+void SampleDraw::offer(std::span<const Vec3> points, const SampleNumbers& numbers) {
+  for (std::size_t n = 0; n < points.size(); ++n, ++points_) {
+    const std::uint64_t rank = rank_of(points_);
+    if (takes(rank)) keep(drawn(points_, rank, points[n], numbers, n));
+  }
+}
+
+std::vector<DrawnSample> SampleDraw::samples() const {
+  std::vector<DrawnSample> result = samples_;
+  std::ranges::sort(result, {}, &DrawnSample::number);
+  return result;
+}
+
+Verification verify_by_definition(const std::string& name, const TriangleMesh& mesh,
+                                  std::span<const DrawnSample> samples, const Expectations& expectations) {
+  const std::vector<Truth> truths = truths_of(mesh, samples);
+  Verification verification;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    if (!(truths[n].winding.error < kResolved * expectations.accuracy)) {
+      ++verification.unresolved;
+      continue;
+    }
+    if (!expectations.error_bounds.empty()) check_bound(name, samples[n], expectations.error_bounds[n], truths[n]);
+    check(name, samples[n], mesh, expectations, truths[n], verification);
+    ++verification.samples;
+  }
+  return verification;
+}
+
+Verification verify(const std::string& name, const TriangleMesh& mesh, const FieldEvaluator& evaluator,
+                    const FieldOptions& options, double band_width, std::span<const DrawnSample> samples) {
+  std::vector<Vec3> points;
+  for (const DrawnSample& sample : samples) points.push_back(sample.point);
+  FieldOptions with_diagnostics = options;
+  with_diagnostics.diagnostics = true;
+  FieldSamples repeated(with_diagnostics);
+  evaluator.evaluate(points, repeated, nullptr);
+  const Diagnostics& diagnostics = *repeated.diagnostics();
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    DrawnSample again = drawn(samples[n].number, samples[n].rank, points[n], repeated.numbers(), n);
+    if (again.distance) again.distance = cut_off(*again.distance, band_width);
+    check_repeated(name, samples[n], again);
+  }
+
+  const double accuracy = accuracy_of(evaluator.winding_number(), mesh);
+  Verification verification =
+      verify_by_definition(name, mesh, samples, {accuracy, options.rule, band_width, diagnostics.error_bound});
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    verification.on_surface += diagnostics.on_surface[n];
+    verification.largest_bound = std::max(verification.largest_bound, diagnostics.error_bound[n]);
+  }
+  return verification;
+}
+
+}  // namespace raycone

@@ -1,0 +1,94 @@
+// Verification of a run by other means: some of its samples are computed again by definition, as direct sums over all
+// triangles and as distances to each of them (core/exact/direct_sum.h, core/exact/direct_distance.h), and compared with the numbers
+// that the run is about to hand over.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/options/fields.h"
+#include "app/run/field_evaluator.h"
+#include "core/data/lattice.h"
+#include "core/data/rule.h"
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+struct DrawnSample {
+  std::uint64_t number = 0;  // in the run, from 0; those of a lattice are counted x fastest, then y, then z
+  std::uint64_t rank = 0;    // pseudo-random, a one-to-one function of the number
+  Vec3 point;
+  // As the run has them; empty where a field is not wanted.
+  double winding = 0.0;
+  std::optional<bool> inside{};
+  std::optional<double> density{};
+  std::optional<double> distance{};
+};
+
+// Draws samples from a run of unknown length: those of the lowest ranks. The choice depends on their numbers alone, not
+// on the blocks and batches in which they come.
+class SampleDraw {
+ public:
+  // At most `count` of them; 0 draws none.
+  explicit SampleDraw(std::uint64_t count) : count_(count) {}
+
+  void offer(const Lattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers);
+  // The points behind those offered before.
+  void offer(std::span<const Vec3> points, const SampleNumbers& numbers);
+
+  // By number.
+  [[nodiscard]] std::vector<DrawnSample> samples() const;
+
+ private:
+  [[nodiscard]] bool takes(std::uint64_t rank) const;
+  void keep(const DrawnSample& sample);
+
+  std::uint64_t count_;
+  std::uint64_t points_ = 0;          // offered so far
+  std::vector<DrawnSample> samples_;  // a heap, the highest rank in front
+};
+
+struct Verification {
+  std::uint64_t samples = 0;                            // compared
+  std::uint64_t on_surface = 0;                         // of these; the value there is that of the perturbed query
+  std::uint64_t unresolved = 0;                         // drawn, but not known well enough by definition: not compared
+  double largest_difference = 0.0;                      // of winding numbers and densities
+  double largest_bound = 0.0;                           // of the values' error bounds
+  std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
+};
+
+// A value is wrong: exit status 6. what() is one line that names the sample, both values and the bound.
+class VerificationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// What the numbers of a run have to keep to.
+struct Expectations {
+  double accuracy = 1e-10;  // of winding numbers and densities, turns
+  Rule rule;
+  double band_width = std::numeric_limits<double>::infinity();  // where distances are cut off, world units
+  std::span<const double> error_bounds{};                       // of the samples' winding numbers, where there are any
+};
+
+// Compares `samples` with what `mesh` is by definition, on the threads that ThreadLimit allows: some 2.7 us per
+// triangle and sample. A winding number or density may be off by the accuracy, whether or not the query is on the
+// surface; inside and the sign of a distance must be what the rule says of the true winding number, a number that
+// cannot be told from its threshold (kIndistinguishable) counting as reaching it; a distance may be off by 1e-12 of
+// itself and the mesh's size, or by 4 roundings of the coordinates. Throws VerificationError about the first sample
+// that is wrong. `name`: the file concerned.
+[[nodiscard]] Verification verify_by_definition(const std::string& name, const TriangleMesh& mesh,
+                                                std::span<const DrawnSample> samples, const Expectations& expectations);
+
+// The same of a run of `evaluator`, which is that of `mesh` and `options`; throws also if it answers differently now,
+// as at points, or if a winding number is off by more than its error bound. `band_width` as above.
+[[nodiscard]] Verification verify(const std::string& name, const TriangleMesh& mesh, const FieldEvaluator& evaluator,
+                                  const FieldOptions& options, double band_width, std::span<const DrawnSample> samples);
+
+}  // namespace raycone

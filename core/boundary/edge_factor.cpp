@@ -1,0 +1,55 @@
+#include "core/boundary/edge_factor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/boundary/tied_factor.h"
+#include "core/exact/predicates.h"
+
+namespace raycone {
+namespace {
+
+// |P|^2 within these bounds has lost nothing to underflow and cannot overflow, nor can products of two; nor, where
+// |p_x| is below the last one, can x^2 or s, which is above 2^-1002 then.
+constexpr double kSmallest = 0x1p-800;
+constexpr double kLargest = 0x1p800;
+constexpr double kLargestX = 0x1p200;
+
+struct Corner {
+  double x, y, z, square, s;
+  Corner(const Vec3& v, const Vec3& q) : x(v.x - q.x), y(v.y - q.y), z(v.z - q.z), square(y * y + z * z) {
+    const double norm = std::sqrt(x * x + square);
+    s = x > 0.0 ? square / (norm + x) : norm - x;
+  }
+  [[nodiscard]] bool ordinary() const { return square > kSmallest && square < kLargest && std::abs(x) < kLargestX; }
+};
+
+Factor<double> scaled(const Factor<double>& f) {
+  const int exponent = -std::ilogb(std::max(std::abs(f.re), std::abs(f.im)));
+  return {std::scalbn(f.re, exponent), std::scalbn(f.im, exponent)};
+}
+
+// |Im| is |D|.
+Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const EdgeDeterminant d = edge_determinant(a, b, q);
+  const Corner ca(a, q), cb(b, q);
+  const double product_of_s = ca.s * cb.s;
+  const Factor<double> plain{product_of_s + (ca.y * cb.y + ca.z * cb.z), d.value};
+  const double magnitude = std::abs(plain.re) + std::abs(plain.im);
+  const bool trusted = ca.ordinary() && cb.ordinary() && magnitude > kNearEdge * product_of_s &&
+                       magnitude > kSmallest && magnitude < kLargest;
+  return trusted ? plain : near_edge_factor<double>(a, b, q).factor;
+}
+
+}  // namespace
+
+std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,
+                                          const EdgeSide& side) {
+  if (side.sign == 0) return std::nullopt;  // projects to a point
+  const std::optional<Factor<double>> f =
+      side.tie ? tied_factor<double>(a, b, q) : std::optional(generic_factor(a, b, q));
+  if (!f) return std::nullopt;
+  return scaled({f->re, std::copysign(f->im, reversed ? -side.sign : side.sign)});
+}
+
+}  // namespace raycone

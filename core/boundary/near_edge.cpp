@@ -1,0 +1,87 @@
+// z = s_a s_b + conj(P_a) P_b cancels where q is close to the inside of the edge, in any precision. Its argument is
+// also that of z' = |N|^2 - (N x g)_x + i K N_x with N = p_a x p_b, g = |p_b| p_a - |p_a| p_b, K = |p_a||p_b| - p_a .
+// p_b, which does not, given N to full relative precision. 113-bit arithmetic serves for its exponents (nothing here
+// over- or underflows) and, with exact products and sums, for N.
+#include "core/boundary/near_edge.h"
+
+#include <cmath>
+
+#include "core/exact/exact_determinant.h"
+
+namespace raycone {
+namespace {
+
+Quad absolute(Quad x) { return x < 0 ? -x : x; }
+
+Quad square_root(Quad x) {
+  if (!(x > 0)) return 0;
+  const Quad guess = std::sqrt(static_cast<long double>(x));  // same exponents, 64 bits
+  return guess + (x - guess * guess) / (2 * guess);
+}
+
+struct QuadVec3 {
+  Quad x, y, z;
+};
+
+struct Corner {
+  Difference x, y, z;
+  QuadVec3 p;
+  Quad norm;
+  Quad s;  // |p| - p_x without cancellation
+  explicit Corner(const Vec3& v, const Vec3& q)
+      : x(difference(v.x, q.x)),
+        y(difference(v.y, q.y)),
+        z(difference(v.z, q.z)),
+        p{x.rounded(), y.rounded(), z.rounded()} {
+    const Quad across = p.y * p.y + p.z * p.z;
+    norm = square_root(p.x * p.x + across);
+    s = p.x > 0 ? across / (norm + p.x) : norm - p.x;
+  }
+};
+
+// A candidate for z with the sum of the absolute values of its terms: the smaller that is against |z|, the better.
+struct Form {
+  Quad re, im, terms;
+  [[nodiscard]] Quad condition() const { return terms / (absolute(re) + absolute(im)); }
+};
+
+// Each term of a form is a product of at most four factors, each within 8 roundings of 2^-113 (norms 4, s 10, sums and
+// products 1 each): 40 roundings of the absolute terms, in Re and Im each, and as much again for second-order terms.
+constexpr Quad kFormError = 160 * 0x1p-113;
+
+Form plain_form(const Corner& a, const Corner& b, Quad n_x) {
+  const Quad product = a.s * b.s, y = a.p.y * b.p.y, z = a.p.z * b.p.z;
+  return {product + y + z, n_x, product + absolute(y) + absolute(z) + absolute(n_x)};
+}
+
+Form normal_form(const Corner& a, const Corner& b, const QuadVec3& n) {
+  const Quad dot = a.p.x * b.p.x + a.p.y * b.p.y + a.p.z * b.p.z;
+  const Quad k = a.norm * b.norm - dot;
+  const Quad g_y = b.norm * a.p.y - a.norm * b.p.y, g_z = b.norm * a.p.z - a.norm * b.p.z;
+  const Quad abs_y = b.norm * absolute(a.p.y) + a.norm * absolute(b.p.y);
+  const Quad abs_z = b.norm * absolute(a.p.z) + a.norm * absolute(b.p.z);
+  const Quad square = n.x * n.x + n.y * n.y + n.z * n.z;
+  return {square - (n.y * g_z - n.z * g_y), k * n.x,
+          square + absolute(n.y) * abs_z + absolute(n.z) * abs_y + absolute(k * n.x)};
+}
+
+}  // namespace
+
+template <class Real>
+NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const Corner ca(a, q), cb(b, q);
+  const QuadVec3 n{determinant(ca.y, ca.z, cb.y, cb.z), determinant(ca.z, ca.x, cb.z, cb.x),
+                   determinant(ca.x, ca.y, cb.x, cb.y)};
+  const Form plain = plain_form(ca, cb, n.x), normal = normal_form(ca, cb, n);
+  // Written so that a form of 0 / 0, whose condition is NaN, loses.
+  const Form& best = plain.condition() <= normal.condition() || !(normal.condition() >= 0) ? plain : normal;
+  const Quad largest = absolute(best.re) > absolute(best.im) ? absolute(best.re) : absolute(best.im);
+  return {{static_cast<Real>(best.re / largest), static_cast<Real>(best.im / largest)},
+          static_cast<Real>(kFormError * best.condition())};
+}
+
+template NearEdgeFactor<double> near_edge_factor<double>(const Vec3&, const Vec3&, const Vec3&);
+template NearEdgeFactor<Quad> near_edge_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
+template NearEdgeFactor<long double> near_edge_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
+
+}  // namespace raycone

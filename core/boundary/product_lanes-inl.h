@@ -1,0 +1,162 @@
+// Products of complex factors in SIMD lanes, one per sample: what kernels share. Included once per SIMD level.
+#if defined(RAYCONE_CORE_PRODUCT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYCONE_CORE_PRODUCT_LANES_INL_H_
+#undef RAYCONE_CORE_PRODUCT_LANES_INL_H_
+#else
+#define RAYCONE_CORE_PRODUCT_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/boundary/angle.h"
+#include "core/boundary/sample_tile.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raycone {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Doubles = hn::CappedTag<double, 8>;
+using Lanes = hn::Vec<Doubles>;
+constexpr Doubles d;
+
+constexpr std::size_t kFactorsPerBlock = 8;  // multiplied before anybody looks whether all went well
+// Factors within these bounds can be multiplied that many times onto a number near 1.
+constexpr double kSmallestFactor = 0x1p-120;
+constexpr double kLargestFactor = 0x1p120;
+constexpr double kLargestProduct = 0x1p1000;
+
+// The products of some samples while they are in registers. Where Im Z changes its sign bit, the argument has passed 0
+// or +-pi; `passages` counts +1 for factors with Im >= 0 and -1 for the others. Together with the sign of Im Z that
+// gives the turns: see set_turns().
+struct Product {
+  Lanes re, im, passages;
+};
+
+// A product times re + i im; direction is the sign of im as +-1.
+HWY_INLINE Product times(const Product& z, Lanes f_re, Lanes f_im, Lanes direction) {
+  const Lanes re = hn::Sub(hn::Mul(z.re, f_re), hn::Mul(z.im, f_im));
+  const Lanes im = hn::Add(hn::Mul(z.re, f_im), hn::Mul(z.im, f_re));
+  return {re, im, hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))};
+}
+
+// Without the power of two, which is exact.
+HWY_INLINE Product scaled(const Product& z) {
+  const hn::RebindToUnsigned<Doubles> bits;
+  const auto largest = hn::BitCast(bits, hn::Max(hn::Abs(z.re), hn::Abs(z.im)));
+  const auto exponent = hn::And(largest, hn::Set(bits, 0x7FF0000000000000U));
+  const Lanes inverse = hn::BitCast(d, hn::Sub(hn::Set(bits, std::uint64_t{2046} << 52), exponent));
+  return {hn::Mul(z.re, inverse), hn::Mul(z.im, inverse), z.passages};
+}
+
+HWY_INLINE Product load(const ProductTile& products, std::size_t i) {
+  return {hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i]), hn::Load(d, &products.turns[i])};
+}
+
+HWY_INLINE void store(const Product& z, ProductTile& products, std::size_t i) {
+  hn::Store(z.re, d, &products.re[i]);
+  hn::Store(z.im, d, &products.im[i]);
+  hn::Store(z.passages, d, &products.turns[i]);
+}
+
+// One sample's product times re + i im.
+void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
+  const double before = z.im[i];
+  const double product_re = z.re[i] * re - before * im, product_im = z.re[i] * im + before * re;
+  if (std::signbit(before) != std::signbit(product_im)) z.turns[i] += std::signbit(im) ? -1.0 : 1.0;
+  z.re[i] = product_re;
+  z.im[i] = product_im;
+}
+
+// A block's product, where all its factors were trusted and none so large that it shows as one that is large, infinite
+// or NaN.
+HWY_INLINE hn::Mask<Doubles> is_sound(const Product& z) {
+  return hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct));
+}
+
+// Lanes of `trusted` as bits.
+HWY_INLINE std::uint64_t bits_of(hn::Mask<Doubles> trusted) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, trusted, bits);
+  return bits[0];
+}
+
+// Stores the trusted lanes of a block's product; the others have been multiplied in memory.
+HWY_INLINE void store_trusted(const Product& z, hn::Mask<Doubles> trusted, ProductTile& products, std::size_t i) {
+  const Product careful = load(products, i);
+  store(scaled({hn::IfThenElse(trusted, z.re, careful.re), hn::IfThenElse(trusted, z.im, careful.im),
+                hn::IfThenElse(trusted, z.passages, careful.passages)}),
+        products, i);
+}
+
+void set_ones(ProductTile& products) {
+  products.re.fill(1.0);
+  products.im.fill(0.0);
+  products.turns.fill(0.0);
+}
+
+// Passages of the positive and the negative real axis, with a sign each, become turns, which are those of the negative
+// axis from above (+1) and from below (-1). A, B: passages from above to below with Im f >= 0 and Im f < 0; C, D: from
+// below to above with Im f < 0 and Im f >= 0. The turns are A - C, and passages = A + D - B - C, and A + B - C - D is 1
+// where the product ends below, else 0. Rounding can neither create nor lose a turn (docs/method.md).
+void set_turns(ProductTile& products, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    products.turns[i] = (products.turns[i] + (std::signbit(products.im[i]) ? 1.0 : 0.0)) / 2;
+  }
+}
+
+// atan(t) / (2 pi) for t in [0, 1]. This and the next one: operation by operation what core/boundary/angle.cpp does for one.
+HWY_INLINE Lanes arc_tangent_in_turns(Lanes t) {
+  static constexpr auto kTable = [] {
+    std::array<double, kArcTangentsInTurns.size()> table{};
+    std::copy(kArcTangentsInTurns.begin(), kArcTangentsInTurns.end(), table.begin());
+    return table;
+  }();
+  const hn::RebindToSigned<Doubles> integers;
+  const Lanes k = hn::Round(hn::Mul(hn::Set(d, 8.0), t));
+  const Lanes c = hn::Mul(k, hn::Set(d, 0.125));
+  const Lanes rest = hn::Div(hn::Sub(t, c), hn::Add(hn::Set(d, 1.0), hn::Mul(t, c)));
+  const Lanes s = hn::Mul(rest, rest);
+  Lanes tail = hn::Zero(d);
+  for (int power = 17; power >= 3; power -= 2) {
+    tail = hn::Mul(s, hn::Add(hn::Set(d, (power % 4 == 1 ? 1.0 : -1.0) / power), tail));
+  }
+  const Lanes radians = hn::Add(rest, hn::Mul(rest, tail));
+  return hn::Add(hn::GatherIndex(d, kTable.data(), hn::ConvertTo(integers, k)),
+                 hn::Mul(hn::Set(d, static_cast<double>(kTurnsPerRadian)), radians));
+}
+
+HWY_INLINE Lanes argument_in_turns_of(Lanes re, Lanes im) {
+  const Lanes x = hn::Abs(re), y = hn::Abs(im);
+  const auto flat = hn::Le(y, x);
+  const Lanes octant = arc_tangent_in_turns(hn::Div(hn::IfThenElse(flat, y, x), hn::IfThenElse(flat, x, y)));
+  const Lanes quadrant = hn::IfThenElse(flat, octant, hn::Sub(hn::Set(d, 0.25), octant));
+  return hn::CopySign(hn::IfNegativeThenElse(re, hn::Sub(hn::Set(d, 0.5), quadrant), quadrant), im);
+}
+
+void set_arguments(ProductTile& products, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    hn::Store(argument_in_turns_of(hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i])), d,
+              &products.argument[i]);
+  }
+}
+
+// When all factors are multiplied.
+void finish(ProductTile& products, std::size_t count) {
+  set_turns(products, count);
+  set_arguments(products, count);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace raycone
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,119 @@
+#include "core/crossings/crossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/exact/predicates.h"
+
+namespace raycone {
+namespace {
+
+Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+// The closed box of a triangle, but for what is not asked here.
+struct SpanX {
+  double lower, upper;
+  SpanX(const Vec3& a, const Vec3& b, const Vec3& c)
+      : lower(std::min({a.x, b.x, c.x})), upper(std::max({a.x, b.x, c.x})) {}
+};
+
+bool box_meets_line(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row) {
+  return row.y >= std::min({a.y, b.y, c.y}) && row.y <= std::max({a.y, b.y, c.y}) &&
+         row.z >= std::min({a.z, b.z, c.z}) && row.z <= std::max({a.z, b.z, c.z});
+}
+
+// Samples [first, last): those before are surely before the plane, those from `last` on surely behind.
+struct Doubtful {
+  std::size_t first, last;
+};
+
+Doubtful doubtful_samples(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, const TrianglePlane* plane) {
+  if (plane && plane->error < std::numeric_limits<double>::infinity()) {
+    const double along = plane->normal.y * (row.y - a.y) + plane->normal.z * (row.z - a.z);
+    const double x = a.x - along / plane->normal.x;
+    const std::size_t first = count_below(row.xs, row.samples_per_unit, x - plane->error);
+    std::size_t last = first;
+    while (last < row.xs.size() && row.xs[last] <= x + plane->error) ++last;
+    return {first, last};
+  }
+  const SpanX box(a, b, c);
+  return {count_below(row.xs, row.samples_per_unit, box.lower), count_up_to(row.xs, row.samples_per_unit, box.upper)};
+}
+
+void find_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, const TrianglePlane* plane,
+                   TriangleCrossing& result) {
+  const auto side = [&](std::size_t i) { return plane_side(a, b, c, row.query(i)); };
+  auto [first, last] = doubtful_samples(a, b, c, row, plane);
+  const std::size_t end = last;
+  while (first < last) {  // bisection: the side changes once
+    const std::size_t middle = first + (last - first) / 2;
+    if (side(middle) == -result.sigma) {
+      first = middle + 1;
+    } else {
+      last = middle;
+    }
+  }
+  result.crossed = first;
+  result.on_begin = result.on_end = first;
+  while (result.on_end < end && side(result.on_end) == 0) ++result.on_end;
+}
+
+// A line meets a closed triangle in an interval, so the samples on it are consecutive.
+void find_samples_on(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, TriangleCrossing& result) {
+  const auto on = [&](std::size_t i) { return on_triangle(a, b, c, row.query(i)); };
+  std::size_t i = count_below(row.xs, row.samples_per_unit, SpanX(a, b, c).lower);
+  while (i < result.met && !on(i)) ++i;
+  result.on_begin = i;
+  while (i < result.met && on(i)) ++i;
+  result.on_end = i;
+}
+
+}  // namespace
+
+// Each component of the normal is off by at most 4 u times the same with absolute values, N+; the differences to a,
+// products and sums round once each; the quotient carries the normal's x (relative error at most 4 / 60 by the
+// condition) and x_c - a_x is within the box. Together less than 8 u sum N+_k H_k / |n_x| with H the box's extent, and
+// two roundings of the result. u = 2^-53.
+TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double u = 0x1p-53;
+  constexpr double kNoUnderflow = 0x1p-900;
+  const Vec3 e = b - a, f = c - a;
+  const Vec3 ae = absolute(e), af = absolute(f);
+  normal = cross(e, f);
+  const Vec3 bound{ae.y * af.z + ae.z * af.y, ae.z * af.x + ae.x * af.z, ae.x * af.y + ae.y * af.x};
+  const double nx = std::abs(normal.x);
+  // Written so that NaN has no error bound.
+  if (!(nx > 64 * u * bound.x && nx > kNoUnderflow && bound.x + bound.y + bound.z < 1 / kNoUnderflow)) {
+    error = std::numeric_limits<double>::infinity();
+    return;
+  }
+  double reach = 0.0, largest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = std::min({a[axis], b[axis], c[axis]}), upper = std::max({a[axis], b[axis], c[axis]});
+    reach += bound[axis] * (upper - lower);
+    if (axis == 0) largest = std::max(std::abs(lower), std::abs(upper));
+  }
+  error = 1.01 * u * (8 * reach / nx + 2 * largest) + kNoUnderflow;
+}
+
+TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,
+                                   const TrianglePlane* plane) {
+  TriangleCrossing result;
+  const Vec3 line = row.query(0);  // sides depend on y and z alone
+  const EdgeSide ab = edge_side(a, b, line), bc = edge_side(b, c, line), ca = edge_side(c, a, line);
+  const bool crossed = ab.sign != 0 && bc.sign == ab.sign && ca.sign == ab.sign;
+  result.ties = ab.tie + bc.tie + ca.tie;
+  if (!crossed && result.ties == 0) return result;
+  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle
+  if (result.ties > 0) result.met = count_up_to(row.xs, row.samples_per_unit, SpanX(a, b, c).upper);
+  if (crossed) {
+    result.sigma = ab.sign;
+    find_crossing(a, b, c, row, plane, result);
+  } else {
+    find_samples_on(a, b, c, row, result);
+  }
+  return result;
+}
+
+}  // namespace raycone

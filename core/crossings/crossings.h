@@ -1,0 +1,35 @@
+// Signed crossings of the rays of a row with triangles.
+#pragma once
+
+#include <cstddef>
+
+#include "core/crossings/row.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// Where a triangle's plane meets lines along x, in floating point.
+struct TrianglePlane {
+  Vec3 normal;  // (b - a) x (c - a), rounded
+  double error =
+      0;  // bound of |x^ - x| where a line through the triangle's box meets the plane; infinite where none is known
+
+  TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c);
+};
+
+// What one triangle says about the samples of a row. Each statement holds for a range of them.
+struct TriangleCrossing {
+  int sigma = 0;  // +-1: crossed by the rays of the samples [0, crossed), sign of the normal's x
+  std::size_t crossed = 0;
+  int ties = 0;  // edges with D = 0, of a triangle whose closed box meets the rays of the samples [0, met)
+  std::size_t met = 0;
+  std::size_t on_begin = 0;  // the samples [on_begin, on_end) lie on the closed triangle
+  std::size_t on_end = 0;
+};
+
+// Exact. `plane` is that of the triangle; nullptr: predicates alone decide, which is cheaper for a single sample. Needs
+// DefaultFloatingPoint.
+[[nodiscard]] TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,
+                                                 const TrianglePlane* plane);
+
+}  // namespace raycone

@@ -1,0 +1,43 @@
+// Regular lattices of sample points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// The samples with indices index_min[a] <= index < index_min[a] + counts[a] along axis a. The coordinate of an index
+// is origin + index * spacing, product and sum each rounded to double: what is evaluated is exactly what is printed.
+struct Lattice {
+  Vec3 origin;   // world position of index (0, 0, 0), which need not be a sample
+  Vec3 spacing;  // world units per index step, positive
+  std::array<std::int64_t, 3> index_min{0, 0, 0};
+  std::array<std::int64_t, 3> counts{1, 1, 1};  // each at least 1
+
+  [[nodiscard]] double coordinate(int axis, std::int64_t index) const {
+    const double step = static_cast<double>(index) * spacing[axis];
+    return origin[axis] + step;
+  }
+  [[nodiscard]] std::int64_t index_max(int axis) const {
+    const auto a = static_cast<std::size_t>(axis);
+    return index_min[a] + counts[a] - 1;
+  }
+};
+
+// Evaluators count the samples along an axis of a block in 32 bits.
+inline constexpr std::int64_t kMaxBlockSide = 0xFFFFFFFF;
+
+// A box of samples: along axis a those with indices first[a] <= index < first[a] + counts[a] (first in the lattice's
+// own indices, so first >= index_min). Values of a block are stored x fastest, then y, then z.
+struct LatticeBlock {
+  std::array<std::int64_t, 3> first{0, 0, 0};
+  std::array<std::int64_t, 3> counts{0, 0, 0};
+
+  [[nodiscard]] std::int64_t size() const { return counts[0] * counts[1] * counts[2]; }
+};
+
+[[nodiscard]] inline LatticeBlock whole(const Lattice& lattice) { return {lattice.index_min, lattice.counts}; }
+
+}  // namespace raycone

@@ -1,0 +1,39 @@
+#include "core/data/rule.h"
+
+#include <cmath>
+
+namespace raycone {
+namespace {
+
+// floor(w + 1/2) without rounding of the sum: 0.49999999999999994 + 0.5 is 1 in double.
+double nearest_integer(double w) {
+  const double below = std::floor(w);
+  return w - below >= 0.5 ? below + 1.0 : below;
+}
+
+}  // namespace
+
+std::vector<double> thresholds_to_settle(const Rule& rule) {
+  const bool has_threshold = rule.kind == RuleKind::kThreshold || rule.kind == RuleKind::kAbs;
+  if (!has_threshold || std::abs(std::fmod(rule.threshold, 1.0)) == 0.5) return {};
+  if (rule.kind == RuleKind::kThreshold) return {rule.threshold};
+  return rule.threshold > 0.0 ? std::vector{rule.threshold, -rule.threshold} : std::vector<double>{};
+}
+
+bool holds(const Rule& rule, double w) {
+  switch (rule.kind) {
+    case RuleKind::kThreshold:
+      return w >= rule.threshold;
+    case RuleKind::kAbs:
+      return std::abs(w) >= rule.threshold;
+    case RuleKind::kNonzero:
+      return nearest_integer(w) != 0.0;
+    case RuleKind::kPositive:
+      return nearest_integer(w) > 0.0;
+    case RuleKind::kOdd:
+      return std::fmod(nearest_integer(w), 2.0) != 0.0;
+  }
+  return false;
+}
+
+}  // namespace raycone

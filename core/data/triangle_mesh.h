@@ -1,0 +1,33 @@
+// An indexed triangle mesh in double precision.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// Corners of a triangle as indices into TriangleMesh::vertices; the front side sees them counter-clockwise.
+using Triangle = std::array<std::uint32_t, 3>;
+
+// Evaluators count the triangles at an edge and along a ray in 32 bits, with a sign.
+inline constexpr std::size_t kMaxTriangles = 0x7FFFFFFF;
+
+struct TriangleMesh {
+  std::vector<Vec3> vertices;  // some may be unused; an unused one may be non-finite
+  std::vector<Triangle> triangles;
+};
+
+// Axis-aligned closed box.
+struct Box {
+  Vec3 lower;
+  Vec3 upper;
+};
+
+// The smallest box of the vertices that triangles use. Precondition: at least one triangle.
+[[nodiscard]] Box bounding_box(const TriangleMesh& mesh);
+
+}  // namespace raycone

@@ -1,0 +1,194 @@
+#include "core/distance/distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/data/check_counts.h"
+#include "core/distance/distance_band.h"
+#include "core/distance/distance_tree.h"
+#include "core/exact/scale.h"
+#include "core/machine/floating_point.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kPointsPerTask = 256;
+
+// From here on a mesh of coordinates up to 1 is a point at the origin, to the last bit.
+constexpr double kFar = 0x1p55;
+constexpr double kLargest = std::numeric_limits<double>::max();  // of distances, too
+
+double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+
+// From the origin. Its squares neither overflow nor vanish.
+double length(const Vec3& p) {
+  int exponent = 0;
+  std::frexp(largest_coordinate(p), &exponent);
+  const Vec3 q = PowerOfTwo(-exponent)(p);
+  return std::min(PowerOfTwo(exponent)(std::sqrt(dot(q, q))), kLargest);
+}
+
+using LatticeIndex = std::array<std::int64_t, 3>;
+
+Vec3 position(const Lattice& lattice, const LatticeIndex& index) {
+  return {lattice.coordinate(0, index[0]), lattice.coordinate(1, index[1]), lattice.coordinate(2, index[2])};
+}
+
+bool holds(const LatticeBlock& block, const LatticeIndex& index) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (index[a] < block.first[a] || index[a] >= block.first[a] + block.counts[a]) return false;
+  }
+  return true;
+}
+
+// In the order in which values are stored.
+template <class Visit>
+void for_each_sample(const LatticeBlock& block, const Visit& visit) {
+  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
+    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
+      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) visit(LatticeIndex{i, j, k});
+    }
+  }
+}
+
+}  // namespace
+
+struct DistanceEvaluator::Implementation {
+  explicit Implementation(const TriangleMesh& original)
+      : exponent(largest_exponent(original)), to_unit(-exponent), to_world(exponent), mesh(original) {
+    for (Vec3& p : mesh.vertices) p = to_unit(p);
+    const auto at_origin = [&](std::uint32_t v) { return mesh.vertices[v] == Vec3{}; };
+    const bool is_origin = std::ranges::all_of(
+        mesh.triangles, [&](const Triangle& t) { return at_origin(t[0]) && at_origin(t[1]) && at_origin(t[2]); });
+    if (is_origin) far_beyond = -1.0;
+  }
+
+  [[nodiscard]] const DistanceTree& nearest() const {
+    std::call_once(tree_built, [this] { tree.emplace(mesh); });
+    return *tree;
+  }
+
+  [[nodiscard]] double distance_at(const Vec3& point) const {
+    const Vec3 p = to_unit(point);
+    if (!(largest_coordinate(p) <= far_beyond)) return length(point);
+    return std::min(to_world(std::sqrt(nearest().squared_distance(p))), kLargest);
+  }
+
+  [[nodiscard]] bool is_near(double coordinate) const { return std::abs(to_unit(coordinate)) <= far_beyond; }
+
+  // The samples of a block that are not far: along each axis those of a range.
+  [[nodiscard]] LatticeBlock near_part(const Lattice& lattice, const LatticeBlock& block) const {
+    LatticeBlock near = block;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const auto sample_is_near = [&](std::int64_t i) { return is_near(lattice.coordinate(axis, i)); };
+      while (near.counts[a] > 0 && !sample_is_near(near.first[a])) {
+        ++near.first[a];
+        --near.counts[a];
+      }
+      while (near.counts[a] > 0 && !sample_is_near(near.first[a] + near.counts[a] - 1)) --near.counts[a];
+    }
+    return near;
+  }
+
+  // As DistanceEvaluator::evaluate(), of samples that are not far.
+  void evaluate_near(const Lattice& lattice, const LatticeBlock& block, double band,
+                     std::span<double> distances) const {
+    const LatticeRows rows = unit_rows(lattice, block);
+    // No sample that is not far is farther from the mesh than four times kFar.
+    const double unit_band = std::min(to_unit(band), 4 * kFar);
+    if (descent_is_faster(mesh, unit_band)) {
+      descend_to_distances(nearest(), rows, unit_band, distances);
+    } else {
+      rasterize_distances(mesh, rows, unit_band, distances);
+    }
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    parallel_for(distances.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) distances[n] = std::min(to_world(std::sqrt(distances[n])), band);
+    });
+  }
+
+  double far_beyond = kFar;  // in units; none is near a mesh that is the origin
+
+  // The largest coordinate is brought into [1/2, 1): nothing overflows, and what gets lost at the other end is less
+  // than 1e-300 of it.
+  int exponent;
+  PowerOfTwo to_unit, to_world;
+  TriangleMesh mesh;
+
+ private:
+  [[nodiscard]] LatticeRows unit_rows(const Lattice& lattice, const LatticeBlock& block) const {
+    LatticeRows rows;
+    const std::array<std::vector<double>*, 3> axes{&rows.xs, &rows.ys, &rows.zs};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      for (std::int64_t i = 0; i < block.counts[a]; ++i) {
+        axes[a]->push_back(to_unit(lattice.coordinate(axis, block.first[a] + i)));
+      }
+      const double width = axes[a]->back() - axes[a]->front();
+      const double per_unit = static_cast<double>(block.counts[a] - 1) / width;
+      rows.samples_per_unit[axis] = std::isfinite(per_unit) ? per_unit : 0.0;
+    }
+    return rows;
+  }
+
+  mutable std::once_flag tree_built;
+  mutable std::optional<DistanceTree> tree;
+};
+
+DistanceEvaluator::DistanceEvaluator(const TriangleMesh& mesh) {
+  check_counts(mesh);
+  const DefaultFloatingPoint guard;
+  implementation_ = std::make_unique<Implementation>(mesh);
+}
+DistanceEvaluator::~DistanceEvaluator() = default;
+DistanceEvaluator::DistanceEvaluator(DistanceEvaluator&&) noexcept = default;
+DistanceEvaluator& DistanceEvaluator::operator=(DistanceEvaluator&&) noexcept = default;
+
+void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, double band,
+                                 std::span<double> distances) const {
+  assert(distances.size() == static_cast<std::size_t>(block.size()));
+  check_counts(block);
+  if (distances.empty()) return;
+  if (implementation_->mesh.triangles.empty()) {
+    std::ranges::fill(distances, band);
+    return;
+  }
+  const DefaultFloatingPoint guard;
+  band = std::min(band, kLargest);
+  const LatticeBlock near = implementation_->near_part(lattice, block);
+  if (near.counts == block.counts) return implementation_->evaluate_near(lattice, block, band, distances);
+  // Rare: a lattice that is much larger than the mesh.
+  std::vector<double> near_distances(static_cast<std::size_t>(near.size()));
+  if (!near_distances.empty()) implementation_->evaluate_near(lattice, near, band, near_distances);
+  const double* near_distance = near_distances.data();
+  double* distance = distances.data();
+  for_each_sample(block, [&](const LatticeIndex& sample) {
+    *distance++ = holds(near, sample) ? *near_distance++ : std::min(length(position(lattice, sample)), band);
+  });
+}
+
+void DistanceEvaluator::prepare_points() const {
+  if (!implementation_->mesh.triangles.empty()) (void)implementation_->nearest();
+}
+
+void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double> distances) const {
+  assert(distances.size() == points.size());
+  if (implementation_->mesh.triangles.empty()) {
+    std::ranges::fill(distances, std::numeric_limits<double>::infinity());
+    return;
+  }
+  prepare_points();  // not within the loop, whose threads would wait for one another
+  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) distances[n] = implementation_->distance_at(points[n]);
+  });
+}
+
+}  // namespace raycone

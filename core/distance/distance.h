@@ -1,0 +1,39 @@
+// Unsigned distances to the triangles of a mesh: off by less than 1e-12 of themselves, or by less than 4 * 2^-53 times
+// the largest coordinate of the mesh or the point (docs/method.md, "Distances").
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+class DistanceEvaluator {
+ public:
+  // Vertices used by triangles are finite. A mesh without triangles is infinitely far away. Throws std::length_error
+  // for more than kMaxTriangles.
+  explicit DistanceEvaluator(const TriangleMesh& mesh);
+  ~DistanceEvaluator();
+  DistanceEvaluator(DistanceEvaluator&&) noexcept;
+  DistanceEvaluator& operator=(DistanceEvaluator&&) noexcept;
+
+  // Distances (world units) of a block of `lattice`, x fastest: to the bit those of points, cut off at `band`;
+  // distances.size() == block.size(). Uses the threads that ThreadLimit allows; the distances depend on neither their
+  // number nor the block's extent. Const calls may run concurrently. Throws std::length_error for more than
+  // kMaxBlockSide samples along an axis.
+  void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
+
+  // Builds the search tree that points need and lattices do not; else the first evaluation of points does.
+  void prepare_points() const;
+
+  // Distances (world units) at finite points, in their order: distances.size() == points.size().
+  void evaluate(std::span<const Vec3> points, std::span<double> distances) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<const Implementation> implementation_;
+};
+
+}  // namespace raycone

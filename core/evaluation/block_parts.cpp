@@ -1,0 +1,75 @@
+#include "core/evaluation/block_parts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace raycone {
+namespace {
+
+// Indices [first, first + count) along one axis.
+struct Run {
+  std::int64_t first;
+  std::int64_t count;
+};
+
+std::vector<Run> runs_alike(const Lattice& lattice, const LatticeBlock& block, int axis,
+                            const std::function<bool(double)>& property) {
+  const auto a = static_cast<std::size_t>(axis);
+  std::vector<Run> runs;
+  bool last = false;
+  for (std::int64_t i = block.first[a]; i < block.first[a] + block.counts[a]; ++i) {
+    const bool here = property(lattice.coordinate(axis, i));
+    if (runs.empty() || here != last) runs.push_back({i, 0});
+    ++runs.back().count;
+    last = here;
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<LatticeBlock> parts_alike(const Lattice& lattice, const LatticeBlock& block,
+                                      const std::function<bool(double)>& property) {
+  std::array<std::vector<Run>, 3> runs;
+  for (int axis = 0; axis < 3; ++axis) {
+    runs[static_cast<std::size_t>(axis)] = runs_alike(lattice, block, axis, property);
+  }
+  std::vector<LatticeBlock> parts;
+  for (const Run& z : runs[2]) {
+    for (const Run& y : runs[1]) {
+      for (const Run& x : runs[0]) parts.push_back({{x.first, y.first, z.first}, {x.count, y.count, z.count}});
+    }
+  }
+  return parts;
+}
+
+PartSamples::PartSamples(std::size_t count)
+    : values_(count),
+      error_bound_(count),
+      crossings_(count),
+      degenerate_(count),
+      on_surface_(count),
+      diagnostics_{crossings_, degenerate_, on_surface_, error_bound_} {}
+
+void PartSamples::copy_to(const LatticeBlock& whole, const LatticeBlock& part, std::span<double> values,
+                          const Diagnostics* diagnostics) const {
+  const auto offset = [&](std::size_t axis) { return part.first[axis] - whole.first[axis]; };
+  const std::ptrdiff_t length = part.counts[0];
+  for (std::int64_t k = 0; k < part.counts[2]; ++k) {
+    for (std::int64_t j = 0; j < part.counts[1]; ++j) {
+      const std::ptrdiff_t from = (k * part.counts[1] + j) * length;
+      const std::ptrdiff_t to = ((offset(2) + k) * whole.counts[1] + offset(1) + j) * whole.counts[0] + offset(0);
+      const auto copy = [&](const auto& source, const auto& target) {
+        std::copy_n(source.begin() + from, length, target.begin() + to);
+      };
+      copy(values_, values);
+      if (!diagnostics) continue;
+      copy(crossings_, diagnostics->crossings);
+      copy(degenerate_, diagnostics->degenerate);
+      copy(on_surface_, diagnostics->on_surface);
+      copy(error_bound_, diagnostics->error_bound);
+    }
+  }
+}
+
+}  // namespace raycone

@@ -1,0 +1,63 @@
+// Doubles as integers of any size (GMP), for definitions that verification rests on. Only direct_sum.cpp and
+// direct_distance.cpp include this.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/data/vec3.h"
+
+namespace raycone::exact {
+
+struct IntegerVec3 {
+  mpz_class x, y, z;
+};
+
+inline IntegerVec3 minus(const IntegerVec3& a, const IntegerVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline mpz_class dot(const IntegerVec3& a, const IntegerVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline IntegerVec3 cross(const IntegerVec3& a, const IntegerVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline constexpr int kDigits = 53;  // of a double
+
+// e such that x times 2^e is an integer.
+inline int exponent_to_integer(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return kDigits - exponent;
+}
+
+// x times 2^exponent, which is an integer.
+inline mpz_class integer(double x, int exponent) {
+  int own = 0;
+  const double digits = std::ldexp(std::frexp(x, &own), kDigits);
+  return mpz_class(digits) << static_cast<mp_bitcnt_t>(std::max(own - kDigits + exponent, 0));
+}
+
+using Corners = std::array<IntegerVec3, 3>;
+
+// Corners relative to q, times 2^exponent.
+struct ScaledTriangle {
+  Corners corners;
+  int exponent = 0;
+};
+
+inline ScaledTriangle as_integers(const std::array<Vec3, 3>& points, const Vec3& q) {
+  ScaledTriangle result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.exponent = std::max(result.exponent, exponent_to_integer(q[axis]));
+    for (const Vec3& p : points) result.exponent = std::max(result.exponent, exponent_to_integer(p[axis]));
+  }
+  const auto integers = [&](const Vec3& p) {
+    return IntegerVec3{integer(p.x, result.exponent), integer(p.y, result.exponent), integer(p.z, result.exponent)};
+  };
+  const IntegerVec3 origin = integers(q);
+  for (std::size_t i = 0; i < 3; ++i) result.corners[i] = minus(integers(points[i]), origin);
+  return result;
+}
+
+}  // namespace raycone::exact

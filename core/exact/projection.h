@@ -1,0 +1,77 @@
+// Exact signs in the projection along a direction. Seen against it, the plane is oriented counter-clockwise.
+//
+// All of these hold for all finite doubles and are thread-safe; they need DefaultFloatingPoint. Directions are such as
+// area_direction() returns.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// The direction of a polygon's area vector, the sum of c(i) x c(i+1): each component of the exact vector, times one
+// power of two, rounded, all but exactly (the largest error is 2^-30 of the largest component); the largest is
+// between 1/2 and 2. Zero if and only if the area vector is.
+[[nodiscard]] Vec3 area_direction(std::span<const Vec3> corners);
+
+// Sign of det(b - a, v, direction).
+[[nodiscard]] int exact_side(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& v);
+
+// Sign of det(b - a, c - a, direction).
+[[nodiscard]] int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c);
+
+// What differences, two products and sums of doubles round, relative to the sum of the products' absolute values: less
+// than eight roundings of 2^-53. What underflows is below 2^-1060 times the direction, whose size is about 1.
+inline constexpr double kTurnTrust = 0x1p-49;
+inline constexpr double kTurnUnderflow = 0x1p-960;
+
+[[nodiscard]] inline Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+// The components of cross(|a|, |b|) with plus signs.
+[[nodiscard]] inline Vec3 cross_terms(const Vec3& a, const Vec3& b) {
+  return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
+          std::abs(a.x * b.y) + std::abs(a.y * b.x)};
+}
+
+// 1 where a, b, c turn left, -1 where they turn right, 0 where they lie on a line.
+[[nodiscard]] inline int turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 first = b - a, second = c - a;
+  const double volume = dot(cross(first, second), direction);
+  const double trust = kTurnTrust * dot(cross_terms(first, second), absolute(direction)) + kTurnUnderflow;
+  if (volume > trust) return 1;
+  if (volume < -trust) return -1;
+  return exact_turn(direction, a, b, c);
+}
+
+// A lexicographic order of the projections, by coordinates along two axes of which the second is a quarter turn left of
+// the first. They are askew to the axes of space, since corners that are level with each other would take exact numbers
+// to compare.
+class SweepOrder {
+ public:
+  explicit SweepOrder(const Vec3& direction);
+
+  // Negative where a comes before b, positive where it comes after, 0 where they project to one point.
+  [[nodiscard]] int operator()(const Vec3& a, const Vec3& b) const {
+    const int first = side(0, b, a);
+    return first != 0 ? first : side(1, b, a);
+  }
+
+ private:
+  // Sign of det(b - a, across_[axis], direction).
+  [[nodiscard]] int side(std::size_t axis, const Vec3& a, const Vec3& b) const {
+    const Vec3 step = b - a;
+    const double value = dot(step, normal_[axis]);
+    const double trust = kTurnTrust * dot(absolute(step), terms_[axis]) + kTurnUnderflow;
+    if (value > trust) return 1;
+    if (value < -trust) return -1;
+    return exact_side(direction_, a, b, across_[axis]);
+  }
+
+  Vec3 direction_;
+  std::array<Vec3, 2> across_, normal_, terms_;
+};
+
+}  // namespace raycone

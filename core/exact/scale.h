@@ -1,0 +1,30 @@
+// Scaling by a power of two, which commutes with every rounding.
+#pragma once
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// Multiplies by 2^exponent. Exact, unless the result is subnormal and drops bits, or overflows.
+class PowerOfTwo {
+ public:
+  explicit PowerOfTwo(int exponent);
+  [[nodiscard]] int exponent() const { return exponent_; }
+  [[nodiscard]] double operator()(double value) const { return value * half_ * other_half_; }
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {(*this)(p.x), (*this)(p.y), (*this)(p.z)}; }
+
+ private:
+  int exponent_;
+  double half_;  // two factors, since 2^exponent itself may not be a double
+  double other_half_;
+};
+
+// e such that the largest coordinate of the triangles is in [2^(e-1), 2^e); 0 where all coordinates are zero.
+[[nodiscard]] int largest_exponent(const TriangleMesh& mesh);
+
+// The power of two that brings the largest coordinate of the triangles into [1/2, 1), so that products neither overflow
+// nor leave the range of the predicates' filters; 2^0 where all coordinates are zero, or where a coordinate of a
+// triangle would lose bits (a mesh that spans more than 2^970: predicates are then slower, not wrong).
+[[nodiscard]] PowerOfTwo unit_scale(const TriangleMesh& mesh);
+
+}  // namespace raycone

@@ -1,0 +1,96 @@
+#include "core/machine/threads.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+
+#include "core/machine/floating_point.h"
+
+namespace raycone {
+namespace {
+
+// What a loop's body threw. Its own text, which may start with any file's name, must not be taken for TBB's.
+struct BodyException {
+  std::exception_ptr cause;
+};
+
+void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
+  try {
+    tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
+      const DefaultFloatingPoint guard;
+      try {
+        body(range.begin(), range.end());
+      } catch (...) {
+        throw BodyException{std::current_exception()};
+      }
+    });
+  } catch (const BodyException& exception) {
+    std::rethrow_exception(exception.cause);
+  } catch (const std::runtime_error& error) {
+    // All that tells this exception of TBB's from its others.
+    if (std::string_view(error.what()).starts_with("pthread_create")) throw ThreadsUnavailable();
+    throw;
+  }
+}
+
+}  // namespace
+
+struct ThreadLimit::Control {
+  tbb::global_control parallelism;
+};
+
+ThreadLimit::ThreadLimit(int count)
+    : control_(new Control{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)}}) {}
+ThreadLimit::~ThreadLimit() = default;
+
+int thread_count() {
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(static_cast<int>(allowed), tbb::this_task_arena::max_concurrency());
+}
+
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  isolated([&] { run_loop(count, grain, body); });
+}
+
+void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
+
+namespace {
+
+constexpr int kPatience = 100'000;  // looks; a system that starts no more threads goes on with fewer
+
+// TBB starts a worker for what is enqueued even on a single CPU, and OpenVDB enqueues: where it could not be started
+// then, the process would be terminated. Where there are other workers they do: one that was called for what is
+// enqueued goes on looking for work, beyond the number of threads that is allowed.
+void start_worker_for_enqueued() {
+  const auto done = std::make_shared<std::atomic<bool>>(false);
+  tbb::task_arena().enqueue([done] { *done = true; });
+  for (int looks = 0; !*done && looks < kPatience; ++looks) std::this_thread::yield();
+}
+
+}  // namespace
+
+void prime_threads() {
+  const auto count = static_cast<std::size_t>(thread_count());
+  std::atomic<std::size_t> started = 0;
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    started += end - begin;
+    for (int looks = 0; started < count && looks < kPatience; ++looks) std::this_thread::yield();
+  });
+  try {
+    if (tbb::this_task_arena::max_concurrency() == 1) start_worker_for_enqueued();
+  } catch (const std::runtime_error&) {
+    throw ThreadsUnavailable();
+  }
+}
+
+}  // namespace raycone

@@ -1,0 +1,88 @@
+#include "core/mesh/mesh_statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "core/exact/predicates.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/edge_uses.h"
+
+namespace raycone {
+namespace {
+
+void count_edges(const TriangleMesh& mesh, MeshStatistics& statistics) {
+  for_each_edge(mesh, [&](const EdgeUse& use) {
+    const std::uint64_t uses = std::uint64_t{use.forward} + use.backward;
+    statistics.exterior_edges += use.forward != use.backward;
+    statistics.nonmanifold_edges += uses > 2;
+    statistics.inconsistent_edges += uses == 2 && use.forward != use.backward;
+  });
+}
+
+std::uint64_t count_duplicates(const TriangleMesh& mesh) {
+  std::vector<Triangle> sorted = mesh.triangles;
+  for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto last = std::unique(sorted.begin(), sorted.end());
+  return static_cast<std::uint64_t>(sorted.end() - last);
+}
+
+std::uint64_t count_degenerate(const TriangleMesh& mesh) {
+  const DefaultFloatingPoint guard;
+  return static_cast<std::uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+    return collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  }));
+}
+
+std::uint64_t count_components(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<bool> counted(mesh.vertices.size(), false);
+  std::uint64_t components = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const std::uint32_t r = root(t[0]);
+    components += !counted[r];
+    counted[r] = true;
+  }
+  return components;
+}
+
+// Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
+double signed_volume(const TriangleMesh& mesh) {
+  using Wide = long double;  // for its exponents, too: no product of three coordinates leaves them
+  const Box box = bounding_box(mesh);
+  const Vec3 centre = 0.5 * box.lower + 0.5 * box.upper;
+  const auto from_centre = [&](std::uint32_t v) {
+    const Vec3& p = mesh.vertices[v];
+    return std::array<Wide, 3>{Wide(p.x) - centre.x, Wide(p.y) - centre.y, Wide(p.z) - centre.z};
+  };
+  Wide sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const auto a = from_centre(t[0]), b = from_centre(t[1]), c = from_centre(t[2]);
+    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return static_cast<double>(sum / 6);
+}
+
+}  // namespace
+
+MeshStatistics mesh_statistics(const TriangleMesh& welded) {
+  MeshStatistics statistics;
+  count_edges(welded, statistics);
+  statistics.degenerate_faces = count_degenerate(welded);
+  statistics.duplicate_faces = count_duplicates(welded);
+  statistics.components = count_components(welded);
+  if (statistics.closed()) statistics.signed_volume = signed_volume(welded);
+  return statistics;
+}
+
+}  // namespace raycone

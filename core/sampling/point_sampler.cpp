@@ -1,0 +1,138 @@
+#include "core/sampling/point_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/exact/exact_determinant.h"
+#include "core/exact/scale.h"
+#include "core/machine/threads.h"
+#include "core/sampling/random.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kPointsPerTask = 4096;
+
+std::uint64_t count_of(const SampleGroup& group) {
+  return std::visit([](const auto& one) { return one.count; }, group);
+}
+
+double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto part = [&](int y, int z) {
+    return static_cast<long double>(
+        determinant(difference(b[y], a[y]), difference(b[z], a[z]), difference(c[y], a[y]), difference(c[z], a[z])));
+  };
+  const long double x = part(1, 2), y = part(2, 0), z = part(0, 1);
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+// Twice the area within 1e-9 of itself, whatever the shape and size; 0 if and only if it is 0.
+long double doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double kTiny = 0x1p-450, kHuge = 0x1p450;  // the square roots of what squares need not to leave the range
+  constexpr double kThinnest = 0x1p-20;  // sine of the angle: the product is off by 8 u of the sides' lengths
+  const Vec3 ab = b - a, ac = c - a;
+  const double product = length(cross(ab, ac)), lengths = length(ab) * length(ac);
+  const bool in_range = length(ab) > kTiny && length(ac) > kTiny && product > kTiny && lengths < kHuge;
+  return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);
+}
+
+// In a unit that brings the whole into [1, 2], so that a random number below 1 times the whole is less than it; 0 where
+// there is none.
+std::vector<double> areas_up_to(const TriangleMesh& mesh) {
+  std::vector<long double> sums;  // 64 bits, and exponents for any area
+  sums.reserve(mesh.triangles.size());
+  long double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    sum += doubled_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    sums.push_back(sum);
+  }
+  const int exponent = sum > 0 ? std::ilogb(sum) : 0;
+  std::vector<double> areas;
+  areas.reserve(sums.size());
+  for (const long double s : sums) areas.push_back(static_cast<double>(std::scalbn(s, -exponent)));
+  return areas;
+}
+
+double diagonal_of(const TriangleMesh& mesh) {
+  const int exponent = largest_exponent(mesh);
+  const PowerOfTwo to_unit(-exponent), to_world(exponent);
+  const Box box = bounding_box(mesh);
+  return to_world(length(to_unit(box.upper) - to_unit(box.lower)));
+}
+
+}  // namespace
+
+PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector<SampleGroup> groups,
+                           std::uint64_t seed)
+    : mesh_(mesh),
+      box_(box),
+      diagonal_(diagonal_of(mesh)),
+      groups_(std::move(groups)),
+      seed_(seed),
+      areas_(areas_up_to(mesh)) {
+  for (const SampleGroup& group : groups_) size_ += count_of(group);
+}
+
+bool PointSampler::is_finite() const {
+  const Box of_mesh = bounding_box(mesh_);
+  return std::ranges::all_of(groups_, [&](const SampleGroup& group) {
+    const auto* const near = std::get_if<NearSamples>(&group);
+    const Box& box = near != nullptr ? of_mesh : box_;
+    const double reach = near != nullptr ? Random::kLargestNormal * noise_of(*near) : 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lower = box.lower[axis] - reach, upper = box.upper[axis] + reach;
+      if (!std::isfinite(lower) || !std::isfinite(upper)) return false;
+      if (near == nullptr && !std::isfinite(upper - lower)) return false;
+    }
+    return true;
+  });
+}
+
+// In world units. The diagonal of the largest meshes is not a double, which must not matter to points that stay.
+double PointSampler::noise_of(const NearSamples& near) const {
+  return near.sigma == 0.0 ? 0.0 : near.sigma * diagonal_;
+}
+
+Vec3 PointSampler::on_surface(Random& random) const {
+  const double area = random.uniform() * areas_.back();
+  const auto found = std::upper_bound(areas_.begin(), areas_.end(), area);
+  const Triangle& t = mesh_.triangles[static_cast<std::size_t>(found - areas_.begin())];
+  const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+  const double from_a = std::sqrt(random.uniform()), toward_c = random.uniform();
+  Vec3 p = (1 - from_a) * a + (from_a * (1 - toward_c)) * b + (from_a * toward_c) * c;
+  // Rounding leads out of the triangle, but not out of its box: faces across an axis hold their points exactly.
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [least, most] = std::minmax({a[axis], b[axis], c[axis]});
+    p[axis] = std::clamp(p[axis], least, most);
+  }
+  return p;
+}
+
+Vec3 PointSampler::point(std::uint64_t number) const {
+  Random random(seed_, number);
+  std::size_t group = 0;
+  for (; number >= count_of(groups_[group]); ++group) number -= count_of(groups_[group]);
+  Vec3 p;
+  if (const auto* const near = std::get_if<NearSamples>(&groups_[group])) {
+    p = on_surface(random);
+    const double noise = noise_of(*near);
+    for (int axis = 0; axis < 3; ++axis) p[axis] += noise * random.normal();
+  } else {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = box_.lower[axis] + random.uniform() * (box_.upper[axis] - box_.lower[axis]);
+      p[axis] = std::min(place, box_.upper[axis]);  // beyond which rounding may lead
+    }
+  }
+  return p;
+}
+
+void PointSampler::draw(std::uint64_t first, std::span<Vec3> points) const {
+  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) points[n] = point(first + n);
+  });
+}
+
+}  // namespace raycone

@@ -1,0 +1,55 @@
+// Points drawn in a box and near a surface.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/sampling/random.h"
+
+namespace raycone {
+
+struct UniformSamples {
+  std::uint64_t count = 0;  // in the closed box
+};
+struct NearSamples {
+  std::uint64_t count = 0;  // on the surface by area, each coordinate then moved by normal noise
+  double sigma = 0.0;       // its standard deviation, in diagonals of the mesh's box
+};
+using SampleGroup = std::variant<UniformSamples, NearSamples>;
+
+// Group after group; each point depends on the mesh, the box, the group, the seed and its number alone. Thread-safe.
+class PointSampler {
+ public:
+  // Precondition: at least one triangle.
+  PointSampler(const TriangleMesh& mesh, const Box& box, std::vector<SampleGroup> groups, std::uint64_t seed);
+
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  // Whether there is a surface to draw from: not all triangles are degenerate.
+  [[nodiscard]] bool has_area() const { return areas_.back() > 0.0; }
+
+  // Whether every point is finite: no box and no noise is so large that coordinates overflow.
+  [[nodiscard]] bool is_finite() const;
+
+  // The points number first to first + points.size() - 1, up to size(). Needs is_finite(), and has_area() for points
+  // near a surface. With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its coordinates.
+  // Faces without area have no points. Uses the threads that ThreadLimit allows.
+  void draw(std::uint64_t first, std::span<Vec3> points) const;
+
+ private:
+  [[nodiscard]] Vec3 point(std::uint64_t number) const;
+  [[nodiscard]] Vec3 on_surface(Random& random) const;
+  [[nodiscard]] double noise_of(const NearSamples& near) const;
+
+  TriangleMesh mesh_;
+  Box box_;
+  double diagonal_;
+  std::vector<SampleGroup> groups_;
+  std::uint64_t seed_;
+  std::uint64_t size_ = 0;
+  std::vector<double> areas_;  // of the triangles up to each, in some unit
+};
+
+}  // namespace raycone

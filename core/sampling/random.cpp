@@ -1,0 +1,59 @@
+#include "core/sampling/random.h"
+
+#include <cmath>
+
+namespace raycone {
+namespace {
+
+// SplitMix64 (Steele, Lea, Flood 2014): the step of its state, and its output function, which is one-to-one.
+constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
+
+std::uint64_t mixed(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return z ^ (z >> 31);
+}
+
+// Natural logarithm of x > 0, to some 1e-16: 2 artanh z = 2 (z + z^3 / 3 + z^5 / 5 + ...) with z = (m - 1) / (m + 1),
+// |z| < 0.172, of the significand m.
+double logarithm(double x) {
+  constexpr double kLog2 = 0x1.62e42fefa39efp-1, kSqrtHalf = 0x1.6a09e667f3bcdp-1;
+  int exponent = 0;
+  double m = std::frexp(x, &exponent);
+  if (m < kSqrtHalf) {
+    m *= 2;
+    --exponent;
+  }
+  const double z = (m - 1) / (m + 1), square = z * z;
+  double series = 0.0;
+  for (int n = 23; n >= 1; n -= 2) series = series * square + 1.0 / n;
+  return exponent * kLog2 + 2 * z * series;
+}
+
+}  // namespace
+
+Random::Random(std::uint64_t seed, std::uint64_t stream) : state_(mixed(mixed(seed + kStep) + stream * kStep)) {}
+
+std::uint64_t Random::bits() { return mixed(state_ += kStep); }
+
+double Random::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+
+// Marsaglia's polar method: a uniform point of the unit disc makes two.
+double Random::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
+  double u = 0.0, v = 0.0, square = 0.0;
+  do {
+    u = 2 * uniform() - 1;
+    v = 2 * uniform() - 1;
+    square = u * u + v * v;
+  } while (square >= 1.0 || square == 0.0);
+  const double factor = std::sqrt(-2 * logarithm(square) / square);
+  spare_ = v * factor;
+  has_spare_ = true;
+  return u * factor;
+}
+
+}  // namespace raycone

@@ -1,0 +1,116 @@
+// Writers of fields: on lattices VDB, CSV, NPY and VTI; at points CSV, NPY, NPZ and raw numbers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/data/lattice.h"
+#include "core/data/vec3.h"
+#include "io/files/output_file.h"
+
+namespace raycone {
+
+// kNone: nothing is written, for measurements.
+enum class FieldFormat {
+  kVdb,
+  kCsv,
+  kNpy,
+  kVti,
+  kNpz,
+  kRawDouble,  // nothing but numbers, little-endian; has no name
+  kRawFloat,
+  kNone,
+};
+
+// "vdb", "csv", "npy", "vti", "npz" or "none", in any case.
+[[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
+
+// What the numbers of a field are; formats choose how they store them.
+enum class FieldKind {
+  kReal,      // doubles; where 32 bits are the default, 64 on request
+  kDensity,   // likewise: a fog volume
+  kDistance,  // likewise: a level set, of magnitude `background` where it is not active
+  kBound,     // doubles, rounded up where 32 bits are stored
+  kCount,     // 64-bit integers
+  kFlag,      // 0 or 1
+};
+
+// One number per sample, and its names.
+struct FieldDescription {
+  std::string name = "winding";  // in metadata
+  std::string column = "w";      // of a table
+  std::string grid = "winding";  // in VDB
+  FieldKind kind = FieldKind::kReal;
+  double background = 0.0;  // the value far away, where grids hold nothing
+  std::string rule;         // empty where the field has none: not written then
+  double threshold = 0.5;   // fewer digits keep numbers on its side (io/fields/narrowing.h); for kReal and kDensity
+  bool threshold_of_magnitude = false;  // and so their magnitudes
+};
+
+// What a file holds and says about itself.
+struct OutputDescription {
+  std::vector<FieldDescription> fields{{}};  // at least one
+  std::string mesh;                          // file name without directory
+  std::string mesh_sha256;
+  std::uint64_t faces = 0;
+  std::uint64_t exterior_edges = 0;
+  bool double_precision = false;  // DoubleGrid / float64 instead of float32
+  bool half_precision = false;    // 16 bits a value in VDB, not together with double_precision
+};
+
+// Numbers of one field: integers for kCount, bytes for kFlag, else doubles.
+using FieldValues = std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>>;
+
+// Known only when all values are.
+struct FieldTotals {
+  std::uint64_t degenerate = 0;
+  std::uint64_t on_surface = 0;
+};
+
+// Takes the values of a lattice block by block. Blocks are slabs that span the lattice across `slab_axis()`, in
+// increasing order, together all samples.
+class LatticeWriter {
+ public:
+  virtual ~LatticeWriter() = default;
+  // 2; of NPY, whose slowest axis is x, 1, or 0 where the output cannot be gone back in.
+  [[nodiscard]] virtual int slab_axis() const = 0;
+  // A slab that ends at multiples of this index (but for the last) is written best: 8 for VDB's leaves, else 1.
+  [[nodiscard]] virtual std::int64_t slab_alignment() const = 0;
+  // Of each field of the description, in its order, block.size() numbers: x fastest, then y, then z.
+  virtual void write(const LatticeBlock& block, std::span<const FieldValues> fields) = 0;
+  // Completes and commits the file. Throws OutputError.
+  virtual void finish(const FieldTotals& totals) = 0;
+};
+
+// `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
+// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY holds
+// one field.
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
+                                                                 const Lattice& lattice,
+                                                                 const OutputDescription& description);
+
+// Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
+// float64, shape (n,), with several fields (n, fields); NPZ: an array of the points and one per field; raw: the numbers
+// of the first point, those of the second, and so on.
+class PointWriter {
+ public:
+  virtual ~PointWriter() = default;
+  // Of each field of the description, in its order, points.size() numbers.
+  virtual void write(std::span<const Vec3> points, std::span<const FieldValues> fields) = 0;
+  // Hands what has been written to the system, for readers that wait for it.
+  virtual void flush() = 0;
+  virtual void finish() = 0;
+};
+
+// `size`, where known, lets NPY be streamed to a pipe; NPZ needs it.
+[[nodiscard]] std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
+                                                             std::optional<std::uint64_t> size,
+                                                             const OutputDescription& description);
+
+}  // namespace raycone

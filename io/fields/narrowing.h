@@ -1,0 +1,76 @@
+// Doubles stored with fewer digits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/machine/threads.h"
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+// Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
+// side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
+// half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
+// magnitude, only for itself. Half-integers beyond 2^23 are not floats.
+class Narrowing {
+ public:
+  explicit Narrowing(const FieldDescription& field) : Narrowing(field, &nearest_float, &next_float) {}
+
+  // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards.
+  Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
+      : keeps_sides_(field.kind == FieldKind::kReal || field.kind == FieldKind::kDensity),
+        of_magnitude_(field.threshold_of_magnitude),
+        threshold_(field.threshold),
+        low_(std::min(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
+        high_(std::max(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
+        nearest_(nearest),
+        next_(next) {}
+
+  [[nodiscard]] float operator()(double value) const {
+    const float stored = nearest_(value);
+    if (!keeps_sides_ || static_cast<double>(stored) == value) return stored;
+    if (of_magnitude_) return std::copysign(on_side(std::abs(stored), std::abs(value)), stored);
+    return on_side(stored, value);
+  }
+
+ private:
+  static float nearest_float(double value) { return static_cast<float>(value); }
+  static float next_float(float value) { return std::nextafter(value, std::numeric_limits<float>::infinity()); }
+  [[nodiscard]] float up(float value) const { return next_(value); }
+  [[nodiscard]] float down(float value) const { return -next_(-value); }
+
+  [[nodiscard]] float on_side(float stored, double value) const {
+    const double number = stored, nearest_integer = (number + 0x1.8p52) - 0x1.8p52;
+    if (std::abs(number - nearest_integer) == 0.5 && (number > value || number < 0.0)) {
+      stored = number > value ? down(stored) : up(stored);
+    }
+    if (value >= threshold_) {
+      while (static_cast<double>(stored) < high_) stored = up(stored);
+    } else {
+      while (static_cast<double>(stored) >= low_) stored = down(stored);
+    }
+    return stored;
+  }
+
+  bool keeps_sides_;
+  bool of_magnitude_;
+  double threshold_, low_, high_;
+  float (*nearest_)(double);
+  float (*next_)(float);
+};
+
+[[nodiscard]] inline std::vector<float> narrowed(const Narrowing& narrowing, std::span<const double> numbers) {
+  std::vector<float> stored(numbers.size());
+  constexpr std::size_t kGrain = std::size_t{1} << 14;
+  parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) stored[n] = narrowing(numbers[n]);
+  });
+  return stored;
+}
+
+}  // namespace raycone

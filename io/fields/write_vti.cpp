@@ -1,0 +1,175 @@
+// VTI, VTK's XML files of regular grids, as ParaView reads them: a text head that says where each array begins, then
+// the arrays in binary ("appended raw"), each behind its size in bytes.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/fields/format_writers.h"
+#include "io/fields/narrowing.h"
+#include "io/files/file_error.h"
+#include "io/files/seekable_output.h"
+
+namespace raycone {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
+
+using ArraySize = std::uint64_t;  // what stands before each array
+
+// Elements per conversion: small enough to stay in the cache.
+constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+std::string text_of(double number) {
+  std::array<char, 32> characters;
+  char* const end = std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr;
+  return {characters.data(), end};
+}
+
+std::string text_of(const Vec3& v) { return text_of(v.x) + ' ' + text_of(v.y) + ' ' + text_of(v.z); }
+
+// Of indices, which are points of VTK's grid.
+std::string extent_of(const Lattice& lattice) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)];
+    text += (axis > 0 ? " " : "") + std::to_string(first) + ' ' + std::to_string(lattice.index_max(axis));
+  }
+  return text;
+}
+
+struct ElementType {
+  const char* name;
+  std::size_t size;
+};
+
+ElementType element_type(FieldKind kind, bool double_precision) {
+  switch (kind) {
+    case FieldKind::kFlag:
+      return {"UInt8", 1};
+    case FieldKind::kCount:
+      return {"Int64", 8};
+    case FieldKind::kBound:
+      return {"Float64", 8};
+    case FieldKind::kReal:
+    case FieldKind::kDensity:
+    case FieldKind::kDistance:
+      break;
+  }
+  return double_precision ? ElementType{"Float64", 8} : ElementType{"Float32", 4};
+}
+
+void check_indices(const Lattice& lattice, const std::string& name) {
+  using Index = std::numeric_limits<std::int32_t>;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)], last = lattice.index_max(axis);
+    if (first >= Index::min() && last <= Index::max()) continue;
+    throw OutputError(name + ": lattice indices " + std::to_string(first) + " to " + std::to_string(last) +
+                      " do not fit in the 32 bits of VTK");
+  }
+}
+
+class VtiWriter final : public LatticeWriter {
+ public:
+  VtiWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description) : output_(output) {
+    check_indices(lattice, output.name());
+    const auto samples = static_cast<std::uint64_t>(whole(lattice).size());
+    std::string declarations;
+    std::uint64_t offset = 0;  // behind the head
+    for (const FieldDescription& field : description.fields) {
+      const ElementType type = element_type(field.kind, description.double_precision);
+      declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name +
+                      "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+      arrays_.push_back({type.size, offset, samples * type.size, Narrowing(field)});
+      offset += sizeof(ArraySize) + arrays_.back().bytes;
+    }
+    const std::string extent = extent_of(lattice);
+    const std::string head =
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "  <ImageData WholeExtent=\"" +
+        extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.spacing) +
+        "\">\n    <Piece Extent=\"" + extent + "\">\n      <PointData Scalars=\"" + description.fields.front().name +
+        "\">\n" + declarations +
+        "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
+    output_.write_at(0, head.data(), head.size());
+    for (Array& array : arrays_) {
+      array.next += head.size();
+      append(array, &array.bytes, sizeof array.bytes);
+    }
+    end_ = head.size() + offset;
+  }
+
+  int slab_axis() const override { return 2; }
+  std::int64_t slab_alignment() const override { return 1; }
+
+  void write(const LatticeBlock&, std::span<const FieldValues> fields) override {
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      std::visit([&](const auto& numbers) { append_numbers(arrays_[f], numbers); }, fields[f]);
+    }
+  }
+
+  void finish(const FieldTotals&) override {
+    constexpr std::string_view kTail = "\n  </AppendedData>\n</VTKFile>\n";
+    output_.write_at(end_, kTail.data(), kTail.size());
+    output_.commit();
+  }
+
+ private:
+  struct Array {
+    std::size_t element_size;
+    std::uint64_t next;  // where in the file its next bytes go
+    ArraySize bytes;
+    Narrowing narrowing;
+  };
+
+  void append(Array& array, const void* data, std::size_t size) {
+    output_.write_at(array.next, data, size);
+    array.next += size;
+  }
+
+  void append_numbers(Array& array, std::span<const std::int64_t> numbers) {
+    append(array, numbers.data(), numbers.size_bytes());
+  }
+  void append_numbers(Array& array, std::span<const std::uint8_t> numbers) {
+    append(array, numbers.data(), numbers.size_bytes());
+  }
+  void append_numbers(Array& array, std::span<const double> numbers) {
+    if (array.element_size == sizeof(double)) return append_as<double>(array, numbers);
+    append_as<float>(array, numbers);
+  }
+
+  // -0 as 0.
+  template <typename Element>
+  void append_as(Array& array, std::span<const double> numbers) {
+    std::vector<Element> elements;
+    for (std::size_t begin = 0; begin < numbers.size(); begin += kPiece) {
+      elements.clear();
+      for (const double number : numbers.subspan(begin, std::min(kPiece, numbers.size() - begin))) {
+        const bool is_float = std::is_same_v<Element, float>;
+        elements.push_back((is_float ? static_cast<Element>(array.narrowing(number)) : static_cast<Element>(number)) +
+                           Element{0});
+      }
+      append(array, elements.data(), elements.size() * sizeof(Element));
+    }
+  }
+
+  SeekableOutput output_;
+  std::vector<Array> arrays_;  // of each field
+  std::uint64_t end_ = 0;      // of the last array
+};
+
+}  // namespace
+
+std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                       const OutputDescription& description) {
+  return std::make_unique<VtiWriter>(output, lattice, description);
+}
+
+}  // namespace raycone

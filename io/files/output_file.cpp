@@ -1,0 +1,227 @@
+// Atomic output: everything goes to a temporary file in the target's directory, which rename(2) puts in its place.
+#include "io/files/output_file.h"
+
+#include <fcntl.h>  // fallocate
+#include <stdio.h>  // renameat2
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "io/files/file_buffer.h"
+#include "io/files/file_error.h"
+#include "io/files/file_identity.h"
+#include "io/files/temporary_file.h"
+
+namespace raycone {
+namespace {
+
+// --- Calls that differ from their POSIX namesakes
+
+bool write_to_disk(int descriptor) {
+  int result = -1;
+  do {
+    result = fsync(descriptor);
+  } while (result != 0 && errno == EINTR);
+  // Some network and user-space file systems cannot sync, and say so in these two ways.
+  return result == 0 || errno == EINVAL || errno == ENOSYS;
+}
+
+int open_directory(const std::string& path) {
+  int descriptor = -1;
+  do {
+    descriptor = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  } while (descriptor < 0 && errno == EINTR);
+  return descriptor;
+}
+
+// Gives the open file the permissions of the file that it will replace, if there is one.
+bool take_over_mode(int descriptor, const std::string& target) {
+  struct stat ours {};
+  struct stat theirs {};
+  if (stat(target.c_str(), &theirs) != 0) return true;
+  if (fstat(descriptor, &ours) != 0) return false;
+  constexpr mode_t kPermissions = 0777;
+  if (((ours.st_mode ^ theirs.st_mode) & kPermissions) == 0) return true;
+  return fchmod(descriptor, theirs.st_mode & kPermissions) == 0;
+}
+
+// Renames without replacing anything: fails with EEXIST where `to` exists.
+bool rename_to_new(const std::string& from, const std::string& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  // The file system (NFS) or kernel does not know how; a hard link does not replace either.
+  return link(from.c_str(), to.c_str()) == 0 && unlink(from.c_str()) == 0;
+}
+
+}  // namespace
+
+struct OutputFile::State {
+  State(const std::string& path, bool keep_existing) : name(path), no_clobber(keep_existing) {}
+  ~State();
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw OutputError((name == "-" ? "standard output" : name) + ": " + what);
+  }
+  [[noreturn]] void fail_writing(int error) const { fail("cannot write: " + std::generic_category().message(error)); }
+  [[noreturn]] void fail_reserving(std::uint64_t bytes, double room) const {
+    char text[128];
+    std::snprintf(text, sizeof text, "cannot write: No space left on device: needs %.1f MB or more, %.1f MB are free",
+                  static_cast<double>(bytes) * 1e-6, room * 1e-6);
+    fail(text);
+  }
+
+  void open();
+  void open_descriptor(int number);
+  void open_special();
+  void open_temporary();
+  void put_in_place();
+
+  std::string name;
+  bool no_clobber;
+  std::string target;                      // `name` with links followed
+  std::optional<TemporaryFile> temporary;  // absent where written to directly
+  int descriptor = -1;
+  int directory = -1;  // of `target`, to be synced; -1 where it may be written to, but not opened
+  std::optional<FileBuffer> buffer;
+  std::ostream stream{nullptr};
+};
+
+OutputFile::State::~State() {
+  if (descriptor >= 0) close(descriptor);
+  if (directory >= 0) close(directory);
+}
+
+void OutputFile::State::open() {
+  target = follow_links(name);
+  struct stat status {};
+  const bool exists = stat(target.c_str(), &status) == 0;
+  if (name == "-") {
+    open_descriptor(STDOUT_FILENO);
+  } else if (const std::optional<int> number = descriptor_number(target)) {
+    open_descriptor(*number);
+  } else if (!exists && errno != ENOENT) {
+    fail_writing(errno);
+  } else if (exists && S_ISDIR(status.st_mode)) {
+    fail("is a directory");
+  } else if (exists && !S_ISREG(status.st_mode)) {
+    open_special();
+  } else if (exists && no_clobber) {
+    fail("already exists (--no-clobber)");
+  } else {
+    open_temporary();
+  }
+  buffer.emplace(descriptor);
+  stream.rdbuf(&*buffer);
+}
+
+// A duplicate, so that its last error is told by close() as well, and the original stays open for others.
+void OutputFile::State::open_descriptor(int number) {
+  constexpr int kLowest = 3;
+  descriptor = fcntl(number, F_DUPFD_CLOEXEC, kLowest);
+  if (descriptor < 0) fail_writing(errno);
+  if ((fcntl(descriptor, F_GETFL) & O_ACCMODE) == O_RDONLY) fail_writing(EBADF);
+}
+
+void OutputFile::State::open_special() {
+  do {
+    descriptor = ::open(target.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+  } while (descriptor < 0 && errno == EINTR);
+  if (descriptor < 0) fail_writing(errno);
+}
+
+void OutputFile::State::open_temporary() {
+  const std::string path = directory_of(target);
+  const auto fail_here = [&](int error) {
+    fail("cannot create a file in " + path + ": " + std::generic_category().message(error));
+  };
+  directory = open_directory(path);
+  if (directory < 0 && errno != EACCES) fail_here(errno);
+  try {
+    descriptor = temporary.emplace(path).take_descriptor();
+  } catch (const std::system_error& error) {
+    fail_here(error.code().value());
+  }
+}
+
+void OutputFile::State::put_in_place() {
+  const std::string& path = temporary->path();
+  const bool renamed = no_clobber ? rename_to_new(path, target) : rename(path.c_str(), target.c_str()) == 0;
+  if (!renamed && errno == EEXIST) fail("already exists (--no-clobber)");
+  if (!renamed) fail_writing(errno);
+  temporary->renamed();
+  if (directory >= 0 && !write_to_disk(directory)) fail_writing(errno);
+}
+
+OutputFile::OutputFile(const std::string& path, bool no_clobber) : state_(std::make_unique<State>(path, no_clobber)) {
+  state_->open();
+}
+
+OutputFile::~OutputFile() = default;
+
+// Reserved where the file system can do that, which tells of quotas, too, and keeps what others write meanwhile from
+// taking the room; else its word for the free space must do. The file that will be replaced gives no room: it stays
+// until the new one is complete.
+void OutputFile::reserve(std::uint64_t bytes) {
+  struct stat status {};
+  struct statvfs disk {};
+  const int descriptor = state_->descriptor;
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return;
+  const bool told = fstatvfs(descriptor, &disk) == 0 && disk.f_blocks > 0;
+  const double room = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  if (told && room < static_cast<double>(bytes)) state_->fail_reserving(bytes, room);
+  if (!state_->temporary || bytes > static_cast<std::uint64_t>(std::numeric_limits<off_t>::max())) return;
+  if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) return;
+  if (errno == ENOSPC) state_->fail_reserving(bytes, room);
+  if (errno == EDQUOT || errno == EFBIG) state_->fail_writing(errno);
+}
+
+void OutputFile::write(const void* data, std::size_t size) {
+  const auto length = static_cast<std::streamsize>(size);
+  if (state_->buffer->sputn(static_cast<const char*>(data), length) != length) {
+    state_->fail_writing(state_->buffer->error());
+  }
+}
+
+void OutputFile::seek(std::uint64_t offset) {
+  const std::streampos there = static_cast<std::streamoff>(offset);
+  if (state_->buffer->pubseekpos(there, std::ios_base::out) != there) state_->fail_writing(state_->buffer->error());
+}
+
+void OutputFile::overwrite(std::uint64_t offset, const void* data, std::size_t size) {
+  FileBuffer& buffer = *state_->buffer;
+  const std::streampos end = buffer.pubseekoff(0, std::ios_base::cur, std::ios_base::out);
+  buffer.pubseekpos(static_cast<std::streamoff>(offset), std::ios_base::out);
+  write(data, size);
+  buffer.pubseekpos(end, std::ios_base::out);
+}
+
+bool OutputFile::seekable() const { return state_->temporary.has_value(); }
+
+void OutputFile::flush() {
+  if (state_->buffer->pubsync() != 0) state_->fail_writing(state_->buffer->error());
+}
+
+std::ostream& OutputFile::stream() { return state_->stream; }
+
+void OutputFile::commit() {
+  flush();
+  State& state = *state_;
+  if (state.temporary) {
+    if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
+    if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
+  }
+  const int descriptor = std::exchange(state.descriptor, -1);
+  if (close(descriptor) != 0 && errno != EINTR) state.fail_writing(errno);
+  if (state.temporary) state.put_in_place();
+}
+
+const std::string& OutputFile::name() const { return state_->name; }
+
+}  // namespace raycone

@@ -1,0 +1,48 @@
+// Output that appears under its name only when complete.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <ostream>
+#include <string>
+
+namespace raycone {
+
+// Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
+// output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
+// removes an uncommitted temporary file; so does remove_temporary_files() (io/files/temporary_file.h).
+class OutputFile {
+ public:
+  // Opens at once, so that what cannot be written fails before the work. With no_clobber an existing file is an error.
+  // Throws OutputError.
+  explicit OutputFile(const std::string& path, bool no_clobber = false);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  // Makes sure of room for `bytes` in all, before the first is written: throws OutputError where the file system tells
+  // that there is none, or that a quota or limit forbids it. Nothing for pipes and devices.
+  void reserve(std::uint64_t bytes);
+  // Appends, or goes on where seek() went; throws OutputError (a closed pipe raises SIGPIPE).
+  void write(const void* data, std::size_t size);
+  // Goes on at `offset`, which may lie behind all that has been written; only where seekable().
+  void seek(std::uint64_t offset);
+  // Replaces bytes already written; only where seekable().
+  void overwrite(std::uint64_t offset, const void* data, std::size_t size);
+  [[nodiscard]] bool seekable() const;
+  // Hands buffered bytes to the system.
+  void flush();
+  // A stream of the same bytes for libraries that want one; valid while this object lives. Errors surface in commit().
+  std::ostream& stream();
+  // Flushes, syncs, renames and syncs the directory. Throws OutputError: where that last step fails, the file is in its
+  // place already, but a loss of power may undo it. Nothing may follow.
+  void commit();
+  // As given on the command line.
+  [[nodiscard]] const std::string& name() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace raycone

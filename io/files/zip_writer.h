@@ -1,0 +1,56 @@
+// ZIP archives of members that are stored, not compressed, all of known size.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/files/seekable_output.h"
+
+namespace raycone {
+
+struct ZipMember {
+  std::string name;        // ASCII
+  std::uint64_t size = 0;  // bytes
+};
+
+// Members are written side by side, each from its beginning to its end. What is beyond 4 GiB takes the form of ZIP64.
+// Time stamps are those of 1980-01-01, so that equal members make equal archives.
+class ZipWriter {
+ public:
+  static constexpr std::uint64_t kLargest32 = 0xFFFFFFFF;
+
+  // `output` must outlive the writer. `zip64_from`: the least size or offset that takes the form of ZIP64, which a test
+  // may lower.
+  ZipWriter(OutputFile& output, const std::vector<ZipMember>& members, std::uint64_t zip64_from = kLargest32);
+
+  // Appends to a member, by its number. Throws OutputError.
+  void append(std::size_t member, const void* data, std::size_t size);
+  // Completes and commits the file; every member must have got all its bytes. Throws OutputError.
+  void finish();
+
+ private:
+  struct Entry {
+    std::string name;
+    std::uint64_t size = 0;
+    std::uint64_t header = 0;  // offset of its local header
+    std::uint64_t data = 0;    // offset of its bytes
+    std::uint64_t written = 0;
+    std::uint32_t checksum = 0;
+  };
+
+  [[nodiscard]] bool is_large(std::uint64_t number) const { return number >= zip64_from_; }
+  [[nodiscard]] std::uint64_t or_largest(std::uint64_t number) const { return is_large(number) ? kLargest32 : number; }
+  [[nodiscard]] std::string local_header(const Entry& entry) const;
+  [[nodiscard]] std::string directory_entry(const Entry& entry) const;
+  [[nodiscard]] std::string end_of_directory(std::uint64_t size) const;
+
+  SeekableOutput output_;
+  std::uint64_t zip64_from_;
+  std::vector<Entry> entries_;
+  std::uint64_t end_ = 0;  // of the last member
+};
+
+}  // namespace raycone

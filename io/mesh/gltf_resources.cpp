@@ -1,0 +1,196 @@
+// Bytes of a glTF asset. A URI is followed only into the asset's own directory: a mesh from a stranger must not make
+// the tool read (and a batch list in its reports) other files of the user.
+#include "io/mesh/gltf_resources.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "io/files/byte_order.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
+#include "io/mesh/mesh_error.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kGlbHeaderSize = 12;   // magic, version, length
+constexpr std::size_t kChunkHeaderSize = 8;  // length, type
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+constexpr std::size_t kMaxQuoted = 120;
+
+// One chunk of a GLB; `offset` moves behind it.
+struct Chunk {
+  std::uint32_t type = 0;
+  std::size_t data_offset = 0;
+  std::string_view data;
+};
+
+Chunk next_chunk(const MeshSource& source, std::string_view glb, std::size_t& offset) {
+  if (glb.size() - offset < kChunkHeaderSize) fail_at_byte(source, offset, "GLB ends within a chunk header");
+  const std::uint32_t length = load_little_endian<std::uint32_t>(glb.data() + offset);
+  const std::uint32_t type = load_little_endian<std::uint32_t>(glb.data() + offset + 4);
+  const std::size_t data = offset + kChunkHeaderSize;
+  if (length > glb.size() - data) {
+    fail_at_byte(
+        source, offset,
+        "chunk of " + std::to_string(length) + " bytes, but only " + std::to_string(glb.size() - data) + " remain");
+  }
+  offset = data + length;
+  return {type, data, glb.substr(data, length)};
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// A percent sign without two digits stands for itself: exporters often leave file names unencoded.
+std::string percent_decoded(std::string_view text) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool encoded =
+        text[i] == '%' && text.size() - i > 2 && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0;
+    if (!encoded) {
+      decoded += text[i];
+    } else {
+      decoded += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
+      i += 2;
+    }
+  }
+  return decoded;
+}
+
+constexpr std::array<signed char, 256> make_base64_values() {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<signed char, 256> values{};
+  values.fill(-1);
+  for (std::size_t i = 0; i < kDigits.size(); ++i) {
+    values[static_cast<unsigned char>(kDigits[i])] = static_cast<signed char>(i);
+  }
+  return values;
+}
+
+// RFC 4648, section 4, padding optional; nothing for text that is not base64.
+std::optional<std::string> base64_decoded(std::string_view text) {
+  static constexpr auto kValues = make_base64_values();
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  if (text.size() % 4 == 1) return std::nullopt;
+  std::string decoded;
+  decoded.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const signed char value = kValues[static_cast<unsigned char>(c)];
+    if (value < 0) return std::nullopt;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      decoded += static_cast<char>(bits >> count & 0xFF);
+    }
+  }
+  return decoded;
+}
+
+// Scheme names are ASCII and case-insensitive (RFC 3986, section 3.1).
+bool is_data_uri(std::string_view uri) {
+  constexpr std::string_view kData = "data:";
+  return uri.size() >= kData.size() && std::equal(kData.begin(), kData.end(), uri.begin(), [](char a, char b) {
+           return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
+         });
+}
+
+bool has_scheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  return colon != std::string_view::npos && colon > 0 && uri.find('/') > colon;
+}
+
+// Whether the path climbs out of the directory at which it starts.
+bool leaves_directory(const std::filesystem::path& path) {
+  int depth = 0;
+  for (const auto& part : path) {
+    if (part == "..") {
+      if (--depth < 0) return true;
+    } else if (part != "." && !part.empty()) {
+      ++depth;
+    }
+  }
+  return false;
+}
+
+[[noreturn]] void refuse(const MeshSource& source, std::size_t buffer, std::string_view uri, const std::string& why) {
+  std::string quoted(uri.substr(0, kMaxQuoted));
+  std::replace_if(
+      quoted.begin(), quoted.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, '?');
+  throw InputError(source.name + ": buffer " + std::to_string(buffer) + ": \"" + quoted + "\" " + why);
+}
+
+std::string decode_data_uri(const MeshSource& source, std::size_t buffer, std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos) refuse(source, buffer, uri, "has no comma, expected a data URI");
+  const std::string_view data = uri.substr(comma + 1);
+  if (!uri.substr(0, comma).ends_with(";base64")) return percent_decoded(data);
+  auto decoded =
+      data.find('%') == std::string_view::npos ? base64_decoded(data) : base64_decoded(percent_decoded(data));
+  if (!decoded) refuse(source, buffer, uri.substr(0, comma), "is not followed by valid base64");
+  return *std::move(decoded);
+}
+
+std::string read_beside(const MeshSource& source, std::size_t buffer, std::string_view uri,
+                        std::vector<FileRead>* companions) {
+  const std::filesystem::path relative = percent_decoded(uri);
+  if (relative.native().find('\0') != std::string::npos) refuse(source, buffer, uri, "is not a file name");
+  if (has_scheme(uri) || relative.is_absolute() || leaves_directory(relative)) {
+    refuse(source, buffer, uri, "is outside the file's directory, expected a relative path within it");
+  }
+  if (source.directory.empty()) refuse(source, buffer, uri, "is another file, which standard input cannot refer to");
+  const std::filesystem::path path = (std::filesystem::path(source.directory) / relative).lexically_normal();
+  // A device or FIFO of a hostile archive would never end.
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    refuse(source, buffer, uri, "is missing, expected a file beside this one");
+  }
+  std::string bytes = read_file(path.string());
+  if (companions) companions->push_back({path.string(), sha256(bytes)});
+  return bytes;
+}
+
+}  // namespace
+
+bool is_glb(std::string_view bytes) { return bytes.starts_with("glTF"); }
+
+GlbChunks split_glb(const MeshSource& source) {
+  const std::string_view bytes = source.bytes;
+  if (bytes.size() < kGlbHeaderSize) fail_at_byte(source, bytes.size(), "GLB ends within its header");
+  const std::uint32_t version = load_little_endian<std::uint32_t>(bytes.data() + 4);
+  if (version != 2) fail_at_byte(source, 4, "GLB version " + std::to_string(version) + ", expected 2");
+  const std::uint32_t length = load_little_endian<std::uint32_t>(bytes.data() + 8);
+  if (length > bytes.size() || length < kGlbHeaderSize) {
+    fail_at_byte(source, 8,
+                 "GLB announces " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
+  }
+  const std::string_view glb = bytes.substr(0, length);
+  std::size_t offset = kGlbHeaderSize;
+  const Chunk json = next_chunk(source, glb, offset);
+  if (json.type != kJsonChunk) fail_at_byte(source, kGlbHeaderSize + 4, "first chunk of the GLB is not JSON");
+  GlbChunks chunks{json.data, json.data_offset, std::nullopt};
+  // Chunks of unknown types are to be ignored.
+  while (offset < glb.size() && !chunks.binary) {
+    const Chunk chunk = next_chunk(source, glb, offset);
+    if (chunk.type == kBinaryChunk) chunks.binary = chunk.data;
+  }
+  return chunks;
+}
+
+std::string load_gltf_uri(const MeshSource& source, std::size_t buffer, std::string_view uri,
+                          std::vector<FileRead>* companions) {
+  if (is_data_uri(uri)) return decode_data_uri(source, buffer, uri);
+  return read_beside(source, buffer, uri, companions);
+}
+
+}  // namespace raycone

@@ -1,0 +1,26 @@
+// Wording of errors that the mesh readers share.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "io/files/file_error.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+
+inline constexpr const char* kNonFiniteCorner =
+    "a vertex that faces use has a coordinate that is not finite, expected finite numbers";
+
+// For formats that count vertices from 0.
+[[nodiscard]] inline std::string index_out_of_range(std::int64_t index, std::uint64_t vertices) {
+  return "face index " + std::to_string(index) + ", but there are only " + std::to_string(vertices) + " vertices";
+}
+
+// Throws InputError "FILE:byte N: what", bytes counted from 0.
+[[noreturn]] inline void fail_at_byte(const MeshSource& source, std::size_t offset, const std::string& what) {
+  throw InputError(source.name + ":byte " + std::to_string(offset) + ": " + what);
+}
+
+}  // namespace raycone

@@ -1,0 +1,113 @@
+#include "io/mesh/read_mesh.h"
+
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include "core/machine/threads.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
+#include "io/mesh/mesh_builder.h"
+#include "io/mesh/mesh_signature.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 6> kFormatNames = {{{"obj", MeshFormat::kObj},
+                                                                                  {"ply", MeshFormat::kPly},
+                                                                                  {"stl", MeshFormat::kStl},
+                                                                                  {"off", MeshFormat::kOff},
+                                                                                  {"gltf", MeshFormat::kGltf},
+                                                                                  {"glb", MeshFormat::kGlb}}};
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+std::optional<MeshFormat> format_from_extension(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension.empty() ? std::nullopt : mesh_format_from_name(std::string_view(extension).substr(1));
+}
+
+MeshFormat format_of(const MeshSource& source, const ReadMeshOptions& options) {
+  if (const auto format = recognise_mesh(source.bytes)) return *format;
+  if (options.format) return *options.format;
+  if (const auto format = format_from_extension(source.name)) return *format;
+  throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB" +
+                   (source.name == "-" ? " (--mesh-format names what has no signature)" : ""));
+}
+
+// Where relative references of the file at `path` start.
+std::string directory_of(const std::string& path) {
+  if (path == "-") return {};
+  const std::string directory = std::filesystem::path(path).parent_path().string();
+  return directory.empty() ? "." : directory;
+}
+
+ParsedMesh parse(const MeshSource& source, MeshFormat format, std::vector<FileRead>* companions) {
+  switch (format) {
+    case MeshFormat::kObj:
+      return read_obj(source);
+    case MeshFormat::kPly:
+      return read_ply(source);
+    case MeshFormat::kStl:
+      return read_stl(source);
+    case MeshFormat::kOff:
+      return read_off(source);
+    case MeshFormat::kGltf:
+    case MeshFormat::kGlb:
+      break;
+  }
+  return read_gltf(source, companions);
+}
+
+void transform(std::vector<Vec3>& vertices, const ReadMeshOptions& options) {
+  if (options.scale != 1.0)
+    for (Vec3& vertex : vertices) vertex = options.scale * vertex;
+  if (options.y_up_to_z_up)
+    for (Vec3& vertex : vertices) vertex = {vertex.x, -vertex.z, vertex.y};
+}
+
+// The readers checked what the file says; scaling may overflow.
+void check_finite(const TriangleMesh& mesh, const std::string& name) {
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle)
+      if (!is_finite(mesh.vertices[corner]))
+        throw InputError(name + ": a coordinate is not finite after scaling, expected a smaller --scale");
+}
+
+}  // namespace
+
+std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
+  const std::string lower = lower_case(name);
+  for (const auto& [known, format] : kFormatNames)
+    if (lower == known) return format;
+  return std::nullopt;
+}
+
+MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
+  const std::string bytes = read_file(path);
+  if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
+  const MeshSource source{path, directory_of(path), bytes};
+  MeshFile file;
+  const MeshFormat format = format_of(source, options);
+  // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.
+  constexpr std::size_t kLarge = std::size_t{1} << 20;
+  parallel_for(2, bytes.size() < kLarge ? 2 : 1, [&](std::size_t begin, std::size_t end) {
+    if (begin == 0) file.parsed = parse(source, format, &file.companions);
+    if (end == 2) file.sha256 = sha256(bytes);
+  });
+  if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");
+  if (file.parsed.mesh.triangles.size() > kMaxTriangles) {
+    throw LimitError(path + ": " + std::to_string(file.parsed.mesh.triangles.size()) + " triangles, expected at most " +
+                     std::to_string(kMaxTriangles));
+  }
+  transform(file.parsed.mesh.vertices, options);
+  if (options.scale != 1.0) check_finite(file.parsed.mesh, path);
+  return file;
+}
+
+}  // namespace raycone

@@ -1,0 +1,58 @@
+// Reading of triangle meshes: OBJ, PLY, STL, OFF, glTF and GLB. What each reader accepts: docs/formats.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/data/polygon_fan.h"
+#include "core/data/triangle_mesh.h"
+#include "io/files/mesh_source.h"
+
+namespace raycone {
+
+enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb };
+
+// "obj", "ply", "stl", "off", "gltf" or "glb", in any case; nothing else.
+[[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
+
+struct ReadMeshOptions {
+  std::optional<MeshFormat> format;  // for standard input; else recognised by content, then by extension
+  double scale = 1.0;                // multiplies every coordinate
+  bool y_up_to_z_up = false;         // (x, y, z) becomes (x, -z, y), after scaling
+};
+
+// What a format's reader returns.
+struct ParsedMesh {
+  TriangleMesh mesh;                  // polygons as fans around their first corners
+  std::vector<PolygonFan> polygons;   // those of more than three corners, which may leave the polygon if it is concave
+  std::uint64_t skipped_faces = 0;    // faces of one or two corners
+  std::vector<std::string> warnings;  // one per kind, with its count: "3 faces with fewer than three corners skipped"
+};
+
+struct FileRead {
+  std::string path;
+  std::string sha256;  // of the bytes that were read, 64 hexadecimal digits
+};
+
+struct MeshFile {
+  ParsedMesh parsed;
+  std::string sha256;                // of the file's bytes, 64 hexadecimal digits
+  std::vector<FileRead> companions;  // further files, which the mesh refers to
+};
+
+// Reads `path`, or standard input for "-". At least one triangle, all indices in range, all vertices of triangles
+// finite; else, or where the file cannot be read, throws InputError.
+[[nodiscard]] MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options = {});
+
+// The readers behind it, one per format: same guarantees but for "at least one triangle" and sha256.
+[[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
+[[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
+[[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
+[[nodiscard]] ParsedMesh read_off(const MeshSource& source);
+// glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
+[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions);
+
+}  // namespace raycone

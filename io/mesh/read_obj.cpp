@@ -1,0 +1,123 @@
+// Wavefront OBJ: the polygons of a file; what concerns their looks, and curves, lines and points, is passed over.
+// Format: Wavefront "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
+#include <vector>
+
+#include "io/files/text_scanner.h"
+#include "io/mesh/mesh_builder.h"
+#include "io/mesh/mesh_error.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+namespace {
+
+class ObjReader {
+ public:
+  explicit ObjReader(const MeshSource& source) : text_(source), builder_(source) {}
+
+  ParsedMesh read() {
+    while (!text_.at_end()) {
+      text_.skip_blanks();
+      read_statement();
+    }
+    check_forward_references();
+    if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
+    return builder_.finish();
+  }
+
+ private:
+  // A positive index that was beyond the vertices read so far.
+  struct ForwardReference {
+    std::int64_t index;
+    std::size_t offset;
+  };
+
+  void read_statement() {
+    const std::string_view keyword = text_.peek_word();
+    if (keyword == "v") {
+      read_vertex();
+    } else if (keyword == "f") {
+      read_face();
+    }
+    // A comment does not continue: its last backslash may end the name of a directory.
+    if (text_.peek() == '#')
+      text_.skip_line();
+    else
+      text_.skip_continued_line();
+  }
+
+  // Weights and colours may follow.
+  void read_vertex() {
+    const std::size_t offset = text_.offset();
+    text_.advance(1);
+    Vec3 vertex;
+    for (int axis = 0; axis < 3; ++axis) {
+      text_.skip_blanks();
+      const std::optional<double> coordinate = text_.number();
+      if (!coordinate) text_.fail("expected a coordinate, found " + text_.found());
+      vertex[axis] = *coordinate;
+    }
+    builder_.add_vertex(vertex, offset);
+  }
+
+  void read_face() {
+    text_.advance(1);
+    builder_.begin_polygon();
+    for (text_.skip_blanks(); !text_.at_line_end(); text_.skip_blanks()) builder_.add_corner(read_corner());
+    builder_.end_polygon();
+  }
+
+  // "v", "v/vt", "v//vn" or "v/vt/vn": the index of the vertex, from 0.
+  std::uint32_t read_corner() {
+    const std::size_t offset = text_.offset();
+    const std::optional<std::int64_t> index = text_.integer_prefix();
+    skip_attributes();
+    if (!index || !text_.at_token_end()) {
+      text_.seek(offset);
+      text_.fail("expected a vertex index, found " + text_.found());
+    }
+    return resolve(*index, offset);
+  }
+
+  // Moves past "/vt/vn".
+  void skip_attributes() {
+    if (text_.peek() != '/') return;
+    while (text_.peek() == '/' || text_.peek() == '-' || is_digit(text_.peek())) text_.advance(1);
+  }
+
+  std::uint32_t resolve(std::int64_t index, std::size_t offset) {
+    const auto count = static_cast<std::int64_t>(builder_.vertex_count());
+    if (index == 0) text_.fail_at(offset, "face index 0, but OBJ counts vertices from 1");
+    if (index < -count) {
+      text_.fail_at(offset, "face index " + std::to_string(index) + ", but only " + std::to_string(count) +
+                                " vertices precede it");
+    }
+    if (index < 0) return static_cast<std::uint32_t>(count + index);
+    if (index > count) add_forward_reference(index, offset);
+    return static_cast<std::uint32_t>(index - 1);
+  }
+
+  // Of forward references only those larger than all before matter: the first one out of range is among them.
+  void add_forward_reference(std::int64_t index, std::size_t offset) {
+    if (forward_references_.empty() || index > forward_references_.back().index)
+      forward_references_.push_back({index, offset});
+  }
+
+  void check_forward_references() const {
+    const auto count = static_cast<std::int64_t>(builder_.vertex_count());
+    for (const ForwardReference& reference : forward_references_) {
+      if (reference.index <= count) continue;
+      text_.fail_at(reference.offset, "face index " + std::to_string(reference.index) + ", but the file has only " +
+                                          std::to_string(count) + " vertices");
+    }
+  }
+
+  TextScanner text_;
+  MeshBuilder builder_;
+  std::vector<ForwardReference> forward_references_;
+};
+
+}  // namespace
+
+ParsedMesh read_obj(const MeshSource& source) { return ObjReader(source).read(); }
+
+}  // namespace raycone

@@ -1,0 +1,169 @@
+// STL, ASCII and binary: triangles as three positions each. Normals and attributes are passed over: the order of the
+// corners is what orients a triangle. Format: 3D Systems, "StereoLithography Interface Specification", 1988.
+#include <limits>
+
+#include "io/files/byte_order.h"
+#include "io/files/text_scanner.h"
+#include "io/mesh/mesh_builder.h"
+#include "io/mesh/mesh_error.h"
+#include "io/mesh/mesh_signature.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+namespace {
+
+class AsciiStlReader {
+ public:
+  explicit AsciiStlReader(const MeshSource& source) : text_(source), builder_(source) {}
+
+  // Solids follow each other; a missing last "endsolid" does no harm.
+  ParsedMesh read() {
+    for (text_.skip_whitespace(); !text_.at_end(); text_.skip_whitespace()) {
+      if (text_.skip_word("facet")) {
+        read_facet();
+      } else if (text_.skip_word("solid") || text_.skip_word("endsolid")) {
+        skip_name();
+      } else {
+        text_.fail("expected 'facet' or 'endsolid', found " + text_.found());
+      }
+    }
+    if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
+    return builder_.finish();
+  }
+
+ private:
+  // Moves behind a name of any bytes: to the end of the line, or to a facet that begins in it.
+  void skip_name() {
+    const std::size_t start = text_.offset();
+    text_.skip_line();
+    const std::size_t next_line = text_.offset();
+    text_.seek(start);
+    for (text_.skip_whitespace(); text_.offset() < next_line; text_.skip_whitespace()) {
+      if (begins_facet()) return;
+      text_.skip_token();
+    }
+    text_.seek(next_line);
+  }
+
+  // Names may hold the word "facet", so it takes more than that.
+  bool begins_facet() {
+    const std::size_t start = text_.offset();
+    bool found = next_is("facet") && next_is("normal");
+    for (int axis = 0; found && axis < 3; ++axis) {
+      text_.skip_whitespace();
+      text_.skip_token();
+    }
+    found = found && next_is("outer") && next_is("loop");
+    text_.seek(start);
+    return found;
+  }
+
+  bool next_is(std::string_view word) {
+    text_.skip_whitespace();
+    return text_.skip_word(word);
+  }
+
+  void read_facet() {
+    expect("normal");
+    for (int axis = 0; axis < 3; ++axis) skip_normal_component();
+    expect("outer");
+    expect("loop");
+    builder_.begin_polygon();
+    text_.skip_whitespace();
+    while (text_.skip_word("vertex")) {
+      read_vertex();
+      text_.skip_whitespace();
+    }
+    builder_.end_polygon();
+    expect("endloop", "'vertex' or 'endloop'");
+    expect("endfacet");
+  }
+
+  // Whatever stands there: normals of degenerate triangles are often not numbers.
+  void skip_normal_component() {
+    text_.skip_whitespace();
+    if (text_.at_end()) text_.fail("expected a normal, found the end of the file");
+    text_.skip_token();
+  }
+
+  void read_vertex() {
+    const std::size_t offset = text_.offset();
+    Vec3 vertex;
+    for (int axis = 0; axis < 3; ++axis) {
+      text_.skip_whitespace();
+      const std::optional<double> coordinate = text_.number();
+      if (!coordinate) text_.fail("expected a coordinate, found " + text_.found());
+      vertex[axis] = *coordinate;
+    }
+    builder_.add_vertex(vertex, offset);
+    builder_.add_corner(static_cast<std::uint32_t>(builder_.vertex_count() - 1));
+  }
+
+  void expect(std::string_view word) { expect(word, "'" + std::string(word) + "'"); }
+
+  void expect(std::string_view word, const std::string& expected) {
+    if (!next_is(word)) text_.fail("expected " + expected + ", found " + text_.found());
+  }
+
+  TextScanner text_;
+  MeshBuilder builder_;
+};
+
+Vec3 load_vertex(const char* bytes) {
+  return {load_little_endian<float>(bytes), load_little_endian<float>(bytes + 4), load_little_endian<float>(bytes + 8)};
+}
+
+// The number of triangles, which the bytes are enough for.
+std::uint32_t checked_triangle_count(const MeshSource& source) {
+  const std::optional<std::uint32_t> count = announced_stl_triangles(source.bytes);
+  if (!count) {
+    throw InputError(source.name + ":1: expected 'solid' or the " + std::to_string(kStlHeaderSize) +
+                     " bytes that open a binary STL, the file has only " + std::to_string(source.bytes.size()));
+  }
+  const std::uint64_t room = (source.bytes.size() - kStlHeaderSize) / kStlTriangleSize;
+  if (*count > room) {
+    fail_at_byte(source, kStlHeaderSize - 4,
+                 std::to_string(*count) + " triangles announced, but only " + std::to_string(room) + " follow");
+  }
+  if (*count > std::numeric_limits<std::uint32_t>::max() / 3) {
+    throw LimitError(source.name + ": " + std::to_string(*count) +
+                     " triangles, whose vertices 32-bit indices cannot address");
+  }
+  return *count;
+}
+
+ParsedMesh read_binary_stl(const MeshSource& source) {
+  constexpr std::size_t kNormalSize = 12;
+  constexpr std::size_t kVertexSize = 12;
+  const std::uint32_t count = checked_triangle_count(source);
+  ParsedMesh parsed;
+  parsed.mesh.vertices.reserve(std::size_t{3} * count);
+  parsed.mesh.triangles.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t offset = kStlHeaderSize + kStlTriangleSize * i;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::size_t start = offset + kNormalSize + kVertexSize * corner;
+      const Vec3 vertex = load_vertex(source.bytes.data() + start);
+      if (!is_finite(vertex)) fail_at_byte(source, start, kNonFiniteCorner);
+      parsed.mesh.vertices.push_back(vertex);
+    }
+    parsed.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const std::uint64_t surplus = source.bytes.size() - kStlHeaderSize - kStlTriangleSize * count;
+  if (surplus > 0) {
+    parsed.warnings.push_back("bytes after the announced number of triangles (" + std::to_string(count) +
+                              ") ignored: " + std::to_string(surplus));
+  }
+  return parsed;
+}
+
+}  // namespace
+
+ParsedMesh read_stl(const MeshSource& source) {
+  // Text in UTF-16 is refused by the text scanner, more clearly than as a binary STL of a wrong size.
+  const bool is_text =
+      is_ascii_stl(source.bytes) || (is_utf16(source.bytes) && recognise_mesh(source.bytes) != MeshFormat::kStl);
+  return is_text ? AsciiStlReader(source).read() : read_binary_stl(source);
+}
+
+}  // namespace raycone

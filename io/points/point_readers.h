@@ -1,0 +1,21 @@
+// The readers behind open_points(), one per format.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "io/files/input_buffer.h"
+#include "io/points/read_points.h"
+
+namespace raycone {
+
+inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
+
+// Each takes over an input of which nothing has been consumed. Throw InputError.
+[[nodiscard]] std::unique_ptr<PointReader> read_text_points(std::unique_ptr<InputBuffer> input,
+                                                            const ReadPointsOptions& options);
+[[nodiscard]] std::unique_ptr<PointReader> read_raw_points(std::unique_ptr<InputBuffer> input, RawPrecision precision);
+[[nodiscard]] std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input);
+[[nodiscard]] std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input);
+
+}  // namespace raycone

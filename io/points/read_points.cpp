@@ -1,0 +1,59 @@
+// Query points: which format a file has, and the vertices of PLY files. Text and NPY have files of their own.
+#include "io/points/read_points.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/mesh/ply.h"
+#include "io/points/point_readers.h"
+
+namespace raycone {
+namespace {
+
+// Points that are in memory.
+class StoredPoints : public PointReader {
+ public:
+  explicit StoredPoints(std::vector<Vec3> points) : points_(std::move(points)) {}
+
+  bool next(std::vector<Vec3>& batch, std::size_t max) override {
+    const std::size_t count = std::min(max, points_.size() - next_);
+    const auto first = points_.begin() + static_cast<std::ptrdiff_t>(next_);
+    batch.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    next_ += count;
+    return count > 0;
+  }
+  [[nodiscard]] bool would_block() const override { return false; }
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return points_.size(); }
+
+ private:
+  std::vector<Vec3> points_;
+  std::size_t next_ = 0;
+};
+
+// Reads until the input is seen to begin with `signature` or not to.
+bool begins_with(InputBuffer& input, std::string_view signature) {
+  while (input.pending().size() < signature.size() && signature.starts_with(input.pending())) {
+    if (!input.fill()) return false;
+  }
+  return input.pending().starts_with(signature);
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input) {
+  while (input->fill()) continue;
+  return std::make_unique<StoredPoints>(read_ply_vertices({input->name(), {}, input->pending()}));
+}
+
+std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options) {
+  auto input = std::make_unique<InputBuffer>(path);
+  if (options.raw) return read_raw_points(std::move(input), *options.raw);
+  // Nothing may wait on standard input before the first point is asked for.
+  if (path != "-") {
+    if (begins_with(*input, kNpyMagic)) return read_npy_points(std::move(input));
+    if (begins_with(*input, "ply\n") || begins_with(*input, "ply\r")) return read_ply_points(std::move(input));
+  }
+  return read_text_points(std::move(input), options);
+}
+
+}  // namespace raycone

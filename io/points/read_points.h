@@ -1,0 +1,42 @@
+// Reading of query points: text (CSV, TSV, blanks), NPY, PLY vertices, raw coordinates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/data/vec3.h"
+#include "io/files/raw_precision.h"
+
+namespace raycone {
+
+struct ReadPointsOptions {
+  std::optional<std::array<int, 3>> columns;  // one-based columns of x, y, z in text
+  std::optional<RawPrecision> raw;            // no format: coordinates, one after the other
+};
+
+// A stream of points: memory does not grow with their number for text.
+class PointReader {
+ public:
+  virtual ~PointReader() = default;
+
+  // Replaces `batch` by the next points, at most `max`, and returns false at the end. Blocks only while it has none:
+  // on a pipe it returns what has arrived. Throws InputError naming the line (or byte) of anything that is not a finite
+  // point.
+  virtual bool next(std::vector<Vec3>& batch, std::size_t max) = 0;
+
+  // Whether a further next() would have to wait for input now: the moment to flush what has been answered.
+  [[nodiscard]] virtual bool would_block() const = 0;
+
+  // Number of points in total where the format announces it (NPY, PLY).
+  [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
+};
+
+// Opens `path`, or standard input (text) for "-". Throws InputError.
+[[nodiscard]] std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options = {});
+
+}  // namespace raycone

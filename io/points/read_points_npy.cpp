@@ -1,0 +1,322 @@
+// Points in NumPy's NPY format, versions 1 to 3 (NumPy documentation, "numpy.lib.format"): shape (n, 3 or more), any
+// real or integer type, byte order and memory order. Read in blocks; only Fortran order needs a file that can be
+// sought.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "io/files/byte_order.h"
+#include "io/files/file_error.h"
+#include "io/points/point_readers.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kMaxHeader = std::size_t{1} << 16;
+constexpr std::size_t kMaxRow = std::size_t{1} << 24;  // bytes
+constexpr std::size_t kBlockRows = std::size_t{1} << 14;
+
+// --- Header ---------------------------------------------------------------------------------------------------------
+
+struct NpyHeader {
+  char kind = 'f';            // 'f', 'i' or 'u'
+  std::size_t item_size = 0;  // bytes
+  std::endian order = std::endian::little;
+  bool fortran_order = false;
+  std::uint64_t rows = 0;
+  std::uint64_t columns = 0;
+  std::uint64_t data_offset = 0;
+};
+
+// What follows key `'name':` in the header, a Python dictionary; empty where it is missing.
+std::string_view value_of(std::string_view dictionary, std::string_view name) {
+  for (const char quote : {'\'', '"'}) {
+    const std::string key = quote + std::string(name) + quote;
+    std::size_t position = dictionary.find(key);
+    if (position == std::string_view::npos) continue;
+    position = dictionary.find_first_not_of(" \t", position + key.size());
+    if (position == std::string_view::npos || dictionary[position] != ':') continue;
+    position = dictionary.find_first_not_of(" \t", position + 1);
+    if (position != std::string_view::npos) return dictionary.substr(position);
+  }
+  return {};
+}
+
+class HeaderParser {
+ public:
+  HeaderParser(std::string_view dictionary, const std::string& file) : dictionary_(dictionary), file_(file) {}
+
+  [[nodiscard]] NpyHeader parse() const {
+    NpyHeader header;
+    parse_type(header);
+    header.fortran_order = parse_order();
+    parse_shape(header);
+    return header;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(file_ + ": NPY " + what); }
+
+ private:
+  void parse_type(NpyHeader& header) const {
+    const std::string_view value = value_of(dictionary_, "descr");
+    const std::size_t end = value.empty() ? std::string_view::npos : value.find(value.front(), 1);
+    if (end == std::string_view::npos || (value.front() != '\'' && value.front() != '"')) {
+      fail("file of structured values, expected numbers");
+    }
+    const std::string_view type = value.substr(1, end - 1);
+    static constexpr std::array<std::string_view, 11> kTypes{"f2", "f4", "f8", "i1", "i2", "i4",
+                                                             "i8", "u1", "u2", "u4", "u8"};
+    const bool known = type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
+                       std::find(kTypes.begin(), kTypes.end(), type.substr(1)) != kTypes.end();
+    if (!known) fail("file of type " + printable(type) + ", expected real or integer numbers of at most 64 bits");
+    header.kind = type[1];
+    header.item_size = static_cast<std::size_t>(type[2] - '0');
+    header.order = type[0] == '>' ? std::endian::big : type[0] == '<' ? std::endian::little : std::endian::native;
+  }
+
+  [[nodiscard]] bool parse_order() const {
+    const std::string_view value = value_of(dictionary_, "fortran_order");
+    if (value.starts_with("True")) return true;
+    if (!value.starts_with("False")) fail("header without fortran_order, expected True or False");
+    return false;
+  }
+
+  void parse_shape(NpyHeader& header) const {
+    const std::string_view value = value_of(dictionary_, "shape");
+    const std::size_t end = value.find(')');
+    if (!value.starts_with('(') || end == std::string_view::npos) fail("header without a shape, expected (n, 3)");
+    const std::string_view shape = value.substr(0, end + 1);
+    std::vector<std::uint64_t> sizes;
+    for (const char* c = shape.data() + 1; *c != ')';) {
+      std::uint64_t size = 0;
+      const auto [after, error] = std::from_chars(c, shape.data() + shape.size(), size);
+      if (error != std::errc()) fail("shape " + printable(shape) + ", expected (n, 3)");
+      sizes.push_back(size);
+      // Python 2 wrote 10L; separators are a comma and blanks.
+      for (c = after; *c == 'L' || *c == ',' || *c == ' ';) ++c;
+    }
+    if (sizes.size() != 2 || sizes[1] < 3) fail("shape " + printable(shape) + ", expected (n, 3 or more)");
+    header.rows = sizes[0];
+    header.columns = sizes[1];
+  }
+
+  static std::string printable(std::string_view text) {
+    constexpr std::size_t kMaxQuoted = 40;
+    std::string copy(text.substr(0, kMaxQuoted));
+    std::replace_if(
+        copy.begin(), copy.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return copy;
+  }
+
+  std::string_view dictionary_;
+  const std::string& file_;
+};
+
+// Waits until `count` bytes are pending.
+void require(InputBuffer& input, std::size_t count, const char* what) {
+  while (input.pending().size() < count) {
+    if (!input.fill()) {
+      throw InputError(input.name() + ":byte " + std::to_string(input.offset() + input.pending().size()) +
+                       ": the file ends within " + what);
+    }
+  }
+}
+
+NpyHeader read_header(InputBuffer& input) {
+  constexpr std::size_t kPrefix = 12;  // magic, version, length of the header in 2 or 4 bytes; it is never shorter
+  require(input, kPrefix, "the NPY header");
+  const int version = static_cast<unsigned char>(input.pending()[6]);
+  if (version < 1 || version > 3) {
+    throw InputError(input.name() + ": NPY version " + std::to_string(version) + ", expected 1 to 3");
+  }
+  const char* length = input.pending().data() + 8;
+  const std::size_t start = version == 1 ? 10 : 12;
+  const std::size_t size =
+      version == 1 ? load_little_endian<std::uint16_t>(length) : load_little_endian<std::uint32_t>(length);
+  if (size > kMaxHeader) {
+    throw InputError(input.name() + ": NPY header of " + std::to_string(size) + " bytes, expected at most " +
+                     std::to_string(kMaxHeader));
+  }
+  require(input, start + size, "the NPY header");
+  NpyHeader header = HeaderParser(input.pending().substr(start, size), input.name()).parse();
+  header.data_offset = start + size;
+  input.consume(start + size);
+  return header;
+}
+
+// Compares what the header announces with what the file has, before anything is allocated for it.
+void check_size(const NpyHeader& header, const InputBuffer& input) {
+  const std::uint64_t row = header.columns > kMaxRow ? kMaxRow + 1 : header.columns * header.item_size;
+  if (row > kMaxRow) {
+    throw InputError(input.name() + ": NPY rows of " + std::to_string(header.columns) + " columns, expected (n, 3)");
+  }
+  const auto file_size = input.file_size();
+  if (!file_size) return;
+  const std::uint64_t available = *file_size - std::min(*file_size, header.data_offset);
+  if (header.rows > available / row) {
+    throw InputError(input.name() + ": NPY data of " + std::to_string(available) + " bytes, expected " +
+                     std::to_string(header.rows) + " rows of " + std::to_string(row));
+  }
+}
+
+// --- Values ---------------------------------------------------------------------------------------------------------
+
+// IEEE 754 binary16: exact in double.
+double half_to_double(std::uint16_t bits) {
+  constexpr int kExponentBias = 15;
+  constexpr int kMantissaBits = 10;
+  const int exponent = bits >> kMantissaBits & 0x1F;
+  const int mantissa = bits & 0x3FF;
+  double magnitude = 0.0;
+  if (exponent == 0x1F) {
+    magnitude = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+  } else if (exponent == 0) {
+    magnitude = std::ldexp(mantissa, 1 - kExponentBias - kMantissaBits);
+  } else {
+    magnitude = std::ldexp(mantissa + (1 << kMantissaBits), exponent - kExponentBias - kMantissaBits);
+  }
+  return bits & 0x8000 ? -magnitude : magnitude;
+}
+
+template <class Number>
+double load_number(const char* bytes, std::endian order) {
+  return static_cast<double>(load<Number>(bytes, order));
+}
+
+double load_half(const char* bytes, std::endian order) { return half_to_double(load<std::uint16_t>(bytes, order)); }
+
+// Conversion of one stored number, chosen once per file.
+using Loader = double (*)(const char*, std::endian);
+
+Loader loader_of(const NpyHeader& header) {
+  const bool is_signed = header.kind == 'i';
+  switch (header.item_size) {
+    case 1:
+      return is_signed ? load_number<std::int8_t> : load_number<std::uint8_t>;
+    case 2:
+      return header.kind == 'f' ? load_half : is_signed ? load_number<std::int16_t> : load_number<std::uint16_t>;
+    case 4:
+      return header.kind == 'f' ? load_number<float>
+             : is_signed        ? load_number<std::int32_t>
+                                : load_number<std::uint32_t>;
+    default:
+      return header.kind == 'f' ? load_number<double>
+             : is_signed        ? load_number<std::int64_t>
+                                : load_number<std::uint64_t>;
+  }
+}
+
+// --- Readers --------------------------------------------------------------------------------------------------------
+
+class NpyPointReader : public PointReader {
+ public:
+  NpyPointReader(std::unique_ptr<InputBuffer> input, const NpyHeader& header)
+      : input_(std::move(input)), header_(header), load_(loader_of(header)) {}
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return header_.rows; }
+
+ protected:
+  // The number of rows to read next, at most `max`.
+  [[nodiscard]] std::size_t next_count(std::size_t max) const {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(max, header_.rows - row_));
+  }
+
+  [[nodiscard]] double coordinate(const char* bytes, std::uint64_t row, int axis) const {
+    const double value = load_(bytes, header_.order);
+    if (!std::isfinite(value)) {
+      throw InputError(input_->name() + ":byte " + std::to_string(offset_of(row, axis)) + ": row " +
+                       std::to_string(row) + " has " + "xyz"[axis] + " = " + std::to_string(value) +
+                       ", expected a finite number");
+    }
+    return value;
+  }
+
+  // Of a number in the file; rows and columns count from 0.
+  [[nodiscard]] std::uint64_t offset_of(std::uint64_t row, int axis) const {
+    const auto column = static_cast<std::uint64_t>(axis);
+    const std::uint64_t index = header_.fortran_order ? column * header_.rows + row : row * header_.columns + column;
+    return header_.data_offset + index * header_.item_size;
+  }
+
+  std::unique_ptr<InputBuffer> input_;
+  NpyHeader header_;
+  std::uint64_t row_ = 0;  // the next one
+
+ private:
+  Loader load_;
+};
+
+// Row after row, as they arrive.
+class RowMajorReader : public NpyPointReader {
+ public:
+  using NpyPointReader::NpyPointReader;
+
+  bool next(std::vector<Vec3>& batch, std::size_t max) override {
+    batch.clear();
+    if (next_count(max) == 0) return false;
+    require(*input_, row_size(), "the NPY data");
+    const std::size_t count = std::min(next_count(max), input_->pending().size() / row_size());
+    const char* row = input_->pending().data();
+    for (std::size_t i = 0; i < count; ++i, ++row_, row += row_size()) {
+      Vec3& point = batch.emplace_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = coordinate(row + static_cast<std::size_t>(axis) * header_.item_size, row_, axis);
+      }
+    }
+    input_->consume(count * row_size());
+    return true;
+  }
+
+  // Reads what has arrived: half a row is no answer.
+  [[nodiscard]] bool would_block() const override {
+    while (row_ < header_.rows && input_->pending().size() < row_size()) {
+      if (input_->would_wait()) return true;
+      if (!input_->fill()) return false;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] std::size_t row_size() const { return static_cast<std::size_t>(header_.columns) * header_.item_size; }
+};
+
+// Column after column: x, y and z are read side by side.
+class ColumnMajorReader : public NpyPointReader {
+ public:
+  using NpyPointReader::NpyPointReader;
+
+  bool next(std::vector<Vec3>& batch, std::size_t max) override {
+    batch.resize(next_count(std::min(max, kBlockRows)));
+    std::vector<char> column(batch.size() * header_.item_size);
+    for (int axis = 0; axis < 3; ++axis) {
+      input_->read_at(offset_of(row_, axis), column.data(), column.size());
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        batch[i][axis] = coordinate(column.data() + i * header_.item_size, row_ + i, axis);
+      }
+    }
+    row_ += batch.size();
+    return !batch.empty();
+  }
+
+  [[nodiscard]] bool would_block() const override { return false; }
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input) {
+  const NpyHeader header = read_header(*input);
+  check_size(header, *input);
+  if (!header.fortran_order) return std::make_unique<RowMajorReader>(std::move(input), header);
+  if (!input->file_size()) {
+    throw InputError(input->name() + ": NPY in Fortran order on a pipe, expected C order or a regular file");
+  }
+  return std::make_unique<ColumnMajorReader>(std::move(input), header);
+}
+
+}  // namespace raycone

@@ -1,0 +1,89 @@
+// Reading and writing of OpenVDB files, by the module that is loaded when the first one is asked for.
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <system_error>
+
+#include "io/fields/format_writers.h"
+#include "io/files/file_error.h"
+#include "io/vdb/read_vdb.h"
+#include "io/vdb/vdb_module.h"
+
+namespace raycone {
+namespace {
+
+// A place relative to the executable, in the build directory as in an installation, which may be moved.
+std::string module_path() {
+  std::error_code unknown;  // is told by dlopen()
+  const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  return executable.parent_path() / RAYCONE_MODULE_FROM_EXECUTABLE / vdb::kModuleFile;
+}
+
+void require_room(std::size_t bytes, int protection) {
+  void* const room = mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  munmap(room, bytes);
+}
+
+void* wait_for(void* gate) {
+  pthread_mutex_lock(static_cast<pthread_mutex_t*>(gate));
+  pthread_mutex_unlock(static_cast<pthread_mutex_t*>(gate));
+  return nullptr;
+}
+
+// The C library keeps the stacks for the next threads. It would keep 64 MB of address space more for each thread that
+// frees memory, as those of std::thread do.
+void require_threads(const std::string& name) {
+  constexpr std::size_t kNeeded = 6;  // log4cplus starts four, and others may start some meanwhile
+  pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+  std::array<pthread_t, kNeeded> trial{};
+  std::size_t started = 0;
+  pthread_mutex_lock(&gate);
+  while (started < kNeeded && pthread_create(&trial[started], nullptr, wait_for, &gate) == 0) ++started;
+  pthread_mutex_unlock(&gate);
+  for (std::size_t i = 0; i < started; ++i) pthread_join(trial[i], nullptr);
+  if (started < kNeeded)
+    throw LimitError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
+}
+
+// Where threads or memory are short, the libraries that OpenVDB brings abort or wait for ever while they are loaded,
+// and the dynamic linker does not tell this from a library that is damaged: refuse before. TBB may still fail to start
+// a thread, in a way that can be caught.
+void require_what_loading_takes(const std::string& name) {
+  require_threads(name);
+  constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+  // The libraries take 60 MB of addresses, most of them files; the rest is for what the allocator reserves.
+  require_room(160 * kMegabyte, PROT_NONE);
+  // Their data, of which systems may allow less (RLIMIT_DATA): below 1 MB once loaded, the rest is for loading.
+  require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
+}
+
+// `name`: the file that asks for it. Throws std::bad_alloc, LimitError, and Error where the module cannot be loaded.
+template <class Error>
+const vdb::Module& vdb_module(const std::string& name) {
+  require_what_loading_takes(name);
+  // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
+  void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
+  const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
+  if (symbol) return *static_cast<const vdb::Module*>(symbol);
+  throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
+}
+
+}  // namespace
+
+std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                       const OutputDescription& description) {
+  return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
+}
+
+Lattice read_vdb_lattice(const std::string& path, const std::string& name) {
+  return vdb_module<InputError>(path).read(path, name);
+}
+
+}  // namespace raycone

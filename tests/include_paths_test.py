@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Each folder of core, io and app is compiled with an include path that shows it only what it may include.
+
+usage: include_paths_test.py BUILD-DIRECTORY COMPILER
+"""
+import json
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# docs/architecture.md, "Who may include whom": a folder sees itself, folders above it in its list, and those named here.
+STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/evaluation"]
+BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/crossings"],
+          "core/sampling": ["core/data", "core/machine", "core/exact"]}
+FILES = ["io/files", "io/mesh", "io/points"]
+FIELDS = ["io/files", "io/fields", "io/vdb"]
+OF_CORE = {"core/data", "core/machine"}  # what io may see of core
+
+
+def allowed(folder):
+    """The folders that `folder` may see at most."""
+    if folder in BESIDE:
+        return {folder, *BESIDE[folder]}
+    if folder in STEPS:
+        return set(STEPS[:STEPS.index(folder) + 1])
+    if folder.startswith("io/"):
+        above = FILES if folder in FILES else FIELDS
+        return OF_CORE | set(above[:above.index(folder) + 1])
+    return None
+
+
+def commands(build):
+    """Source file, relative to the root, and the arguments that compile it."""
+    database = subprocess.run(["ninja", "-C", build, "-t", "compdb"], check=True, capture_output=True, text=True).stdout
+    for entry in json.loads(database):
+        source = pathlib.Path(entry["directory"], entry["file"]).resolve()
+        if source.suffix == ".cpp" and source.is_relative_to(ROOT):
+            yield str(source.relative_to(ROOT)), entry["command"].split()
+
+
+def include_paths(arguments):
+    return [pathlib.Path(a[2:]) for a in arguments if a.startswith("-I")]
+
+
+def folders_seen(arguments):
+    """The folders of the sources that an include path shows."""
+    seen = set()
+    for path in include_paths(arguments):
+        for layer in ("core", "io", "app"):
+            within = path / layer
+            if within.is_symlink():
+                seen.add(layer)
+            elif within.is_dir():
+                seen |= {f"{layer}/{folder.name}" for folder in within.iterdir() if folder.is_dir()}
+    return seen
+
+
+def compiles(compiler, arguments, header):
+    paths = [a for a in arguments if a.startswith("-I")]
+    result = subprocess.run([compiler, "-std=c++20", *paths, "-x", "c++", "-fsyntax-only", "-"],
+                            input=f'#include "{header}"\n', text=True, capture_output=True)
+    return result.returncode == 0
+
+
+def main(build, compiler):
+    failures, checked, of_folder = [], 0, {}
+    for source, arguments in commands(build):
+        folder = "/".join(source.split("/")[:2])
+        expected = allowed(folder)
+        if expected is None:
+            continue
+        checked += 1
+        of_folder[folder] = arguments
+        seen = folders_seen(arguments)
+        if folder not in seen:
+            failures.append(f"{source}: does not see its own folder, only {sorted(seen)}")
+        if seen - expected:
+            failures.append(f"{source}: sees {sorted(seen - expected)}")
+    if checked < 50:
+        failures.append(f"only {checked} sources found")
+
+    # The compiler agrees: what is allowed compiles, what lies above does not.
+    for folder, header, works in [("core/mesh", "core/exact/predicates.h", True),
+                                  ("core/mesh", "core/evaluation/winding_number.h", False),
+                                  ("core/exact", "core/mesh/weld.h", False),
+                                  ("core/exact", "io/files/file_error.h", False),
+                                  ("io/mesh", "core/data/triangle_mesh.h", True),
+                                  ("io/mesh", "core/mesh/weld.h", False),
+                                  ("io/files", "io/mesh/read_mesh.h", False)]:
+        if compiles(compiler, of_folder[folder], header) != works:
+            failures.append(f'{folder}: #include "{header}" {"does not compile" if works else "compiles"}')
+    print("\n".join(failures) or f"{checked} sources see what they may")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

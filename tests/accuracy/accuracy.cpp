@@ -225,7 +225,7 @@ void report(const std::string& path, std::size_t divisor, Totals& totals) {
   const bool good = std::max({box.largest, near.largest, rays.largest, nodes.largest}) <= kAllowed &&
                     !(closed && box.not_integer + near.not_integer + rays.not_integer + nodes.not_integer > 0) &&
                     bounds.violated == 0;
-  std::printf("| %s | %zu | %llu | %.1e | %.1e | %.1e | %.1e | %.1e | %.2g | %llu | %llu |%s\n",
+  std::printf("| %s |%zu|%llu|%.1e|%.1e|%.1e|%.1e|%.1e|%.2g|%llu|%llu|%s\n",
               std::filesystem::path(path).filename().c_str(), mesh.triangles.size(), number(evaluator.exterior_edges()),
               box.largest, near.largest, rays.largest, nodes.largest, nodes.mean(), bounds.median_ratio,
               number(count_degenerate_rows(mesh, evaluator)),
@@ -248,8 +248,8 @@ int main(int argc, char** argv) {
   std::size_t divisor = 1;
   raycone::Totals totals;
   std::printf(
-      "| mesh | faces | exterior edges | in the box | near the surface | degenerate rays | 50³ nodes | 50³ mean | "
-      "bound / error | degenerate rows of 50³ | on the surface |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+      "| mesh | faces | edges | box | near | rays | nodes | mean | bound | rows | on |\n"
+      "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--quick") == 0) {
       divisor = 10;
@@ -264,7 +264,7 @@ int main(int argc, char** argv) {
     }
   }
   std::printf(
-      "\nOver all meshes, at 50³ nodes: largest difference %.2g, mean of the largest %.2g. Error bounds above 1e-9: "
+      "\nOver all meshes, at 50³ nodes: largest difference %.2g, mean of the largest %.2g.\nError bounds above 1e-9: "
       "%llu of %llu.\n",
       totals.largest, totals.sum_of_largest / totals.meshes, static_cast<unsigned long long>(totals.bounds_above),
       static_cast<unsigned long long>(totals.bounds));

@@ -35,23 +35,40 @@ fi
   cat <<'END'
 # Accuracy on real meshes
 
-Made by `sh tests/accuracy/run.sh`. Largest absolute difference between raycone's winding numbers and the direct sum over all triangles in
-extended precision (64 bits; 113 where that cancels), per mesh at
+The table compares raycone's winding numbers with the direct sum over all triangles in extended precision (64 bits; 113
+where that cancels). `sh tests/accuracy/run.sh` makes it.
 
-- 200 random points in its box,
-- 100 points at 1e-3 to 1e-9 of the box diagonal from its faces, edges and vertices,
-- 100 points whose ray passes exactly through a vertex, or level with the middle of an edge,
-- 2000 random nodes of the lattice of 50 × 50 × 50 samples of its box (`--resolution 50,50,50`), with the mean there, and how many of the
-  lattice's 2500 rays meet an edge or vertex exactly.
+A *boundary edge* is an edge whose faces do not cancel; the literature and the code call it an exterior edge. Meshes
+without boundary edges are closed, and raycone gives integers exactly. What is shown for them is the rounding of the
+direct sum.
 
-*bound / error* is the median, over 20 points in the box, of the error bound that `--diagnostics` prints divided by the true error (in 113 bits); a bound that does not hold is
-an error of the run. Points exactly on the surface, where the winding number jumps, are left out of the comparison and counted. For comparison, the paper reports, over Thingi10K, a
-largest difference of 1.46e-7 and a mean of the largest of 2.3e-11. Closed meshes (no exterior edges) give integers exactly; what is shown for them is
-the rounding of the oracle.
+| column | meaning |
+|---|---|
+| edges | boundary edges |
+| box | largest difference at 200 random points in the mesh's box |
+| near | the same at 100 points at 1e-3 to 1e-9 of the box diagonal from its faces, edges and vertices |
+| rays | the same at 100 points whose ray passes exactly through a vertex, or level with the middle of an edge |
+| nodes | the same at 2000 random nodes of the lattice of 50³ samples of its box (`--resolution 50,50,50`) |
+| mean | the mean difference at these nodes |
+| bound | the error bound that `--diagnostics` prints, divided by the true error (see below) |
+| rows | how many of the lattice's 2500 rays meet an edge or vertex exactly |
+| on | points exactly on the surface |
 
-Other checks, each one command: `build/dev/tests/raycone_bounds` (two million error bounds against 113-bit sums), `build/dev/tests/raycone_bounds --slice MESH`
-(the paper's Fig. 4: a mesh with scrambled vertices, a slice of 2000² samples by three ways), `build/dev/tests/raycone_stress` (generated meshes, every
-value by its definition), `sh tests/mutants/run.sh` (each exactness rule broken in turn).
+Differences are absolute. *bound* is the median over 20 points in the box, with the true error in 113 bits. A bound that
+does not hold would be an error of the run. Points exactly on the surface, where the winding number jumps, are counted
+and left out of the comparison.
+
+For comparison, the paper reports over Thingi10K a largest difference of 1.46e-7 and a mean of the largest of 2.3e-11.
+
+Other checks, each one command:
+
+- `build/dev/tests/raycone_bounds` compares two million error bounds with 113-bit sums.
+- `build/dev/tests/raycone_bounds --slice MESH` is the paper's Fig. 4: a mesh with scrambled vertices, a slice of 2000²
+  samples by three ways.
+- `build/dev/tests/raycone_stress` compares every value of generated meshes with its definition.
+- `sh tests/mutants/run.sh` breaks each exactness rule in turn; a test must notice.
+
+## Meshes
 
 END
   status=0

@@ -51,7 +51,7 @@ def preparation(results, meshes, threads):
         read, counters = results[f"read/{mesh}"]
         faces = f"{counters['faces']:.0f}"
         rows.append([mesh, faces, *map(milliseconds, (read, raycone, paper)), f"{paper / raycone:.2f}"])
-    return table(["mesh", "faces", "read ms", "prepare ms", "transcription ms", "ratio"], rows)
+    return table(["mesh", "faces", "read ms", "prepare ms", "paper ms", "ratio"], rows)
 
 
 def evaluation(results, what, meshes, threads):
@@ -72,8 +72,8 @@ def evaluation(results, what, meshes, threads):
             + per_edge
             + [f"{check['off_by_turns']:.0f}", f"{check['max_difference']:.1e}"]
         )
-    header = ["mesh", "exterior edges", "raycone ms", "transcription ms", "ratio", "ratio with prepare", "ns/sample"]
-    header += ["ns/edge/sample", "transcription's", "off by turns", "largest other difference"]
+    header = ["mesh", "edges", "raycone ms", "paper ms", "ratio", "with prepare", "ns/sample"]
+    header += ["ns/edge", "paper's", "off", "difference"]
     return table(header, rows)
 
 
@@ -97,8 +97,9 @@ def main():
     threads = sorted({int(name.split("/")[3]) for name in results if name.startswith("lattice/")})
     repetitions = max(entry.get("repetitions", 1) for entry in run["benchmarks"])
 
-    print(f"Run of {context['date'][:10]}, commit {context['commit']}. {cpu_model()}, {os.cpu_count()} CPUs; ", end="")
-    print(f"{context['compiler']}. Medians of {repetitions} repetitions; raw data: {os.path.basename(sys.argv[1])}.\n")
+    print(f"Run of {context['date'][:10]}, commit {context['commit']}, on {cpu_model()}, {os.cpu_count()} CPUs,")
+    print(f"with {context['compiler']}.")
+    print(f"Medians of {repetitions} repetitions; raw data: {os.path.basename(sys.argv[1])}.\n")
     for count in threads:
         title = "one thread" if count == 1 else f"{count} threads"
         print(f"### Read (always one thread) and prepare, {title}\n\n{preparation(results, meshes, count)}")

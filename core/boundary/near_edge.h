@@ -13,7 +13,7 @@ struct Factor {
 };
 
 // Close to the inside of an edge s_a s_b and conj(P_a) P_b cancel. Where |Re z| + |Im z| is less than this share of s_a
-// s_b, near_edge_factor() takes over (docs/method.md, "Near an exterior edge").
+// s_b, near_edge_factor() takes over (docs/method.md, "Near a boundary edge").
 inline constexpr double kNearEdge = 0x1p-8;
 
 // A number with the argument of z_ab(q) at any distance of q from the edge and for coordinates of any magnitude, within

@@ -1,7 +1,7 @@
 // The paper's method written down plainly, to be measured beside raycone: what a reader of "Fast and Exact Winding
 // Numbers for Triangle Meshes" (ACM TOG 45(4), 2026) would write with Embree in an afternoon. Embree's own triangle
 // hits in float are taken at face value, and each exterior edge costs one atan2 per sample. Shares no code with raycone
-// but the mesh, the lattice and the thread pool. Apex at infinity along -x, as docs/method.md, section 2.
+// but the mesh, the lattice and the thread pool. Apex at infinity along -x, as docs/method.md, "One ray and a cone".
 #pragma once
 
 #include <cstddef>

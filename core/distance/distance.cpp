@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/data/check_counts.h"
+#include "core/crossings/check_counts.h"
 #include "core/distance/distance_band.h"
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"

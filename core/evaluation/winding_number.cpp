@@ -18,7 +18,7 @@
 #include "core/crossings/ray_caster.h"
 #include "core/crossings/row.h"
 #include "core/crossings/slab_order.h"
-#include "core/data/check_counts.h"
+#include "core/crossings/check_counts.h"
 #include "core/evaluation/block_parts.h"
 #include "core/exact/scale.h"
 #include "core/machine/buckets.h"

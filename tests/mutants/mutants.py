@@ -153,7 +153,7 @@ MUTANTS = [
     Mutant("crowds_in_double", "arguments that are multiplied by hundreds have 64 bits", [
         ("core/boundary/cone.cpp", "kLargestInDouble = 256;", "kLargestInDouble = 2'000'000'000;")]),
     *[Mutant(f"{kernel}_off_by_{by}", "a value is right, and --verify finds out where it is not", [
-        (f"core/{kernel}_kernel.cpp", "  finish(products, samples.count);\n",
+        (f"core/boundary/{kernel}_kernel.cpp", "  finish(products, samples.count);\n",
          "  finish(products, samples.count);\n"
          f"  for (std::size_t i = 0; i < samples.count; ++i) products.argument[i] += {by};\n")])
       for kernel in ("cone", "solid_angle") for by in ("1e-9", "1e-6", "0.1")],
@@ -164,13 +164,13 @@ MUTANTS = [
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
         ("core/evaluation/winding_number.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
-        ("core/boundary/cone_settle.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
+        ("core/boundary/boundary.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
-        ("core/boundary/cone_settle.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
+        ("core/boundary/boundary.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
     Mutant("settled_in_80_bits", "113 bits tell what 80 cannot", [
-        ("core/boundary/cone_settle.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
+        ("core/boundary/boundary.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
     Mutant("settled_to_the_wrong_side", "a value is on the side of a half-integer on which w is", [
-        ("core/boundary/cone_settle.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
+        ("core/boundary/boundary.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
 
     # --- Magnitudes ---
     Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [

@@ -21,7 +21,7 @@ constexpr Quad u = 0x1p-113;
 
 Quad absolute(Quad x) { return x < 0 ? -x : x; }
 
-// A product of factors in 113 bits, and the turns that its argument has completed, as in core/boundary/cone_enclosure.cpp.
+// A product of factors in 113 bits, and the turns that its argument has completed, as in core/boundary/enclosure.cpp.
 struct CloseProduct {
   Factor<Quad> z{1, 0};
   std::int64_t turns = 0;

@@ -77,7 +77,7 @@ MUTANTS = [
     Mutant("slabs_miss_triangles", "a slab looks at all triangles that meet it", [
         ("core/crossings/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
     Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
-        ("core/crossings/lattice_sums.cpp", "  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);\n", "")]),
+        ("core/crossings/lattice_sums.cpp", "  for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);\n", "")]),
     Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [
         ("core/evaluation/winding_number.cpp", "  across.evaluate(engine, values);\n", "")]),
     Mutant("level_edges_dropped", "only an edge along the rays has no argument anywhere", [
@@ -222,7 +222,7 @@ MUTANTS = [
         ("core/mesh/polygon_cut.cpp", "      add_flat(first, p, run.end, whole);\n", "")]),
     Mutant("cut_turned_over", "no triangle is turned over", [
         ("core/mesh/polygon_cut.cpp",
-         "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
+         "if (turn(links_[low].point, p, links_[high].point) <= 0) return false;",
          "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
 
     # --- Determinism, identity, error bound ---

@@ -1,37 +1,43 @@
-// The cone's winding number in extended precision with a running bound of its error. u is half a unit in the last place
-// of 1L; every constant counts roundings, derived in docs/method.md, "Error bound". Exponents of long double neither
-// over- nor underflow here: products of two numbers in range reach 2^+-4000, and their squares 2^+-8000.
+// Running error analysis: every constant counts roundings, derived in docs/method.md, "Error bound".
+#include "core/boundary/enclosure.h"
+
+#include <quadmath.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 
 #include "core/boundary/angle.h"
-#include "core/boundary/cone.h"
+#include "core/boundary/edge_factor.h"
 #include "core/boundary/near_edge.h"
-#include "core/boundary/tied_factor.h"
 #include "core/exact/predicates.h"
 
 namespace raycone {
 namespace {
 
+// ---- In 64 bits -----------------------------------------------------------------------------------------------------
+//
+// Exponents of long double neither over- nor underflow here: products of two numbers in range reach 2^+-4000, and their
+// squares 2^+-8000.
+
 using Wide = long double;
 
-constexpr Wide u = std::numeric_limits<Wide>::epsilon() / 2;
+constexpr Wide u = std::numeric_limits<Wide>::epsilon() / 2;  // half a unit in the last place of 1L
 // Second-order terms of the analysis: relative errors before the last step stay below 2^-48.
 constexpr Wide kSecondOrder = 1 + 1e-12L;
 
-struct Corner {
+// A vertex as seen from the query.
+struct WideVertex {
   Vec3 vertex;
   Wide y = 0;
   Wide z = 0;
   Wide s = 0;
   Wide s_roundings = 0;
 
-  Corner() = default;
-  Corner(const Vec3& v, const Vec3& q) : vertex(v), y(Wide(v.y) - Wide(q.y)), z(Wide(v.z) - Wide(q.z)) {
+  WideVertex() = default;
+  WideVertex(const Vec3& v, const Vec3& q) : vertex(v), y(Wide(v.y) - Wide(q.y)), z(Wide(v.z) - Wide(q.z)) {
     const Wide x = Wide(v.x) - Wide(q.x);
     const Wide square = y * y + z * z;
     const Wide norm = std::sqrt(x * x + square);
@@ -41,7 +47,7 @@ struct Corner {
 };
 
 // A factor and a bound of its argument's error in radians.
-struct FactorWithin {
+struct WideFactor {
   Factor<Wide> z;
   Wide error;
 };
@@ -52,7 +58,7 @@ Wide argument_error(Wide re, Wide im, Wide e_re, Wide e_im) {
 }
 
 // im carries the sign that the edge's side has.
-FactorWithin generic_factor(const Corner& a, const Corner& b, const Vec3& q, int sign) {
+WideFactor generic_factor(const WideVertex& a, const WideVertex& b, const Vec3& q, int sign) {
   const bool a_is_nearer = std::abs(a.y) + std::abs(a.z) <= std::abs(b.y) + std::abs(b.z);
   const Wide left = (a_is_nearer ? a.y : b.y) * (Wide(b.vertex.z) - Wide(a.vertex.z));
   const Wide right = (a_is_nearer ? a.z : b.z) * (Wide(b.vertex.y) - Wide(a.vertex.y));
@@ -70,14 +76,14 @@ FactorWithin generic_factor(const Corner& a, const Corner& b, const Vec3& q, int
   return {{re, im}, argument_error(re, im, e_re, e_im)};
 }
 
-std::optional<FactorWithin> factor_of(const Corner& a, const Corner& b, bool reversed, const Vec3& q) {
+std::optional<WideFactor> factor_of(const WideVertex& a, const WideVertex& b, bool reversed, const Vec3& q) {
   const EdgeSide side = edge_side(a.vertex, b.vertex, q);
   if (side.sign == 0) return std::nullopt;
   const int sign = reversed ? -side.sign : side.sign;
   if (!side.tie) return generic_factor(a, b, q, sign);
   const std::optional<Factor<Wide>> f = tied_factor<Wide>(a.vertex, b.vertex, q);
   if (!f) return std::nullopt;
-  return FactorWithin{{f->re, std::copysign(f->im, Wide(sign))}, 2 * u};
+  return WideFactor{{f->re, std::copysign(f->im, Wide(sign))}, 2 * u};
 }
 
 // The same argument and bits, the magnitude within 2^+-2000.
@@ -89,12 +95,12 @@ Factor<Wide> in_range(const Factor<Wide>& z) {
 }
 
 // The product of factors, the turns completed, and the errors of its argument so far.
-struct Product {
+struct WideProduct {
   Factor<Wide> z;
   std::int64_t turns = 0;
   Wide error = 0;  // radians
 
-  void multiply(const FactorWithin& factor) {
+  void multiply(const WideFactor& factor) {
     const Factor<Wide> f = in_range(factor.z);
     const Wide rr = z.re * f.re, ii = z.im * f.im, ri = z.re * f.im, ir = z.im * f.re;
     const Factor<Wide> product{rr - ii, ri + ir};
@@ -107,20 +113,17 @@ struct Product {
   }
 };
 
-// Sums in which nothing has been rounded yet.
-TurnsWithin<Wide> turns_of(const Product& product) {
+TurnsWithin<Wide> turns_of(const WideProduct& product) {
   const Wide rest = argument_in_turns<Wide>(product.z.re, product.z.im);
   const Wide error = product.error * kSecondOrder / (2 * std::numbers::pi_v<Wide>)+kArgumentError * u * std::abs(rest);
   return {product.turns, rest, error};
 }
 
-}  // namespace
-
-TurnsWithin<Wide> Cone::enclose(const Group& group, const Vec3& q) {
-  Product product;
-  Corner previous;
+TurnsWithin<Wide> enclose_group(const ChainGroup& group, const Vec3& q) {
+  WideProduct product;
+  WideVertex previous;
   for (const ChainStep& step : group.steps) {
-    const Corner here(step.to, q);
+    const WideVertex here(step.to, q);
     if (step.joined) {
       if (const auto f = factor_of(previous, here, step.reversed, q)) product.multiply(*f);
     }
@@ -129,16 +132,79 @@ TurnsWithin<Wide> Cone::enclose(const Group& group, const Vec3& q) {
   return turns_of(product);
 }
 
-TurnsWithin<Wide> Cone::enclose(const Vec3& q) const {
-  TurnsWithin<Wide> cone;
-  for (const Group& group : groups_) {
-    const TurnsWithin<Wide> turns = enclose(group, q);
-    const Wide rest = group.multiplicity * turns.rest;
-    cone.whole += group.multiplicity * turns.whole;
-    cone.rest += rest;
-    cone.bound += group.multiplicity * turns.bound + u * (std::abs(rest) + std::abs(cone.rest));
+// ---- In 113 bits ----------------------------------------------------------------------------------------------------
+
+const Quad kTurn = 8 * atanq(1);
+constexpr Quad kQuadRounding = 0x1p-113;
+
+// A product of factors in 113 bits, and the turns that its argument has completed, as in core/boundary/enclosure.cpp.
+struct QuadProduct {
+  Factor<Quad> z{1, 0};
+  std::int64_t turns = 0;
+  Quad error = 0;  // of its argument, radians
+
+  // `error`: of the factor's argument. Both factors and product are rounded, the latter by sqrt(5) u (docs/method.md).
+  void multiply(const Factor<Quad>& f, Quad factor_error) {
+    const Factor<Quad> product{z.re * f.re - z.im * f.im, z.re * f.im + z.im * f.re};
+    const bool before = signbitq(z.im) != 0, turn = signbitq(f.im) != 0, after = signbitq(product.im) != 0;
+    if (before == turn && after != before) turns += before ? -1 : 1;
+    error += factor_error + 8 * kQuadRounding;
+    const int exponent = -ilogbq(fmaxq(absolute(product.re), absolute(product.im)));
+    z = {scalbnq(product.re, exponent), scalbnq(product.im, exponent)};
   }
-  return cone;
+};
+
+void multiply_edge(QuadProduct& product, const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
+  const EdgeSide side = edge_side(a, b, q);
+  if (side.sign == 0) return;
+  const auto with_sign = [&](const Factor<Quad>& f) {
+    return Factor<Quad>{f.re, copysignq(f.im, reversed ? -side.sign : side.sign)};
+  };
+  if (side.tie) {
+    if (const auto f = unscaled_tied_factor<Quad>(a, b, q)) product.multiply(with_sign(*f), 0);
+    return;
+  }
+  const NearEdgeFactor<Quad> f = near_edge_factor<Quad>(a, b, q);
+  product.multiply(with_sign(f.factor), f.error);
+}
+
+TurnsWithin<Quad> enclose_group_closely(const ChainGroup& group, const Vec3& q) {
+  QuadProduct product;
+  for (std::size_t i = 1; i < group.steps.size(); ++i) {
+    const ChainStep& step = group.steps[i];
+    if (step.joined) multiply_edge(product, group.steps[i - 1].to, step.to, step.reversed, q);
+  }
+  return {product.turns, atan2q(product.z.im, product.z.re) / kTurn, product.error / kTurn};
+}
+
+// ---- In either ------------------------------------------------------------------------------------------------------
+
+// The sum over the groups; `rounding` bounds what a group's rest, its multiple and the sum round, relative to the two.
+template <class Real, class EncloseGroup>
+TurnsWithin<Real> sum_over(std::span<const ChainGroup> groups, Real rounding, const EncloseGroup& enclose_one) {
+  const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
+  TurnsWithin<Real> sum;
+  for (const ChainGroup& group : groups) {
+    const TurnsWithin<Real> turns = enclose_one(group);
+    const Real rest = group.multiplicity * turns.rest;
+    sum.whole += group.multiplicity * turns.whole;
+    sum.rest += rest;
+    sum.bound += group.multiplicity * turns.bound + rounding * (magnitude(rest) + magnitude(sum.rest));
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <>
+TurnsWithin<Wide> enclose<Wide>(std::span<const ChainGroup> groups, const Vec3& q) {
+  return sum_over<Wide>(groups, u, [&](const ChainGroup& group) { return enclose_group(group, q); });
+}
+
+template <>
+TurnsWithin<Quad> enclose<Quad>(std::span<const ChainGroup> groups, const Vec3& q) {
+  return sum_over<Quad>(groups, 8 * kQuadRounding,
+                        [&](const ChainGroup& group) { return enclose_group_closely(group, q); });
 }
 
 }  // namespace raycone

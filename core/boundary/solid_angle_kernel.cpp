@@ -24,8 +24,8 @@ namespace {
 
 // Im z_T = n . a. The normal's components, those of a, and their products are each rounded once, the sum twice: 5 u of
 // the absolute terms, u = 2^-53, plus what stands for underflow.
-constexpr double kSideFilter = 5.0 * 0x1p-53 * (1.0 + 0x1p-40);
-constexpr double kSideUnderflow = 0x1p-1000;
+constexpr double kPlaneSideFilter = 5.0 * 0x1p-53 * (1.0 + 0x1p-40);
+constexpr double kPlaneSideUnderflow = 0x1p-1000;
 
 // Re z_T, four terms of at most |a||b||c|, is off by less than 50 u of that. Next to the triangle, where |z_T| is below
 // these shares of |a||b||c| and of the absolute terms of Im z_T, the argument could be off by more than 2^-41.
@@ -108,7 +108,7 @@ HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const ProjectedTri
       hn::Add(hn::Add(all, product(ax, bx, p.ab, c)), hn::Add(product(bx, cx, p.bc, a), product(cx, ax, p.ca, b)));
   const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), ax);
   const Lanes im = hn::Add(nx, p.side), terms = hn::Add(hn::Abs(nx), p.terms);
-  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kSideFilter), terms), hn::Set(d, kSideUnderflow));
+  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kPlaneSideFilter), terms), hn::Set(d, kPlaneSideUnderflow));
   const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
   const Lanes near = hn::Max(hn::Mul(hn::Set(d, kNearTriangle), all), hn::Mul(hn::Set(d, kNearCorner), terms));
   const auto trusted =

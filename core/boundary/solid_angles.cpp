@@ -31,7 +31,7 @@ bool is_long(const Vec3& a, const Vec3& b) {
   return !(std::max({std::abs(side.x), std::abs(side.y), std::abs(side.z)}) < kLongest);
 }
 
-constexpr double kCrowd = 256;  // equal faces
+constexpr double kManyCopies = 256;  // equal faces
 
 // The same for all orders of the corners but for `orientation`, and for faces that were left unwelded.
 SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -81,7 +81,7 @@ SolidAngles::Faces SolidAngles::faces_of(const TriangleMesh& mesh) {
     double net = 0.0;
     for (auto it = begin; it != end; ++it) net += it->orientation;
     begin->orientation = std::copysign(1.0, net);
-    faces.has_crowds = faces.has_crowds || std::abs(net) > kCrowd;
+    faces.has_repeated_faces = faces.has_repeated_faces || std::abs(net) > kManyCopies;
     faces.triangles.insert(faces.triangles.end(), static_cast<std::size_t>(std::abs(net)), *begin);
     begin = end;
   }

@@ -24,7 +24,7 @@ class SolidAngles final : public ExactTerm {
   [[nodiscard]] static bool are_cheaper(std::size_t triangles, std::size_t exterior_edges);
 
   // Whether a face is there so often that its error, multiplied, would show.
-  [[nodiscard]] bool has_crowds() const { return faces_.has_crowds; }
+  [[nodiscard]] bool has_repeated_faces() const { return faces_.has_repeated_faces; }
 
   [[nodiscard]] bool counts_crossings() const override { return false; }
   void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
@@ -34,7 +34,7 @@ class SolidAngles final : public ExactTerm {
   // Those of positive area, in an order that depends on coordinates only; a face that is there n times has n entries.
   struct Faces {
     std::vector<SolidTriangle> triangles;
-    bool has_crowds = false;
+    bool has_repeated_faces = false;
   };
   SolidAngles(Faces faces, const Boundary& boundary, SimdLevel level);
   static Faces faces_of(const TriangleMesh& mesh);

@@ -1,6 +1,8 @@
 #include "core/crossings/lattice_scan.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "core/crossings/triangle_sections.h"
 #include "core/machine/threads.h"

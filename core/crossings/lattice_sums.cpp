@@ -20,7 +20,7 @@ constexpr std::size_t kHandful = 4096;
 // entry i: what is said of the samples up to i and no further. Turns that into sums. Most rows hold few entries: eight
 // zeros are looked at together.
 template <class Number>
-void sum_from_behind(std::span<Number> row) {
+void suffix_sums(std::span<Number> row) {
   constexpr std::size_t kTogether = 8;
   Number sum{0};
   std::size_t end = row.size();
@@ -162,13 +162,13 @@ std::uint64_t LatticeSums::finish(std::size_t row) {
   const std::size_t first = row * samples_;
   if (!crossings_.empty()) {
     if (dense_) {
-      sum_from_behind(crossings_.subspan(first, samples_));
+      suffix_sums(crossings_.subspan(first, samples_));
     } else {
       sum_prefixes(row);
     }
   }
   if (diagnostics_) {
-    sum_from_behind(diagnostics_->degenerate.subspan(first, samples_));
+    suffix_sums(diagnostics_->degenerate.subspan(first, samples_));
     std::ranges::transform(crossings_.subspan(first, samples_), diagnostics_->crossings.subspan(first).begin(),
                            [](double n) { return static_cast<std::int64_t>(n); });
   }

@@ -133,8 +133,8 @@ class ProjectedGrid::Builder {
   void finish(std::uint64_t cell, const Rectangle& box, std::span<const Entry> entries, int depth);
 
   template <class Visit>
-  static void visit_row(const Grid& grid, const Rectangle& box, const std::array<EdgeLine, 3>& edges,
-                        std::uint32_t row, const Visit& visit);
+  static void visit_row(const Grid& grid, const Rectangle& box, const std::array<EdgeLine, 3>& edges, std::uint32_t row,
+                        const Visit& visit);
   // Calls visit(cell) for each cell of the grid that the triangle belongs to, counted from its first one.
   template <class Visit>
   void visit_cells(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
@@ -176,9 +176,8 @@ std::array<EdgeLine, 3> ProjectedGrid::Builder::edges(std::uint32_t triangle) co
 // A triangle belongs to the cells that it meets, and to those that the lines of its edges meet within its box: there D
 // may be 0.
 template <class Visit>
-void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box,
-                                       const std::array<EdgeLine, 3>& edges, std::uint32_t row,
-                                       const Visit& visit) {
+void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, const std::array<EdgeLine, 3>& edges,
+                                       std::uint32_t row, const Visit& visit) {
   const double height = 1.0 / grid.rows_per_unit, margin_z = kMargin * height;
   const double margin_y = kMargin / grid.columns_per_unit;
   const Interval slab{grid.lower_z + row * height - margin_z, grid.lower_z + (row + 1) * height + margin_z};

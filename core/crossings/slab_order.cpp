@@ -8,8 +8,8 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kGroup = 128;             // triangles
-constexpr std::size_t kBinsPerLength = 2048;    // of the mesh along the axis
+constexpr std::size_t kGroup = 128;           // triangles
+constexpr std::size_t kBinsPerLength = 2048;  // of the mesh along the axis
 // What a triangle of a class may be long, as parts of the mesh; longer ones are in the last class.
 constexpr double kClasses[] = {1.0 / 1024, 1.0 / 128, 1.0 / 16};
 
@@ -19,10 +19,10 @@ Interval extent_of(const TriangleMesh& mesh, const Triangle& t, int axis) {
   return {lower, upper};
 }
 
-// Lengths of a mesh as parts of its own.
-class Ruler {
+// Bins by length and position along the axis, as parts of the mesh.
+class AxisBins {
  public:
-  Ruler(const TriangleMesh& mesh, int axis) {
+  AxisBins(const TriangleMesh& mesh, int axis) {
     if (mesh.triangles.empty()) return;
     const Box box = bounding_box(mesh);
     lower_ = box.lower[axis];
@@ -46,11 +46,11 @@ class Ruler {
 };
 
 std::vector<std::uint32_t> ordered(const TriangleMesh& mesh, int axis) {
-  const Ruler ruler(mesh, axis);
+  const AxisBins bins(mesh, axis);
   const Buckets<std::uint32_t> buckets(
-      mesh.triangles.size(), Ruler::kBuckets, [&](std::size_t begin, std::size_t end, const auto& emit) {
+      mesh.triangles.size(), AxisBins::kBuckets, [&](std::size_t begin, std::size_t end, const auto& emit) {
         for (std::size_t i = begin; i < end; ++i) {
-          emit(ruler.bucket(extent_of(mesh, mesh.triangles[i], axis)), static_cast<std::uint32_t>(i));
+          emit(bins.bucket(extent_of(mesh, mesh.triangles[i], axis)), static_cast<std::uint32_t>(i));
         }
       });
   std::vector<std::uint32_t> all;

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/crossings/lattice_scan.h"
+#include "core/crossings/lattice_rows.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance_tree.h"
 

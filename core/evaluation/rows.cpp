@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <vector>
 
+#include "core/crossings/lattice_rows.h"
 #include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
@@ -124,31 +124,12 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
   return on_surface;
 }
 
-LatticeRows rows_of(const std::array<std::vector<double>, 3>& coordinates, const ScaledMesh& mesh) {
-  LatticeRows rows;
-  const std::array<std::vector<double>*, 3> axes{&rows.xs, &rows.ys, &rows.zs};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const double x : coordinates[axis]) axes[axis]->push_back(mesh.to_scale(x));
-    const double width = axes[axis]->back() - axes[axis]->front();
-    const double per_unit = static_cast<double>(axes[axis]->size() - 1) / width;
-    rows.samples_per_unit[static_cast<int>(axis)] = std::isfinite(per_unit) ? per_unit : 0.0;
-  }
-  return rows;
-}
-
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
-  std::array<std::vector<double>, 3> coordinates;
-  bool exact = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::int64_t i = 0; i < block.counts[axis]; ++i) {
-      coordinates[axis].push_back(lattice.coordinate(static_cast<int>(axis), block.first[axis] + i));
-    }
-    exact = exact && meshes.scaled().can_take(coordinates[axis].front());
-  }
-  const ScaledMesh& mesh = meshes.of_query(exact);
-  const LatticeRows rows = rows_of(coordinates, mesh);
+  const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
+  const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+  const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
   const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   if (mesh.options().ray_engine == RayEngine::kScan) {

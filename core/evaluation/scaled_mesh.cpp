@@ -22,7 +22,7 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
   if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
     auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);
-    if (!cheapest || !triangles->has_crowds()) return triangles;
+    if (!cheapest || !triangles->has_repeated_faces()) return triangles;
   }
   return std::make_unique<const Cone>(boundary, options.level);
 }

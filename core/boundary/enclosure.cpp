@@ -137,7 +137,7 @@ TurnsWithin<Wide> enclose_group(const ChainGroup& group, const Vec3& q) {
 const Quad kTurn = 8 * atanq(1);
 constexpr Quad kQuadRounding = 0x1p-113;
 
-// A product of factors in 113 bits, and the turns that its argument has completed, as in core/boundary/enclosure.cpp.
+// As WideProduct, with a coarser bound.
 struct QuadProduct {
   Factor<Quad> z{1, 0};
   std::int64_t turns = 0;

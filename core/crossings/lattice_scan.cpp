@@ -17,7 +17,7 @@ constexpr std::size_t kVerticesPerTask = 8192;
 constexpr std::size_t kGroupsPerTask = 4;
 
 // The values that equal x among ascending ones: where there are none, both ends tell where x lies.
-IndexRange equal_range(double x, const std::vector<double>& values, double per_unit) {
+SampleRange equal_range(double x, const std::vector<double>& values, double per_unit) {
   const std::size_t below = count_below(values, per_unit, x);
   std::size_t up_to = below;
   while (up_to < values.size() && values[up_to] == x) ++up_to;
@@ -25,14 +25,14 @@ IndexRange equal_range(double x, const std::vector<double>& values, double per_u
 }
 
 // The values within the interval that three numbers span.
-IndexRange hull(const IndexRange& a, const IndexRange& b, const IndexRange& c) {
+SampleRange hull(const SampleRange& a, const SampleRange& b, const SampleRange& c) {
   return {std::min({a.begin, b.begin, c.begin}), std::max({a.end, b.end, c.end})};
 }
 
 // Calls visit(j, k) for the rows that the triangle may concern, of those in its box.
 template <class Visit>
-void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const IndexRange& js,
-                const IndexRange& ks, const Visit& visit) {
+void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const SampleRange& js,
+                const SampleRange& ks, const Visit& visit) {
   constexpr std::uint32_t kFew = 6;  // rows, not worth a section
   if (std::max(js.size(), ks.size()) <= kFew) {
     for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
@@ -55,7 +55,7 @@ void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& 
 
 // Where a vertex lies among the rows.
 struct VertexRows {
-  IndexRange y, z;
+  SampleRange y, z;
 };
 
 VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
@@ -65,7 +65,7 @@ VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
 // One triangle, whose corners lie there among the rows. Most meet no row: their corners are not fetched.
 void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, const VertexRows& at_b,
           const VertexRows& at_c, const LatticeRows& rows, LatticeSums::Collector& collector) {
-  const IndexRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
+  const SampleRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
   if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
   const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;

@@ -21,8 +21,8 @@ struct Row {
   [[nodiscard]] Vec3 query(std::size_t i) const { return {xs[i], y, z}; }
 };
 
-// Values [begin, end) of a list, at most 2^32 - 1.
-struct IndexRange {
+// Samples [begin, end) along an axis, at most 2^32 - 1.
+struct SampleRange {
   std::uint32_t begin, end;
   [[nodiscard]] bool empty() const { return begin >= end; }
   [[nodiscard]] std::uint32_t size() const { return end - begin; }

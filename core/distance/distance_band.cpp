@@ -93,7 +93,7 @@ class Neighbourhood {
   std::array<double, 5> most_;  // of normal . p
 };
 
-IndexRange samples_in(const std::vector<double>& samples, double per_unit, const Interval& interval) {
+SampleRange samples_in(const std::vector<double>& samples, double per_unit, const Interval& interval) {
   if (interval.empty() || interval.upper < samples.front() || interval.lower > samples.back()) return {0, 0};
   return {static_cast<std::uint32_t>(count_below(samples, per_unit, interval.lower)),
           static_cast<std::uint32_t>(count_up_to(samples, per_unit, interval.upper))};
@@ -131,19 +131,19 @@ class Rasterization {
     return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], band_};
   }
 
-  [[nodiscard]] IndexRange xs_near(const Interval& xs) const {
+  [[nodiscard]] SampleRange xs_near(const Interval& xs) const {
     return samples_in(rows_.xs, rows_.samples_per_unit.x, xs);
   }
-  [[nodiscard]] IndexRange ys_near(const Neighbourhood& near) const {
+  [[nodiscard]] SampleRange ys_near(const Neighbourhood& near) const {
     return samples_in(rows_.ys, rows_.samples_per_unit.y, near.along(1));
   }
-  [[nodiscard]] IndexRange zs_near(const Neighbourhood& near) const {
+  [[nodiscard]] SampleRange zs_near(const Neighbourhood& near) const {
     return samples_in(rows_.zs, rows_.samples_per_unit.z, near.along(2));
   }
 
   void add_visits(std::uint32_t triangle, std::vector<Visit>& visits) const {
     const Neighbourhood near = neighbourhood(triangle);
-    const IndexRange xs = xs_near(near.along(0)), ys = ys_near(near), zs = zs_near(near);
+    const SampleRange xs = xs_near(near.along(0)), ys = ys_near(near), zs = zs_near(near);
     if (xs.empty() || ys.empty() || zs.empty()) return;
     for (std::size_t strip = ys.begin / kStrip; strip <= (ys.end - 1) / kStrip; ++strip) {
       visits.push_back({static_cast<std::uint32_t>(strip), triangle});
@@ -175,13 +175,13 @@ class Rasterization {
 
   void visit(std::uint32_t triangle, std::size_t strip, std::span<double> squares) const {
     const Neighbourhood near = neighbourhood(triangle);
-    const IndexRange ys = ys_near(near), zs = zs_near(near);
+    const SampleRange ys = ys_near(near), zs = zs_near(near);
     for (std::size_t k = zs.begin; k < zs.end; ++k) {
       const double z = rows_.zs[k];
       for (std::size_t j = std::max<std::size_t>(ys.begin, strip * kStrip);
            j < std::min<std::size_t>(ys.end, (strip + 1) * kStrip); ++j) {
         const double y = rows_.ys[j];
-        const IndexRange xs = xs_near(near.along_row(y, z));
+        const SampleRange xs = xs_near(near.along_row(y, z));
         double* const row = &squares[(k * rows_.ys.size() + j) * rows_.xs.size()];
         for (std::size_t i = xs.begin; i < xs.end; ++i) {
           row[i] = std::min(row[i], near.squared_distance({rows_.xs[i], y, z}));

@@ -43,13 +43,14 @@ struct ProjectedEdge {
 };
 
 // The projection of a vertex.
-struct Projected {
+struct ProjectedVertex {
   Lanes y, z;
   Lanes square;  // square_of(y, z)
 };
 
 // The edge determinant as in predicates.h: from the nearer end, and trusted beyond its error. (dy, dz) is the edge.
-HWY_INLINE ProjectedEdge project(const Projected& a, const Projected& b, Lanes dy, Lanes dz, Lanes orientation) {
+HWY_INLINE ProjectedEdge project(const ProjectedVertex& a, const ProjectedVertex& b, Lanes dy, Lanes dz,
+                                 Lanes orientation) {
   const auto a_is_nearer = hn::Le(a.square, b.square);
   const Lanes left = hn::Mul(hn::IfThenElse(a_is_nearer, a.y, b.y), dz);
   const Lanes right = hn::Mul(hn::IfThenElse(a_is_nearer, a.z, b.z), dy);
@@ -103,9 +104,9 @@ HWY_INLINE void store(Lanes value, LaneColumn& column, std::size_t n) {
 HWY_INLINE Lanes load(const LaneColumn& column, std::size_t n) { return hn::Load(d, &column[n * hn::Lanes(d)]); }
 
 // The projections of a chunk along the one ray that all samples share: the lanes can be vertices and edges.
-class OneRay {
+class EdgesOfOneRay {
  public:
-  OneRay(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), y_{}, z_{}, square_{} {
+  EdgesOfOneRay(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), y_{}, z_{}, square_{} {
     for (std::size_t n = 0; n <= chunk.edges; n += hn::Lanes(d)) {
       const Lanes y = hn::Sub(hn::LoadU(d, &chunk.y[n]), hn::Set(d, samples.y[0]));
       const Lanes z = hn::Sub(hn::LoadU(d, &chunk.z[n]), hn::Set(d, samples.z[0]));
@@ -126,12 +127,12 @@ class OneRay {
     }
   }
 
-  // What a group of samples has seen of the vertices, beyond what all see.
-  struct Seen {};
-  // |P|^2 of vertex n for the samples from i on.
-  [[nodiscard]] Lanes look(std::size_t n, std::size_t, Seen&) const { return hn::Set(d, square_[n]); }
-  // Edge n for the samples that have seen its ends.
-  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Seen&) const {
+  // The projections of vertices for a group of samples, beyond what all samples share.
+  struct Projections {};
+  // Projects vertex n for the samples from i on, and returns its |P|^2.
+  [[nodiscard]] Lanes project_vertex(std::size_t n, std::size_t, Projections&) const { return hn::Set(d, square_[n]); }
+  // Edge n, whose ends have been projected.
+  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Projections&) const {
     return {hn::Set(d, re_[n]), hn::Set(d, im_[n]), hn::Set(d, direction_[n])};
   }
   // That of edge n, exact.
@@ -140,7 +141,7 @@ class OneRay {
   }
 
  private:
-  [[nodiscard]] Projected projected(std::size_t n) const {
+  [[nodiscard]] ProjectedVertex projected(std::size_t n) const {
     return {hn::LoadU(d, &y_[n]), hn::LoadU(d, &z_[n]), hn::LoadU(d, &square_[n])};
   }
 
@@ -151,25 +152,25 @@ class OneRay {
 };
 
 // The same for samples with a ray each.
-class RayOfEach {
+class EdgesOfRays {
  public:
-  RayOfEach(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
+  EdgesOfRays(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
 
-  struct Seen {
+  struct Projections {
     alignas(64) LaneColumn y, z, square;
-    [[nodiscard]] Projected vertex(std::size_t n) const { return {load(y, n), load(z, n), load(square, n)}; }
+    [[nodiscard]] ProjectedVertex vertex(std::size_t n) const { return {load(y, n), load(z, n), load(square, n)}; }
   };
-  [[nodiscard]] Lanes look(std::size_t n, std::size_t i, Seen& seen) const {
+  [[nodiscard]] Lanes project_vertex(std::size_t n, std::size_t i, Projections& projections) const {
     const Lanes y = hn::Sub(hn::Set(d, chunk_.y[n]), hn::Load(d, &samples_.y[i]));
     const Lanes z = hn::Sub(hn::Set(d, chunk_.z[n]), hn::Load(d, &samples_.z[i]));
     const Lanes square = square_of(y, z);
-    store(y, seen.y, n);
-    store(z, seen.z, n);
-    store(square, seen.square, n);
+    store(y, projections.y, n);
+    store(z, projections.z, n);
+    store(square, projections.square, n);
     return square;
   }
-  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Seen& seen) const {
-    return project(seen.vertex(n), seen.vertex(n + 1), hn::Set(d, chunk_.dy[n]), hn::Set(d, chunk_.dz[n]),
+  [[nodiscard]] ProjectedEdge edge(std::size_t n, const Projections& projections) const {
+    return project(projections.vertex(n), projections.vertex(n + 1), hn::Set(d, chunk_.dy[n]), hn::Set(d, chunk_.dz[n]),
                    hn::Set(d, chunk_.orientation[n]));
   }
   [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return side_of(chunk_, n, q); }
@@ -179,16 +180,16 @@ class RayOfEach {
   const SampleTile& samples_;
 };
 
-// The vertices of a chunk seen from a group of samples: s = |p| - p_x as fractions s / t, t > 0. For p_x > 0, where
+// The vertices of a chunk as seen from a group of samples: s = |p| - p_x as fractions s / t, t > 0. For p_x > 0, where
 // s = |P|^2 / (|p| + p_x), that saves the division. NaN where |P|^2 is.
 template <class Rays>
-struct Corners {
+struct ChunkView {
   alignas(64) LaneColumn s, t;
-  typename Rays::Seen seen;
+  typename Rays::Projections projections;
 
-  // Vertex n from the samples from i on.
-  void look(const Chunk& chunk, const Rays& rays, const SampleTile& samples, std::size_t n, std::size_t i) {
-    const Lanes square = rays.look(n, i, seen);
+  // Vertex n, from the samples from i on.
+  void set_vertex(const Chunk& chunk, const Rays& rays, const SampleTile& samples, std::size_t n, std::size_t i) {
+    const Lanes square = rays.project_vertex(n, i, projections);
     const Lanes px = hn::Sub(hn::Set(d, chunk.x[n]), hn::Load(d, &samples.x[i]));
     const Lanes sum = hn::Add(hn::Sqrt(hn::Add(hn::Mul(px, px), square)), hn::Abs(px));
     store(hn::IfNegativeThenElse(px, sum, square), s, n);
@@ -196,50 +197,50 @@ struct Corners {
   }
 };
 
-// The factor z_ab t_a t_b of an edge, whose argument is that of z_ab.
-struct Factor {
+// Lanes of the factor z_ab t_a t_b of an edge, whose argument is that of z_ab.
+struct EdgeFactors {
   Lanes re, im;
   Lanes direction;  // the sign of im as +-1
   Lanes product_of_s;
 };
 
 template <class Rays>
-HWY_INLINE Factor factor_of(const Rays& rays, const Corners<Rays>& corners, std::size_t n) {
-  const ProjectedEdge edge = rays.edge(n, corners.seen);
-  const Lanes product_of_s = hn::Mul(load(corners.s, n), load(corners.s, n + 1));
-  const Lanes product_of_t = hn::Mul(load(corners.t, n), load(corners.t, n + 1));
+HWY_INLINE EdgeFactors factors_of(const Rays& rays, const ChunkView<Rays>& view, std::size_t n) {
+  const ProjectedEdge edge = rays.edge(n, view.projections);
+  const Lanes product_of_s = hn::Mul(load(view.s, n), load(view.s, n + 1));
+  const Lanes product_of_t = hn::Mul(load(view.t, n), load(view.t, n + 1));
   return {hn::Add(product_of_s, hn::Mul(product_of_t, edge.re)), hn::Mul(product_of_t, edge.im), edge.direction,
           product_of_s};
 }
 
-HWY_INLINE Lanes magnitude(const Factor& f) { return hn::Add(hn::Abs(f.re), hn::Abs(f.im)); }
+HWY_INLINE Lanes magnitude(const EdgeFactors& f) { return hn::Add(hn::Abs(f.re), hn::Abs(f.im)); }
 
 // Not near the edge; false where anything is NaN.
-HWY_INLINE hn::Mask<Doubles> is_not_near(const Factor& f) {
+HWY_INLINE hn::Mask<Doubles> is_not_near(const EdgeFactors& f) {
   return hn::Gt(magnitude(f), hn::Mul(hn::Set(d, kNearEdge), f.product_of_s));
 }
 
 // A few edges of a chunk.
-struct Block {
+struct EdgeRange {
   std::size_t begin, end;
 };
 
 // What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
 template <class Rays>
 HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, const Rays& rays,
-                                     const SampleTile& samples, std::size_t i, const Corners<Rays>& corners,
-                                     const Block& block, std::uint64_t trusted) {
+                                     const SampleTile& samples, std::size_t i, const ChunkView<Rays>& view,
+                                     const EdgeRange& block, std::uint64_t trusted) {
   for (std::size_t n = block.begin; n < block.end; ++n) {
     if (chunk.orientation[n] == 0.0) continue;
-    const Factor factor = factor_of(rays, corners, n);
-    const auto in_range = hn::And(hn::Gt(magnitude(factor), hn::Set(d, kSmallestFactor)),
-                                  hn::Lt(magnitude(factor), hn::Set(d, kLargestFactor)));
+    const EdgeFactors factors = factors_of(rays, view, n);
+    const auto in_range = hn::And(hn::Gt(magnitude(factors), hn::Set(d, kSmallestFactor)),
+                                  hn::Lt(magnitude(factors), hn::Set(d, kLargestFactor)));
     alignas(64) std::array<double, 8> re, im;
-    hn::Store(factor.re, d, re.data());
-    hn::Store(factor.im, d, im.data());
-    const std::uint64_t plain = bits_of(hn::And(is_not_near(factor), in_range));
+    hn::Store(factors.re, d, re.data());
+    hn::Store(factors.im, d, im.data());
+    const std::uint64_t plain = bits_of(hn::And(is_not_near(factors), in_range));
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      const Vec3 q{samples.x[i + lane], samples.y[i + lane], samples.z[i + lane]};
+      const Vec3 q = samples.query(i + lane);
       if ((trusted >> lane) & 1U) continue;
       if ((plain >> lane) & 1U) {
         multiply_one(products, i + lane, re[lane], im[lane]);
@@ -251,26 +252,26 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
   }
 }
 
-// Multiplies the factors of a block onto the products of the samples from i on, and looks at its vertices from the
+// Multiplies the factors of a block onto the products of the samples from i on, and views its vertices from the
 // samples at `next`: their square roots fill the time that products wait for one another.
 template <class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const Rays& rays, const SampleTile& samples,
-                               std::size_t i, const Corners<Rays>& corners, std::size_t next,
-                               Corners<Rays>& next_corners, const Block& block) {
-  Product z = load(products, i);
+                               std::size_t i, const ChunkView<Rays>& view, std::size_t next, ChunkView<Rays>& next_view,
+                               const EdgeRange& block) {
+  ProductLanes z = load(products, i);
   auto trusted = hn::Eq(z.re, z.re);  // all
   for (std::size_t n = block.begin; n < block.end; ++n) {
-    next_corners.look(chunk, rays, samples, n + 1, next);
+    next_view.set_vertex(chunk, rays, samples, n + 1, next);
     if (chunk.orientation[n] == 0.0) continue;
-    const Factor factor = factor_of(rays, corners, n);
-    trusted = hn::And(trusted, is_not_near(factor));
-    z = times(z, factor.re, factor.im, factor.direction);
+    const EdgeFactors factors = factors_of(rays, view, n);
+    trusted = hn::And(trusted, is_not_near(factors));
+    z = times(z, factors.re, factors.im, factors.direction);
   }
   trusted = hn::And(trusted, is_sound(z));
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
     store(scaled(z), products, i);
   } else {
-    multiply_carefully(products, chunk, rays, samples, i, corners, block, bits_of(trusted));
+    multiply_carefully(products, chunk, rays, samples, i, view, block, bits_of(trusted));
     store_trusted(z, trusted, products, i);
   }
 }
@@ -278,14 +279,14 @@ HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const 
 template <class Rays>
 void multiply_chunk(ProductTile& products, const Chunk& chunk, const SampleTile& samples) {
   const Rays rays(chunk, samples);
-  std::array<Corners<Rays>, 2> corners;  // of the samples at hand and of the next ones, in turns
-  for (std::size_t n = 0; n <= chunk.edges; ++n) corners[0].look(chunk, rays, samples, n, 0);
+  std::array<ChunkView<Rays>, 2> views;  // of the samples at hand and of the next ones, in turns
+  for (std::size_t n = 0; n <= chunk.edges; ++n) views[0].set_vertex(chunk, rays, samples, n, 0);
   std::size_t here = 0;
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
     const std::size_t next = i + hn::Lanes(d) < samples.count ? i + hn::Lanes(d) : i;
-    corners[1 - here].look(chunk, rays, samples, 0, next);
+    views[1 - here].set_vertex(chunk, rays, samples, 0, next);
     for (std::size_t begin = 0; begin < chunk.edges; begin += kFactorsPerBlock) {
-      multiply_block(products, chunk, rays, samples, i, corners[here], next, corners[1 - here],
+      multiply_block(products, chunk, rays, samples, i, views[here], next, views[1 - here],
                      {begin, std::min(begin + kFactorsPerBlock, chunk.edges)});
     }
     here = 1 - here;
@@ -300,14 +301,14 @@ void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, P
     const Chunk chunk(from, steps.subspan(begin, std::min(kEdgesPerChunk, steps.size() - begin)));
     multiply_chunk<Rays>(products, chunk, samples);
   }
-  finish(products, samples.count);
+  set_arguments(products, samples.count);
 }
 
 void multiply_chains_here(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   if (samples.share_a_ray()) {
-    multiply_all<OneRay>(steps, samples, products);
+    multiply_all<EdgesOfOneRay>(steps, samples, products);
   } else {
-    multiply_all<RayOfEach>(steps, samples, products);
+    multiply_all<EdgesOfRays>(steps, samples, products);
   }
 }
 

@@ -3,18 +3,11 @@
 
 #include <span>
 
+#include "core/boundary/chain.h"
 #include "core/boundary/sample_tile.h"
-#include "core/data/vec3.h"
 #include "core/machine/simd.h"
 
 namespace raycone {
-
-// Exterior edges of one |multiplicity| as chains of vertices.
-struct ChainStep {
-  Vec3 to;
-  bool joined;    // the edge from the previous step's vertex to this one is there; else a chain begins here
-  bool reversed;  // its multiplicity is negative
-};
 
 // Multiplies the factors of all edges at all samples. One lane is one sample, and its operations come in one order,
 // without fused multiply-add: results are the same for every SIMD level. Needs DefaultFloatingPoint. Thread-safe.

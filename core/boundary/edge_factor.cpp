@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/boundary/tied_factor.h"
-#include "core/exact/predicates.h"
+#include "core/exact/quad.h"
 
 namespace raycone {
 namespace {
@@ -15,9 +14,10 @@ constexpr double kSmallest = 0x1p-800;
 constexpr double kLargest = 0x1p800;
 constexpr double kLargestX = 0x1p200;
 
-struct Corner {
+// A vertex as seen from the query.
+struct DoubleVertex {
   double x, y, z, square, s;
-  Corner(const Vec3& v, const Vec3& q) : x(v.x - q.x), y(v.y - q.y), z(v.z - q.z), square(y * y + z * z) {
+  DoubleVertex(const Vec3& v, const Vec3& q) : x(v.x - q.x), y(v.y - q.y), z(v.z - q.z), square(y * y + z * z) {
     const double norm = std::sqrt(x * x + square);
     s = x > 0.0 ? square / (norm + x) : norm - x;
   }
@@ -32,7 +32,7 @@ Factor<double> scaled(const Factor<double>& f) {
 // |Im| is |D|.
 Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
   const EdgeDeterminant d = edge_determinant(a, b, q);
-  const Corner ca(a, q), cb(b, q);
+  const DoubleVertex ca(a, q), cb(b, q);
   const double product_of_s = ca.s * cb.s;
   const Factor<double> plain{product_of_s + (ca.y * cb.y + ca.z * cb.z), d.value};
   const double magnitude = std::abs(plain.re) + std::abs(plain.im);
@@ -42,6 +42,33 @@ Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
 }
 
 }  // namespace
+
+template <class Real>
+std::optional<Factor<Real>> unscaled_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const Real ay = Real(a.y) - Real(q.y), az = Real(a.z) - Real(q.z);
+  const Real by = Real(b.y) - Real(q.y), bz = Real(b.z) - Real(q.z);
+  const auto factor = [](Real re, Real im) { return Factor<Real>{re, im < 0 ? -im : im}; };
+  // The ray passes through an end ahead, (s, P) = (0, -1); if q lies at it or beyond, the argument is 0.
+  if (ay == 0 && az == 0) return a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt;
+  if (by == 0 && bz == 0) return b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt;
+  // P_a and P_b lie on one line through 0: the signs of one coordinate tell whether on opposite sides.
+  const bool opposite = ay != 0 ? (ay < 0) != (by < 0) : (az < 0) != (bz < 0);
+  if (!opposite || meeting_side(a, b, q) <= 0) return std::nullopt;
+  return factor(-1, 0);
+}
+
+template <class Real>
+std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const std::optional<Factor<long double>> f = unscaled_tied_factor<long double>(a, b, q);
+  if (!f) return std::nullopt;
+  const int exponent = -std::ilogb(std::max(std::abs(f->re), f->im));
+  return Factor<Real>{static_cast<Real>(std::scalbn(f->re, exponent)), static_cast<Real>(std::scalbn(f->im, exponent))};
+}
+
+template std::optional<Factor<long double>> unscaled_tied_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
+template std::optional<Factor<Quad>> unscaled_tied_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
+template std::optional<Factor<double>> tied_factor<double>(const Vec3&, const Vec3&, const Vec3&);
+template std::optional<Factor<long double>> tied_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
 
 std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,
                                           const EdgeSide& side) {

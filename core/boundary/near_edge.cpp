@@ -7,11 +7,10 @@
 #include <cmath>
 
 #include "core/exact/exact_determinant.h"
+#include "core/exact/quad.h"
 
 namespace raycone {
 namespace {
-
-Quad absolute(Quad x) { return x < 0 ? -x : x; }
 
 Quad square_root(Quad x) {
   if (!(x > 0)) return 0;
@@ -19,16 +18,13 @@ Quad square_root(Quad x) {
   return guess + (x - guess * guess) / (2 * guess);
 }
 
-struct QuadVec3 {
-  Quad x, y, z;
-};
-
-struct Corner {
+// A vertex as seen from the query.
+struct QuadVertex {
   Difference x, y, z;
   QuadVec3 p;
   Quad norm;
   Quad s;  // |p| - p_x without cancellation
-  explicit Corner(const Vec3& v, const Vec3& q)
+  explicit QuadVertex(const Vec3& v, const Vec3& q)
       : x(difference(v.x, q.x)),
         y(difference(v.y, q.y)),
         z(difference(v.z, q.z)),
@@ -49,12 +45,12 @@ struct Form {
 // products 1 each): 40 roundings of the absolute terms, in Re and Im each, and as much again for second-order terms.
 constexpr Quad kFormError = 160 * 0x1p-113;
 
-Form plain_form(const Corner& a, const Corner& b, Quad n_x) {
+Form plain_form(const QuadVertex& a, const QuadVertex& b, Quad n_x) {
   const Quad product = a.s * b.s, y = a.p.y * b.p.y, z = a.p.z * b.p.z;
   return {product + y + z, n_x, product + absolute(y) + absolute(z) + absolute(n_x)};
 }
 
-Form normal_form(const Corner& a, const Corner& b, const QuadVec3& n) {
+Form normal_form(const QuadVertex& a, const QuadVertex& b, const QuadVec3& n) {
   const Quad dot = a.p.x * b.p.x + a.p.y * b.p.y + a.p.z * b.p.z;
   const Quad k = a.norm * b.norm - dot;
   const Quad g_y = b.norm * a.p.y - a.norm * b.p.y, g_z = b.norm * a.p.z - a.norm * b.p.z;
@@ -69,7 +65,7 @@ Form normal_form(const Corner& a, const Corner& b, const QuadVec3& n) {
 
 template <class Real>
 NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
-  const Corner ca(a, q), cb(b, q);
+  const QuadVertex ca(a, q), cb(b, q);
   const QuadVec3 n{determinant(ca.y, ca.z, cb.y, cb.z), determinant(ca.z, ca.x, cb.z, cb.x),
                    determinant(ca.x, ca.y, cb.x, cb.y)};
   const Form plain = plain_form(ca, cb, n.x), normal = normal_form(ca, cb, n);

@@ -33,22 +33,20 @@ constexpr double kSmallestFactor = 0x1p-120;
 constexpr double kLargestFactor = 0x1p120;
 constexpr double kLargestProduct = 0x1p1000;
 
-// The products of some samples while they are in registers. Where Im Z changes its sign bit, the argument has passed 0
-// or +-pi; `passages` counts +1 for factors with Im >= 0 and -1 for the others. Together with the sign of Im Z that
-// gives the turns: see set_turns().
-struct Product {
+// Lanes of a ProductTile while they are in registers.
+struct ProductLanes {
   Lanes re, im, passages;
 };
 
 // A product times re + i im; direction is the sign of im as +-1.
-HWY_INLINE Product times(const Product& z, Lanes f_re, Lanes f_im, Lanes direction) {
+HWY_INLINE ProductLanes times(const ProductLanes& z, Lanes f_re, Lanes f_im, Lanes direction) {
   const Lanes re = hn::Sub(hn::Mul(z.re, f_re), hn::Mul(z.im, f_im));
   const Lanes im = hn::Add(hn::Mul(z.re, f_im), hn::Mul(z.im, f_re));
   return {re, im, hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))};
 }
 
 // Without the power of two, which is exact.
-HWY_INLINE Product scaled(const Product& z) {
+HWY_INLINE ProductLanes scaled(const ProductLanes& z) {
   const hn::RebindToUnsigned<Doubles> bits;
   const auto largest = hn::BitCast(bits, hn::Max(hn::Abs(z.re), hn::Abs(z.im)));
   const auto exponent = hn::And(largest, hn::Set(bits, 0x7FF0000000000000U));
@@ -56,28 +54,28 @@ HWY_INLINE Product scaled(const Product& z) {
   return {hn::Mul(z.re, inverse), hn::Mul(z.im, inverse), z.passages};
 }
 
-HWY_INLINE Product load(const ProductTile& products, std::size_t i) {
-  return {hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i]), hn::Load(d, &products.turns[i])};
+HWY_INLINE ProductLanes load(const ProductTile& products, std::size_t i) {
+  return {hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i]), hn::Load(d, &products.passages[i])};
 }
 
-HWY_INLINE void store(const Product& z, ProductTile& products, std::size_t i) {
+HWY_INLINE void store(const ProductLanes& z, ProductTile& products, std::size_t i) {
   hn::Store(z.re, d, &products.re[i]);
   hn::Store(z.im, d, &products.im[i]);
-  hn::Store(z.passages, d, &products.turns[i]);
+  hn::Store(z.passages, d, &products.passages[i]);
 }
 
 // One sample's product times re + i im.
 void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
   const double before = z.im[i];
   const double product_re = z.re[i] * re - before * im, product_im = z.re[i] * im + before * re;
-  if (std::signbit(before) != std::signbit(product_im)) z.turns[i] += std::signbit(im) ? -1.0 : 1.0;
+  if (std::signbit(before) != std::signbit(product_im)) z.passages[i] += std::signbit(im) ? -1.0 : 1.0;
   z.re[i] = product_re;
   z.im[i] = product_im;
 }
 
 // A block's product, where all its factors were trusted and none so large that it shows as one that is large, infinite
 // or NaN.
-HWY_INLINE hn::Mask<Doubles> is_sound(const Product& z) {
+HWY_INLINE hn::Mask<Doubles> is_sound(const ProductLanes& z) {
   return hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct));
 }
 
@@ -89,8 +87,8 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Doubles> trusted) {
 }
 
 // Stores the trusted lanes of a block's product; the others have been multiplied in memory.
-HWY_INLINE void store_trusted(const Product& z, hn::Mask<Doubles> trusted, ProductTile& products, std::size_t i) {
-  const Product careful = load(products, i);
+HWY_INLINE void store_trusted(const ProductLanes& z, hn::Mask<Doubles> trusted, ProductTile& products, std::size_t i) {
+  const ProductLanes careful = load(products, i);
   store(scaled({hn::IfThenElse(trusted, z.re, careful.re), hn::IfThenElse(trusted, z.im, careful.im),
                 hn::IfThenElse(trusted, z.passages, careful.passages)}),
         products, i);
@@ -99,20 +97,11 @@ HWY_INLINE void store_trusted(const Product& z, hn::Mask<Doubles> trusted, Produ
 void set_ones(ProductTile& products) {
   products.re.fill(1.0);
   products.im.fill(0.0);
-  products.turns.fill(0.0);
+  products.passages.fill(0.0);
 }
 
-// Passages of the positive and the negative real axis, with a sign each, become turns, which are those of the negative
-// axis from above (+1) and from below (-1). A, B: passages from above to below with Im f >= 0 and Im f < 0; C, D: from
-// below to above with Im f < 0 and Im f >= 0. The turns are A - C, and passages = A + D - B - C, and A + B - C - D is 1
-// where the product ends below, else 0. Rounding can neither create nor lose a turn (docs/method.md).
-void set_turns(ProductTile& products, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    products.turns[i] = (products.turns[i] + (std::signbit(products.im[i]) ? 1.0 : 0.0)) / 2;
-  }
-}
-
-// atan(t) / (2 pi) for t in [0, 1]. This and the next one: operation by operation what core/boundary/angle.cpp does for one.
+// atan(t) / (2 pi) for t in [0, 1]. This and the next one: operation by operation what core/boundary/angle.cpp does for
+// one.
 HWY_INLINE Lanes arc_tangent_in_turns(Lanes t) {
   static constexpr auto kTable = [] {
     std::array<double, kArcTangentsInTurns.size()> table{};
@@ -141,17 +130,12 @@ HWY_INLINE Lanes argument_in_turns_of(Lanes re, Lanes im) {
   return hn::CopySign(hn::IfNegativeThenElse(re, hn::Sub(hn::Set(d, 0.5), quadrant), quadrant), im);
 }
 
+// When all factors are multiplied.
 void set_arguments(ProductTile& products, std::size_t count) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     hn::Store(argument_in_turns_of(hn::Load(d, &products.re[i]), hn::Load(d, &products.im[i])), d,
               &products.argument[i]);
   }
-}
-
-// When all factors are multiplied.
-void finish(ProductTile& products, std::size_t count) {
-  set_turns(products, count);
-  set_arguments(products, count);
 }
 
 }  // namespace

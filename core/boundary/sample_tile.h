@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,17 +28,27 @@ struct SampleTile {
 
   void clear() { count = 0; }
   void add(const Vec3& q);
+  [[nodiscard]] Vec3 query(std::size_t i) const { return {x[i], y[i], z[i]}; }
   void fill_up();
   [[nodiscard]] bool share_a_ray() const;  // one y and one z, as along a row of a lattice
 };
 
-// Per sample the product of the factors, scaled by a power of two, the turns that its argument has completed, and what
-// is left of it, as argument_in_turns() (core/boundary/angle.h).
+// Per sample the product of the factors, scaled by a power of two, and where the argument of the running product went.
+// Where Im Z changes its sign bit, it has passed 0 or +-pi.
 struct ProductTile {
   alignas(64) Tile re;
   alignas(64) Tile im;
-  alignas(64) Tile turns;  // integers
-  alignas(64) Tile argument;
+  alignas(64) Tile passages;  // of the real axis: each +1 by a factor with Im >= 0, -1 by another; integers
+  alignas(64) Tile argument;  // of the whole product, as argument_in_turns() (core/boundary/angle.h)
+
+  // Passages of the positive and the negative real axis, with a sign each, become the turns that the argument has
+  // completed, which are passages of the negative axis from above (+1) and from below (-1). A, B: passages from above
+  // to below with Im f >= 0 and Im f < 0; C, D: from below to above with Im f < 0 and Im f >= 0. The turns are A - C,
+  // passages = A + D - B - C, and A + B - C - D is 1 where the product ends below, else 0. Rounding can neither create
+  // nor lose a turn (docs/method.md).
+  [[nodiscard]] std::int64_t turns(std::size_t i) const {
+    return static_cast<std::int64_t>((passages[i] + (std::signbit(im[i]) ? 1.0 : 0.0)) / 2);
+  }
 };
 
 }  // namespace raycone

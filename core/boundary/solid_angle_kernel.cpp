@@ -24,8 +24,8 @@ namespace {
 
 // Im z_T = n . a. The normal's components, those of a, and their products are each rounded once, the sum twice: 5 u of
 // the absolute terms, u = 2^-53, plus what stands for underflow.
-constexpr double kSideFilter = 5.0 * 0x1p-53 * (1.0 + 0x1p-40);
-constexpr double kSideUnderflow = 0x1p-1000;
+constexpr double kPlaneSideFilter = 5.0 * 0x1p-53 * (1.0 + 0x1p-40);
+constexpr double kPlaneSideUnderflow = 0x1p-1000;
 
 // Re z_T, four terms of at most |a||b||c|, is off by less than 50 u of that. Next to the triangle, where |z_T| is below
 // these shares of |a||b||c| and of the absolute terms of Im z_T, the argument could be off by more than 2^-41.
@@ -34,44 +34,44 @@ constexpr double kNearCorner = 0x1p-8;
 
 // What y and z contribute: to |a|^2, |b|^2, |c|^2, to the products of two of them, to n . a, and to its absolute terms.
 template <class Real>
-struct Projected {
+struct ProjectedTriangle {
   Real aa, bb, cc, ab, bc, ca, side, terms;
 };
 
 // Along the one ray that all samples share, for a few triangles at a time.
-class OneRay {
+class TrianglesOfOneRay {
  public:
   static constexpr std::size_t kTriangles = 32;
 
-  OneRay(std::span<const SolidTriangle> triangles, const SampleTile& samples) {
+  TrianglesOfOneRay(std::span<const SolidTriangle> triangles, const SampleTile& samples) {
     for (std::size_t n = 0; n < triangles.size(); ++n)
       projected_[n] = project(triangles[n], samples.y[0], samples.z[0]);
   }
-  [[nodiscard]] Projected<Lanes> projected(std::size_t n, std::size_t) const {
-    const Projected<double>& p = projected_[n];
+  [[nodiscard]] ProjectedTriangle<Lanes> projected(std::size_t n, std::size_t) const {
+    const ProjectedTriangle<double>& p = projected_[n];
     return {hn::Set(d, p.aa), hn::Set(d, p.bb), hn::Set(d, p.cc),   hn::Set(d, p.ab),
             hn::Set(d, p.bc), hn::Set(d, p.ca), hn::Set(d, p.side), hn::Set(d, p.terms)};
   }
 
  private:
-  static Projected<double> project(const SolidTriangle& t, double qy, double qz) {
+  static ProjectedTriangle<double> project(const SolidTriangle& t, double qy, double qz) {
     const double ay = t.a.y - qy, az = t.a.z - qz, by = t.b.y - qy, bz = t.b.z - qz, cy = t.c.y - qy, cz = t.c.z - qz;
     const double ny = t.normal.y * ay, nz = t.normal.z * az;
     return {ay * ay + az * az, by * by + bz * bz, cy * cy + cz * cz, ay * by + az * bz,
             by * cy + bz * cz, cy * ay + cz * az, ny + nz,           std::abs(ny) + std::abs(nz)};
   }
 
-  std::array<Projected<double>, kTriangles> projected_;
+  std::array<ProjectedTriangle<double>, kTriangles> projected_;
 };
 
 // The same for samples with a ray each.
-class RayOfEach {
+class TrianglesOfRays {
  public:
-  static constexpr std::size_t kTriangles = OneRay::kTriangles;
+  static constexpr std::size_t kTriangles = TrianglesOfOneRay::kTriangles;
 
-  RayOfEach(std::span<const SolidTriangle> triangles, const SampleTile& samples)
+  TrianglesOfRays(std::span<const SolidTriangle> triangles, const SampleTile& samples)
       : triangles_(triangles), samples_(samples) {}
-  [[nodiscard]] Projected<Lanes> projected(std::size_t n, std::size_t i) const {
+  [[nodiscard]] ProjectedTriangle<Lanes> projected(std::size_t n, std::size_t i) const {
     const SolidTriangle& t = triangles_[n];
     const Lanes qy = hn::Load(d, &samples_.y[i]), qz = hn::Load(d, &samples_.z[i]);
     const auto from = [](double v, Lanes q) { return hn::Sub(hn::Set(d, v), q); };
@@ -89,13 +89,13 @@ class RayOfEach {
   const SampleTile& samples_;
 };
 
-// z_T = |a||b||c| + (a . b)|c| + (b . c)|a| + (c . a)|b| + i n . a.
-struct Factor {
+// Lanes of z_T = |a||b||c| + (a . b)|c| + (b . c)|a| + (c . a)|b| + i n . a.
+struct TriangleFactors {
   Lanes re, im;
   hn::Mask<Doubles> trusted;
 };
 
-HWY_INLINE Factor factor_of(const SolidTriangle& t, const Projected<Lanes>& p, Lanes x) {
+HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const ProjectedTriangle<Lanes>& p, Lanes x) {
   const Lanes ax = hn::Sub(hn::Set(d, t.a.x), x), bx = hn::Sub(hn::Set(d, t.b.x), x);
   const Lanes cx = hn::Sub(hn::Set(d, t.c.x), x);
   const auto norm = [](Lanes v, Lanes square) { return hn::Sqrt(hn::Add(hn::Mul(v, v), square)); };
@@ -108,7 +108,7 @@ HWY_INLINE Factor factor_of(const SolidTriangle& t, const Projected<Lanes>& p, L
       hn::Add(hn::Add(all, product(ax, bx, p.ab, c)), hn::Add(product(bx, cx, p.bc, a), product(cx, ax, p.ca, b)));
   const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), ax);
   const Lanes im = hn::Add(nx, p.side), terms = hn::Add(hn::Abs(nx), p.terms);
-  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kSideFilter), terms), hn::Set(d, kSideUnderflow));
+  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kPlaneSideFilter), terms), hn::Set(d, kPlaneSideUnderflow));
   const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
   const Lanes near = hn::Max(hn::Mul(hn::Set(d, kNearTriangle), all), hn::Mul(hn::Set(d, kNearCorner), terms));
   const auto trusted =
@@ -120,7 +120,7 @@ HWY_INLINE Factor factor_of(const SolidTriangle& t, const Projected<Lanes>& p, L
 // exactness rule.
 void multiply_by_edges(ProductTile& products, std::size_t i, const SolidTriangle& t, const Vec3& q) {
   const TriangleCrossing crossing = triangle_crossing(t.a, t.b, t.c, {q.y, q.z, {&q.x, 1}}, nullptr);
-  if (crossing.crossed > 0) products.turns[i] += 2 * crossing.sigma * t.orientation;  // a turn is two passages
+  if (crossing.crossed > 0) products.passages[i] += 2 * crossing.sigma * t.orientation;  // a turn is two passages
   for (const auto& [from, to] : {std::pair(&t.a, &t.b), std::pair(&t.b, &t.c), std::pair(&t.c, &t.a)}) {
     const auto f = edge_factor(*from, *to, t.orientation < 0.0, q, edge_side(*from, *to, q));
     if (f) multiply_one(products, i, f->re, -f->im);
@@ -133,12 +133,12 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
                                      const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                      std::uint64_t trusted) {
   for (std::size_t n = begin; n < end; ++n) {
-    const Factor factor = factor_of(triangles[n], rays.projected(n, i), hn::Load(d, &samples.x[i]));
-    const Lanes magnitude = hn::Add(hn::Abs(factor.re), hn::Abs(factor.im));
-    const std::uint64_t plain = bits_of(hn::And(factor.trusted, hn::Lt(magnitude, hn::Set(d, kLargestFactor))));
+    const TriangleFactors factors = factors_of(triangles[n], rays.projected(n, i), hn::Load(d, &samples.x[i]));
+    const Lanes magnitude = hn::Add(hn::Abs(factors.re), hn::Abs(factors.im));
+    const std::uint64_t plain = bits_of(hn::And(factors.trusted, hn::Lt(magnitude, hn::Set(d, kLargestFactor))));
     alignas(64) std::array<double, 8> re, im;
-    hn::Store(factor.re, d, re.data());
-    hn::Store(factor.im, d, im.data());
+    hn::Store(factors.re, d, re.data());
+    hn::Store(factors.im, d, im.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       const std::size_t sample = i + lane;
       if ((trusted >> lane) & 1U) continue;
@@ -156,12 +156,12 @@ template <class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, const Rays& rays,
                                const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end) {
   const Lanes x = hn::Load(d, &samples.x[i]);
-  Product z = load(products, i);
+  ProductLanes z = load(products, i);
   auto trusted = hn::Eq(z.re, z.re);  // all
   for (std::size_t n = begin; n < end; ++n) {
-    const Factor factor = factor_of(triangles[n], rays.projected(n, i), x);
-    trusted = hn::And(trusted, factor.trusted);
-    z = times(z, factor.re, factor.im, hn::CopySignToAbs(hn::Set(d, 1.0), factor.im));
+    const TriangleFactors factors = factors_of(triangles[n], rays.projected(n, i), x);
+    trusted = hn::And(trusted, factors.trusted);
+    z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
   }
   trusted = hn::And(trusted, is_sound(z));
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
@@ -185,15 +185,15 @@ void multiply_all(std::span<const SolidTriangle> all, const SampleTile& samples,
       }
     }
   }
-  finish(products, samples.count);
+  set_arguments(products, samples.count);
 }
 
 void multiply_triangles_here(std::span<const SolidTriangle> triangles, const SampleTile& samples,
                              ProductTile& products) {
   if (samples.share_a_ray()) {
-    multiply_all<OneRay>(triangles, samples, products);
+    multiply_all<TrianglesOfOneRay>(triangles, samples, products);
   } else {
-    multiply_all<RayOfEach>(triangles, samples, products);
+    multiply_all<TrianglesOfRays>(triangles, samples, products);
   }
 }
 

@@ -16,9 +16,9 @@ struct SolidTriangle {
   double orientation;  // 1, or -1 if it is a, c, b
 };
 
-// Multiplies the factors z_T of all triangles (core/boundary/solid_angles.h) at all samples; the argument of the product is 2 pi
-// times the winding number. One lane is one sample, and its operations come in one order, without fused multiply-add:
-// results are the same for every SIMD level. Needs DefaultFloatingPoint. Thread-safe.
+// Multiplies the factors z_T of all triangles (core/boundary/solid_angles.h) at all samples; the argument of the
+// product is 2 pi times the winding number. One lane is one sample, and its operations come in one order, without fused
+// multiply-add: results are the same for every SIMD level. Needs DefaultFloatingPoint. Thread-safe.
 using SolidAngleKernel = void (*)(std::span<const SolidTriangle> triangles, const SampleTile& samples,
                                   ProductTile& products);
 

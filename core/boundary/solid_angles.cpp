@@ -31,7 +31,7 @@ bool is_long(const Vec3& a, const Vec3& b) {
   return !(std::max({std::abs(side.x), std::abs(side.y), std::abs(side.z)}) < kLongest);
 }
 
-constexpr double kCrowd = 256;  // equal faces
+constexpr double kManyCopies = 256;  // equal faces
 
 // The same for all orders of the corners but for `orientation`, and for faces that were left unwelded.
 SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -59,7 +59,15 @@ std::strong_ordering order(const SolidTriangle& s, const SolidTriangle& t) {
 
 }  // namespace
 
-SolidAngles::SolidAngles(const TriangleMesh& mesh, SimdLevel level) : multiply_(solid_angle_kernel(level)) {
+SolidAngles::SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level)
+    : SolidAngles(faces_of(mesh), boundary, level) {}
+
+SolidAngles::SolidAngles(Faces faces, const Boundary& boundary, SimdLevel level)
+    : ExactTerm(boundary, 3 * static_cast<double>(faces.triangles.size())),
+      multiply_(solid_angle_kernel(level)),
+      faces_(std::move(faces)) {}
+
+SolidAngles::Faces SolidAngles::faces_of(const TriangleMesh& mesh) {
   std::vector<SolidTriangle> all;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -67,15 +75,17 @@ SolidAngles::SolidAngles(const TriangleMesh& mesh, SimdLevel level) : multiply_(
   }
   std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });
   // Faces on each other with opposite orientations cancel.
+  Faces faces;
   for (auto begin = all.begin(); begin != all.end();) {
     const auto end = std::find_if(begin, all.end(), [&](const auto& t) { return order(*begin, t) != 0; });
     double net = 0.0;
     for (auto it = begin; it != end; ++it) net += it->orientation;
     begin->orientation = std::copysign(1.0, net);
-    has_crowds_ = has_crowds_ || std::abs(net) > kCrowd;
-    triangles_.insert(triangles_.end(), static_cast<std::size_t>(std::abs(net)), *begin);
+    faces.has_repeated_faces = faces.has_repeated_faces || std::abs(net) > kManyCopies;
+    faces.triangles.insert(faces.triangles.end(), static_cast<std::size_t>(std::abs(net)), *begin);
     begin = end;
   }
+  return faces;
 }
 
 // Per sample a triangle takes 1.1 to 1.3 times as long as an edge.
@@ -83,12 +93,12 @@ bool SolidAngles::are_cheaper(std::size_t triangles, std::size_t exterior_edges)
   return 4 * triangles <= 3 * exterior_edges;
 }
 
-void SolidAngles::winding_numbers(SampleTile& samples, std::span<Turns> w) const {
+void SolidAngles::winding_numbers(SampleTile& samples, std::span<const std::int64_t>, std::span<double> w) const {
   samples.fill_up();
   ProductTile products;
-  multiply_(triangles_, samples, products);
+  multiply_(faces_.triangles, samples, products);
   for (std::size_t i = 0; i < samples.count; ++i) {
-    w[i] = {static_cast<std::int64_t>(products.turns[i]), products.argument[i]};
+    w[i] = static_cast<double>(products.turns(i)) + products.argument[i];
   }
 }
 

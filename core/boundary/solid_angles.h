@@ -6,34 +6,41 @@
 // (Van Oosterom and Strackee 1983, eq. 8, halved).
 #pragma once
 
-#include <span>
 #include <vector>
 
+#include "core/boundary/boundary_term.h"
 #include "core/boundary/solid_angle_kernel.h"
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
 
-class SolidAngles {
+// Rounding errors of some u per triangle.
+class SolidAngles final : public ExactTerm {
  public:
-  SolidAngles(const TriangleMesh& mesh, SimdLevel level);
+  // `boundary`: of the mesh; it must outlive this.
+  SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level);
 
   // Whether the sum over the triangles is cheaper than the cone over the exterior edges.
   [[nodiscard]] static bool are_cheaper(std::size_t triangles, std::size_t exterior_edges);
 
-  [[nodiscard]] double triangles() const { return static_cast<double>(triangles_.size()); }
-
   // Whether a face is there so often that its error, multiplied, would show.
-  [[nodiscard]] bool has_crowds() const { return has_crowds_; }
+  [[nodiscard]] bool has_repeated_faces() const { return faces_.has_repeated_faces; }
 
-  // Sets w[i] to the winding number at sample i. Rounding errors of some u per triangle; needs DefaultFloatingPoint.
-  // Thread-safe. w.size() == samples.count, at least 1.
-  void winding_numbers(SampleTile& samples, std::span<Turns> w) const;
+  [[nodiscard]] bool counts_crossings() const override { return false; }
+  void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
+                       std::span<double> w) const override;
 
  private:
+  // Those of positive area, in an order that depends on coordinates only; a face that is there n times has n entries.
+  struct Faces {
+    std::vector<SolidTriangle> triangles;
+    bool has_repeated_faces = false;
+  };
+  SolidAngles(Faces faces, const Boundary& boundary, SimdLevel level);
+  static Faces faces_of(const TriangleMesh& mesh);
+
   SolidAngleKernel multiply_;
-  bool has_crowds_ = false;
-  std::vector<SolidTriangle> triangles_;  // those of positive area, in an order that depends on coordinates only
+  Faces faces_;
 };
 
 }  // namespace raycone

@@ -11,8 +11,8 @@ namespace raycone {
 // Where a triangle's plane meets lines along x, in floating point.
 struct TrianglePlane {
   Vec3 normal;  // (b - a) x (c - a), rounded
-  double error =
-      0;  // bound of |x^ - x| where a line through the triangle's box meets the plane; infinite where none is known
+  // Bound of |x^ - x| where a line through the triangle's box meets the plane; infinite where none is known.
+  double error = 0;
 
   TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c);
 };

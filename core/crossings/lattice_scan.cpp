@@ -1,6 +1,8 @@
 #include "core/crossings/lattice_scan.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "core/crossings/triangle_sections.h"
 #include "core/machine/threads.h"
@@ -14,33 +16,23 @@ constexpr std::size_t kVerticesPerTask = 8192;
 
 constexpr std::size_t kGroupsPerTask = 4;
 
-// Where a number lies among ascending values: how many of them are below it, and not above it.
-struct Place {
-  std::uint32_t below, up_to;
-};
-
-Place place_of(double x, const std::vector<double>& values, double per_unit) {
+// The values that equal x among ascending ones: where there are none, both ends tell where x lies.
+SampleRange equal_range(double x, const std::vector<double>& values, double per_unit) {
   const std::size_t below = count_below(values, per_unit, x);
   std::size_t up_to = below;
   while (up_to < values.size() && values[up_to] == x) ++up_to;
   return {static_cast<std::uint32_t>(below), static_cast<std::uint32_t>(up_to)};
 }
 
-// The values within the interval that three numbers span, as [begin, end).
-struct Range {
-  std::uint32_t begin, end;
-  [[nodiscard]] bool empty() const { return begin >= end; }
-  [[nodiscard]] std::uint32_t size() const { return end - begin; }
-};
-
-Range range_of(const Place& a, const Place& b, const Place& c) {
-  return {std::min({a.below, b.below, c.below}), std::max({a.up_to, b.up_to, c.up_to})};
+// The values within the interval that three numbers span.
+SampleRange hull(const SampleRange& a, const SampleRange& b, const SampleRange& c) {
+  return {std::min({a.begin, b.begin, c.begin}), std::max({a.end, b.end, c.end})};
 }
 
 // Calls visit(j, k) for the rows that the triangle may concern, of those in its box.
 template <class Visit>
-void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const Range& js, const Range& ks,
-                const Visit& visit) {
+void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const SampleRange& js,
+                const SampleRange& ks, const Visit& visit) {
   constexpr std::uint32_t kFew = 6;  // rows, not worth a section
   if (std::max(js.size(), ks.size()) <= kFew) {
     for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
@@ -61,18 +53,19 @@ void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& 
   }
 }
 
-struct VertexPlace {
-  Place y, z;
+// Where a vertex lies among the rows.
+struct VertexRows {
+  SampleRange y, z;
 };
 
-VertexPlace place_of(const Vec3& v, const LatticeRows& rows) {
-  return {place_of(v.y, rows.ys, rows.samples_per_unit.y), place_of(v.z, rows.zs, rows.samples_per_unit.z)};
+VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
+  return {equal_range(v.y, rows.ys, rows.samples_per_unit.y), equal_range(v.z, rows.zs, rows.samples_per_unit.z)};
 }
 
-// One triangle, whose corners are at these places. Most meet no row: their corners are not looked at.
-void scan(const TriangleMesh& mesh, const Triangle& t, const VertexPlace& pa, const VertexPlace& pb,
-          const VertexPlace& pc, const LatticeRows& rows, LatticeSums::Collector& collector) {
-  const Range ks = range_of(pa.z, pb.z, pc.z), js = range_of(pa.y, pb.y, pc.y);
+// One triangle, whose corners lie there among the rows. Most meet no row: their corners are not fetched.
+void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, const VertexRows& at_b,
+          const VertexRows& at_c, const LatticeRows& rows, LatticeSums::Collector& collector) {
+  const SampleRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
   if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
   const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
@@ -86,15 +79,15 @@ void scan(const TriangleMesh& mesh, const Triangle& t, const VertexPlace& pa, co
 // All of them. Where a vertex lies is looked up once per vertex, not per triangle: most triangles of a fine mesh meet
 // no row, and need nothing else.
 void scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
-  std::vector<VertexPlace> places(mesh.vertices.size());
-  parallel_for(places.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) places[i] = place_of(mesh.vertices[i], rows);
+  std::vector<VertexRows> at(mesh.vertices.size());
+  parallel_for(at.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) at[i] = rows_at(mesh.vertices[i], rows);
   });
   parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     LatticeSums::Collector collector(sums);
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[i];
-      scan(mesh, t, places[t[0]], places[t[1]], places[t[2]], rows, collector);
+      scan(mesh, t, at[t[0]], at[t[1]], at[t[2]], rows, collector);
     }
     collector.finish();
   });
@@ -111,7 +104,7 @@ void scan_slab(const TriangleMesh& mesh, const LatticeRows& rows, const OrderedS
         const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
         const auto [lower, upper] = std::minmax({a[slab.axis], b[slab.axis], c[slab.axis]});
         if (lower > across.back() || upper < across.front()) continue;
-        scan(mesh, t, place_of(a, rows), place_of(b, rows), place_of(c, rows), rows, collector);
+        scan(mesh, t, rows_at(a, rows), rows_at(b, rows), rows_at(c, rows), rows, collector);
       }
     }
     collector.finish();

@@ -20,7 +20,7 @@ constexpr std::size_t kHandful = 4096;
 // entry i: what is said of the samples up to i and no further. Turns that into sums. Most rows hold few entries: eight
 // zeros are looked at together.
 template <class Number>
-void sum_from_behind(std::span<Number> row) {
+void suffix_sums(std::span<Number> row) {
   constexpr std::size_t kTogether = 8;
   Number sum{0};
   std::size_t end = row.size();
@@ -78,7 +78,7 @@ void LatticeSums::Collector::finish() {
 }
 
 // Empties `crossed`.
-void LatticeSums::take(std::vector<Crossed>& crossed) {
+void LatticeSums::take(std::vector<RowCrossing>& crossed) {
   if (crossed.empty()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -96,13 +96,13 @@ void LatticeSums::take(std::vector<Crossed>& crossed) {
 // On one thread: others may wait for it.
 void LatticeSums::make_dense() {
   std::ranges::fill(crossings_, 0.0);
-  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);
+  for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);
   parts_ = {};
   dense_.store(true, std::memory_order_release);
 }
 
-void LatticeSums::add_to_samples(std::span<const Crossed> crossed) {
-  for (const Crossed& c : crossed) {
+void LatticeSums::add_to_samples(std::span<const RowCrossing> crossed) {
+  for (const RowCrossing& c : crossed) {
     add_to(crossings_[c.row * samples_ + c.samples - 1], static_cast<double>(c.sigma));
   }
 }
@@ -131,25 +131,25 @@ std::uint8_t* LatticeSums::on_surface() {
 void LatticeSums::arrange() {
   if (dense_ || crossings_.empty()) return;
   begin_.assign(rows_ + 2, 0);
-  for (const std::vector<Crossed>& part : parts_) {
-    for (const Crossed& c : part) ++begin_[c.row + 2];
+  for (const std::vector<RowCrossing>& part : parts_) {
+    for (const RowCrossing& c : part) ++begin_[c.row + 2];
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  endings_.resize(kept_);
-  // begin_[row + 1] is the row's next free place, and its end when all are filled.
-  for (const std::vector<Crossed>& part : parts_) {
-    for (const Crossed& c : part) endings_[begin_[c.row + 1]++] = {c.samples, c.sigma};
+  prefixes_.resize(kept_);
+  // begin_[row + 1] is the row's next free index, and its end when all are filled.
+  for (const std::vector<RowCrossing>& part : parts_) {
+    for (const RowCrossing& c : part) prefixes_[begin_[c.row + 1]++] = {c.samples, c.sigma};
   }
   parts_ = {};
 }
 
-void LatticeSums::sum_endings(std::size_t row) {
-  const std::span<Ending> endings = std::span(endings_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
-  std::ranges::sort(endings, std::ranges::greater{}, &Ending::samples);
+void LatticeSums::sum_prefixes(std::size_t row) {
+  const std::span<Prefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+  std::ranges::sort(prefixes, std::ranges::greater{}, &Prefix::samples);
   const std::span<double> sums = crossings_.subspan(row * samples_, samples_);
   double sum = 0.0;
   auto end = sums.end();
-  for (const Ending& e : endings) {
+  for (const Prefix& e : prefixes) {
     const auto begin = sums.begin() + static_cast<std::ptrdiff_t>(e.samples);
     std::fill(begin, end, sum);
     sum += e.sigma;
@@ -162,13 +162,13 @@ std::uint64_t LatticeSums::finish(std::size_t row) {
   const std::size_t first = row * samples_;
   if (!crossings_.empty()) {
     if (dense_) {
-      sum_from_behind(crossings_.subspan(first, samples_));
+      suffix_sums(crossings_.subspan(first, samples_));
     } else {
-      sum_endings(row);
+      sum_prefixes(row);
     }
   }
   if (diagnostics_) {
-    sum_from_behind(diagnostics_->degenerate.subspan(first, samples_));
+    suffix_sums(diagnostics_->degenerate.subspan(first, samples_));
     std::ranges::transform(crossings_.subspan(first, samples_), diagnostics_->crossings.subspan(first).begin(),
                            [](double n) { return static_cast<std::int64_t>(n); });
   }

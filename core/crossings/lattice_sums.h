@@ -17,7 +17,7 @@ namespace raycone {
 // Rows of `samples` samples each; sample i of row r is number r * samples + i of all spans. First all crossings are
 // collected, then they are arranged, then rows are finished.
 class LatticeSums {
-  struct Crossed {
+  struct RowCrossing {
     std::uint32_t row;
     std::uint32_t samples;  // counted by the samples [0, samples)
     std::int32_t sigma;
@@ -47,7 +47,7 @@ class LatticeSums {
     void count(std::size_t row, const TriangleCrossing& crossing);
 
     LatticeSums& sums_;
-    std::vector<Crossed> waiting_;
+    std::vector<RowCrossing> waiting_;
     std::uint64_t ties_ = 0;
   };
 
@@ -62,17 +62,18 @@ class LatticeSums {
   [[nodiscard]] std::uint64_t ties() const { return ties_; }
 
  private:
-  struct Ending {
-    std::uint32_t samples;
+  // A crossing of one row.
+  struct Prefix {
+    std::uint32_t samples;  // counted by the first ones, so many
     std::int32_t sigma;
   };
 
-  void take(std::vector<Crossed>& crossed);
+  void take(std::vector<RowCrossing>& crossed);
   void make_dense();
-  void add_to_samples(std::span<const Crossed> crossed);
+  void add_to_samples(std::span<const RowCrossing> crossed);
   void add_degenerate(std::size_t row, const TriangleCrossing& crossing);
   std::uint8_t* on_surface();
-  void sum_endings(std::size_t row);
+  void sum_prefixes(std::size_t row);
 
   std::size_t rows_, samples_;
   std::span<double> crossings_;
@@ -80,10 +81,10 @@ class LatticeSums {
   std::mutex mutex_;
   std::atomic<std::uint64_t> ties_ = 0;
   // Few crossings are kept as they come, until they are arranged by row.
-  std::vector<std::vector<Crossed>> parts_;
+  std::vector<std::vector<RowCrossing>> parts_;
   std::size_t kept_ = 0;
-  std::vector<std::size_t> begin_;  // per row, into endings_; and the end
-  std::vector<Ending> endings_;
+  std::vector<std::size_t> begin_;  // per row, into prefixes_; and the end
+  std::vector<Prefix> prefixes_;
   // Many are added up: crossings_[i] is then what is said of the samples of its row up to i and no further.
   std::atomic<bool> dense_ = false;
   std::vector<std::uint8_t> own_on_surface_;  // where there are no diagnostics; empty as long as nothing is on it

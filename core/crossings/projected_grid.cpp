@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/crossings/crossings.h"
+#include "core/data/interval.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -13,7 +14,7 @@ namespace {
 // Farther out by more than the rounding to float.
 float rounded_up(double x) { return static_cast<float>(x + std::abs(x) * 0x1p-22 + 0x1p-120); }
 
-constexpr double kPlacesPerSide = 256;
+constexpr double kMortonCodesPerSide = 256;
 
 // The lower 8 bits of v in the even places.
 std::uint32_t spread(std::uint32_t v) {
@@ -21,22 +22,6 @@ std::uint32_t spread(std::uint32_t v) {
   v = (v | (v << 2)) & 0x3333U;
   return (v | (v << 1)) & 0x5555U;
 }
-
-struct Interval {
-  double lower, upper;
-  [[nodiscard]] bool empty() const { return !(lower <= upper); }
-};
-
-Interval intersection(const Interval& a, const Interval& b) {
-  return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
-}
-
-Interval hull(const Interval& a, const Interval& b) {
-  if (a.empty()) return b;
-  return b.empty() ? a : Interval{std::min(a.lower, b.lower), std::max(a.upper, b.upper)};
-}
-
-Interval widened(const Interval& a, double by) { return {a.lower - by, a.upper + by}; }
 
 constexpr Interval kNothing{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 constexpr Interval kEverything{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -85,7 +70,7 @@ ProjectedGrid::Filter ProjectedGrid::filter_of(const Vec3& a, const Vec3& b, con
 namespace {
 
 // An edge's projection: the line y = at_y + slope (z - at_z), and the part of it between the ends.
-struct Edge {
+struct EdgeLine {
   Interval y, z;
   double at_y = 0, at_z = 0;
   double slope = 0;
@@ -104,21 +89,22 @@ struct Rectangle {
   Interval y, z;
 };
 
-struct Corner {
+// In the plane of y and z.
+struct Point2 {
   double y, z;
 };
-using Corners = std::array<Corner, 3>;
+using Triangle2 = std::array<Point2, 3>;
 
-Rectangle box_of(const Corners& t) {
+Rectangle box_of(const Triangle2& t) {
   const auto [lower_y, upper_y] = std::minmax({t[0].y, t[1].y, t[2].y});
   const auto [lower_z, upper_z] = std::minmax({t[0].z, t[1].z, t[2].z});
   return {{lower_y, upper_y}, {lower_z, upper_z}};
 }
 
-bool same(const Corner& a, const Corner& b) { return a.y == b.y && a.z == b.z; }
+bool same(const Point2& a, const Point2& b) { return a.y == b.y && a.z == b.z; }
 
 // Of what a triangle fills: itself, or its box if an edge ties everywhere. Without the lines of its edges.
-double filled_area(const Corners& t, const Rectangle& box) {
+double filled_area(const Triangle2& t, const Rectangle& box) {
   const double all = (box.y.upper - box.y.lower) * (box.z.upper - box.z.lower);
   if (same(t[0], t[1]) || same(t[1], t[2]) || same(t[2], t[0])) return all;
   return 0.5 * std::abs((t[1].y - t[0].y) * (t[2].z - t[0].z) - (t[1].z - t[0].z) * (t[2].y - t[0].y));
@@ -140,14 +126,14 @@ class ProjectedGrid::Builder {
   // What is added to cells and triangles on all sides, in cells: rounding is far below.
   static constexpr double kMargin = 0x1p-16;
 
-  [[nodiscard]] std::array<Edge, 3> edges(std::uint32_t triangle) const;
+  [[nodiscard]] std::array<EdgeLine, 3> edges(std::uint32_t triangle) const;
   [[nodiscard]] std::vector<Entry> all_entries() const;
   [[nodiscard]] Grid choose(const Rectangle& box, std::span<const Entry> entries, double entries_per_triangle) const;
   void add(std::uint32_t grid_number, std::span<const Entry> entries, int depth);
   void finish(std::uint64_t cell, const Rectangle& box, std::span<const Entry> entries, int depth);
 
   template <class Visit>
-  static void visit_row(const Grid& grid, const Rectangle& box, const std::array<Edge, 3>& edges, std::uint32_t row,
+  static void visit_row(const Grid& grid, const Rectangle& box, const std::array<EdgeLine, 3>& edges, std::uint32_t row,
                         const Visit& visit);
   // Calls visit(cell) for each cell of the grid that the triangle belongs to, counted from its first one.
   template <class Visit>
@@ -155,26 +141,26 @@ class ProjectedGrid::Builder {
 
   const TriangleMesh& mesh_;
   ProjectedGrid& result_;
-  std::vector<Corners> corners_;  // of result_.triangles_
+  std::vector<Triangle2> projections_;  // of result_.triangles_
 };
 
 ProjectedGrid::Builder::Builder(const TriangleMesh& mesh, ProjectedGrid& result) : mesh_(mesh), result_(result) {
-  corners_.reserve(result.triangles_.size());
+  projections_.reserve(result.triangles_.size());
   for (const std::uint32_t triangle : result.triangles_) {
-    Corners corners;
+    Triangle2 projection;
     for (std::size_t i = 0; i < 3; ++i) {
       const Local p = result.local(mesh.vertices[mesh.triangles[triangle][i]]);
-      corners[i] = {p.y, p.z};
+      projection[i] = {p.y, p.z};
     }
-    corners_.push_back(corners);
+    projections_.push_back(projection);
   }
 }
 
 // The slopes from the differences of the mesh's own coordinates, which short edges need.
-std::array<Edge, 3> ProjectedGrid::Builder::edges(std::uint32_t triangle) const {
+std::array<EdgeLine, 3> ProjectedGrid::Builder::edges(std::uint32_t triangle) const {
   const Triangle& t = mesh_.triangles[result_.triangles_[triangle]];
-  const Corners& at = corners_[triangle];
-  std::array<Edge, 3> edges;
+  const Triangle2& at = projections_[triangle];
+  std::array<EdgeLine, 3> edges;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     const double dy = mesh_.vertices[t[j]].y - mesh_.vertices[t[i]].y;
@@ -190,7 +176,7 @@ std::array<Edge, 3> ProjectedGrid::Builder::edges(std::uint32_t triangle) const 
 // A triangle belongs to the cells that it meets, and to those that the lines of its edges meet within its box: there D
 // may be 0.
 template <class Visit>
-void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, const std::array<Edge, 3>& edges,
+void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, const std::array<EdgeLine, 3>& edges,
                                        std::uint32_t row, const Visit& visit) {
   const double height = 1.0 / grid.rows_per_unit, margin_z = kMargin * height;
   const double margin_y = kMargin / grid.columns_per_unit;
@@ -200,7 +186,7 @@ void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, c
   std::array<Interval, 4> parts;
   parts[3] = kNothing;  // the triangle itself
   for (std::size_t i = 0; i < 3; ++i) {
-    const Edge& edge = edges[i];
+    const EdgeLine& edge = edges[i];
     parts[i] = intersection(widened(edge.along(in_box), margin_y), widened(box.y, margin_y));
     if (intersection(slab, edge.z).empty()) continue;
     parts[3] = hull(parts[3], intersection(parts[i], widened(edge.y, margin_y)));
@@ -216,7 +202,7 @@ void ProjectedGrid::Builder::visit_row(const Grid& grid, const Rectangle& box, c
 
 template <class Visit>
 void ProjectedGrid::Builder::visit_cells(const Grid& grid, std::uint32_t triangle, const Visit& visit) const {
-  const Rectangle box = box_of(corners_[triangle]);
+  const Rectangle box = box_of(projections_[triangle]);
   const double margin_y = kMargin / grid.columns_per_unit, margin_z = kMargin / grid.rows_per_unit;
   const std::uint32_t first_row = grid.row(box.z.lower - margin_z), last_row = grid.row(box.z.upper + margin_z);
   const std::uint32_t first = grid.column(box.y.lower - margin_y), last = grid.column(box.y.upper + margin_y);
@@ -227,7 +213,7 @@ void ProjectedGrid::Builder::visit_cells(const Grid& grid, std::uint32_t triangl
     }
     return;
   }
-  const std::array<Edge, 3> its_edges = edges(triangle);
+  const std::array<EdgeLine, 3> its_edges = edges(triangle);
   for (std::uint32_t row = first_row; row <= last_row; ++row) visit_row(grid, box, its_edges, row, visit);
 }
 
@@ -242,7 +228,7 @@ ProjectedGrid::Grid ProjectedGrid::Builder::choose(const Rectangle& box, std::sp
   const double width = box.y.upper - box.y.lower, height = box.z.upper - box.z.lower;
   double widths = 0.0, heights = 0.0, areas = 0.0;
   for (const Entry& entry : entries) {
-    const Corners& t = corners_[entry.triangle];
+    const Triangle2& t = projections_[entry.triangle];
     const Rectangle its_box = box_of(t);
     const Interval y = intersection(its_box.y, box.y), z = intersection(its_box.z, box.z);
     const double w = std::max(y.upper - y.lower, 0.0), h = std::max(z.upper - z.lower, 0.0);
@@ -265,21 +251,21 @@ ProjectedGrid::Grid ProjectedGrid::Builder::choose(const Rectangle& box, std::sp
 void ProjectedGrid::Builder::add(std::uint32_t grid_number, std::span<const Entry> entries, int depth) {
   const Grid grid = result_.grids_[grid_number];
   const std::size_t cells = std::size_t{grid.columns} * grid.rows;
-  struct Place {
+  struct Membership {
     std::uint32_t cell, entry;
   };
-  std::vector<Place> places;
+  std::vector<Membership> members;
   std::vector<std::uint64_t> ends(cells + 1, 0);
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
     visit_cells(grid, entries[i].triangle, [&](std::uint32_t cell) {
-      places.push_back({cell, i});
+      members.push_back({cell, i});
       ++ends[cell + 1];
     });
   }
   for (std::size_t i = 1; i <= cells; ++i) ends[i] += ends[i - 1];
-  std::vector<Entry> list(places.size());
+  std::vector<Entry> list(members.size());
   std::vector<std::uint64_t> next(ends.begin(), ends.end() - 1);
-  for (const Place& place : places) list[next[place.cell]++] = entries[place.entry];
+  for (const Membership& member : members) list[next[member.cell]++] = entries[member.entry];
   result_.grids_[grid_number].first_cell = result_.cells_.size();
   const std::uint64_t first = result_.cells_.size();
   result_.cells_.resize(first + cells);
@@ -316,8 +302,8 @@ void ProjectedGrid::Builder::finish(std::uint64_t cell, const Rectangle& box, st
 
 std::vector<ProjectedGrid::Entry> ProjectedGrid::Builder::all_entries() const {
   std::vector<Entry> entries;
-  entries.reserve(corners_.size());
-  for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+  entries.reserve(projections_.size());
+  for (std::uint32_t i = 0; i < projections_.size(); ++i) {
     const Triangle& t = mesh_.triangles[result_.triangles_[i]];
     const double upper = std::max({mesh_.vertices[t[0]].x, mesh_.vertices[t[1]].x, mesh_.vertices[t[2]].x});
     entries.push_back({rounded_up(result_.local({upper, 0, 0}).x), i});
@@ -354,9 +340,9 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   unit_ = unit_of(box);
   lower_ = local(box.lower);
   upper_ = local(box.upper);
-  places_per_y_ = kPlacesPerSide / (upper_.y - lower_.y);
-  places_per_z_ = kPlacesPerSide / (upper_.z - lower_.z);
-  triangles_ = along_curve(mesh);
+  codes_per_y_ = kMortonCodesPerSide / (upper_.y - lower_.y);
+  codes_per_z_ = kMortonCodesPerSide / (upper_.z - lower_.z);
+  triangles_ = in_morton_order(mesh);
   filters_.resize(triangles_.size());
   constexpr std::size_t kTrianglesPerTask = 4096;
   parallel_for(filters_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
@@ -368,26 +354,25 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   Builder(mesh, *this).build();
 }
 
-// A counting sort by the place of one corner.
-std::vector<std::uint32_t> ProjectedGrid::along_curve(const TriangleMesh& mesh) const {
+// A counting sort by the code of one corner.
+std::vector<std::uint32_t> ProjectedGrid::in_morton_order(const TriangleMesh& mesh) const {
   std::vector<std::uint32_t> order(mesh.triangles.size());
-  std::vector<std::uint32_t> next(kPlaces + 1, 0);
-  const auto place_of = [&](const Triangle& t) { return place(mesh.vertices[t[0]]); };
-  for (const Triangle& t : mesh.triangles) ++next[place_of(t) + 1];
-  for (std::size_t i = 1; i <= kPlaces; ++i) next[i] += next[i - 1];
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[next[place_of(mesh.triangles[i])]++] = i;
+  std::vector<std::uint32_t> next(kMortonCodes + 1, 0);
+  const auto code_of = [&](const Triangle& t) { return morton_code(mesh.vertices[t[0]]); };
+  for (const Triangle& t : mesh.triangles) ++next[code_of(t) + 1];
+  for (std::size_t i = 1; i <= kMortonCodes; ++i) next[i] += next[i - 1];
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[next[code_of(mesh.triangles[i])]++] = i;
   return order;
 }
 
-// A Z-curve.
-std::uint16_t ProjectedGrid::place(const Vec3& q) const {
+std::uint16_t ProjectedGrid::morton_code(const Vec3& q) const {
   const Local p = local(q);
-  const auto quantized = [](double x, double lower, double places_per_unit) {
-    const double at = (x - lower) * places_per_unit;
-    return at > 0.0 ? static_cast<std::uint32_t>(std::min(at, kPlacesPerSide - 1)) : 0U;
+  const auto quantized = [](double x, double lower, double codes_per_unit) {
+    const double at = (x - lower) * codes_per_unit;
+    return at > 0.0 ? static_cast<std::uint32_t>(std::min(at, kMortonCodesPerSide - 1)) : 0U;
   };
-  return static_cast<std::uint16_t>(spread(quantized(p.y, lower_.y, places_per_y_)) |
-                                    (spread(quantized(p.z, lower_.z, places_per_z_)) << 1));
+  return static_cast<std::uint16_t>(spread(quantized(p.y, lower_.y, codes_per_y_)) |
+                                    (spread(quantized(p.z, lower_.z, codes_per_z_)) << 1));
 }
 
 }  // namespace raycone

@@ -27,10 +27,10 @@ class ProjectedGrid {
   template <class Doubtful>
   [[nodiscard]] int crossings(const Vec3& q, const Doubtful& doubtful) const;
 
-  // Where a ray lies along a curve that fills the projection, in [0, kPlaces): rays of neighbouring places share
+  // Where a ray lies along a Z-curve through the projection, in [0, kMortonCodes): rays of neighbouring codes share
   // triangles.
-  static constexpr std::size_t kPlaces = std::size_t{1} << 16;
-  [[nodiscard]] std::uint16_t place(const Vec3& q) const;
+  static constexpr std::size_t kMortonCodes = std::size_t{1} << 16;
+  [[nodiscard]] std::uint16_t morton_code(const Vec3& q) const;
 
  private:
   // Coordinates about the centre of the mesh's box, in [-1, 1] for the mesh.
@@ -50,7 +50,7 @@ class ProjectedGrid {
   };
   struct Entry {
     float upper_x;           // of the triangle, rounded up: rays from farther along miss it
-    std::uint32_t triangle;  // its place in triangles_
+    std::uint32_t triangle;  // its index in triangles_
   };
   // Its entries by falling upper_x, or the grid within it.
   struct Cell {
@@ -66,8 +66,8 @@ class ProjectedGrid {
 
     [[nodiscard]] std::uint32_t column(double y) const { return index((y - lower_y) * columns_per_unit, columns); }
     [[nodiscard]] std::uint32_t row(double z) const { return index((z - lower_z) * rows_per_unit, rows); }
-    static std::uint32_t index(double place, std::uint32_t count) {
-      return place > 0.0 ? std::min(static_cast<std::uint32_t>(std::min(place, 0x1p31)), count - 1) : 0;
+    static std::uint32_t index(double offset, std::uint32_t count) {
+      return offset > 0.0 ? std::min(static_cast<std::uint32_t>(std::min(offset, 0x1p31)), count - 1) : 0;
     }
   };
   class Builder;
@@ -75,18 +75,18 @@ class ProjectedGrid {
   [[nodiscard]] Local local(const Vec3& p) const {
     return {unit_(p.x - centre_.x), unit_(p.y - centre_.y), unit_(p.z - centre_.z)};
   }
-  [[nodiscard]] std::vector<std::uint32_t> along_curve(const TriangleMesh& mesh) const;
+  [[nodiscard]] std::vector<std::uint32_t> in_morton_order(const TriangleMesh& mesh) const;
   [[nodiscard]] Filter filter_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
   [[nodiscard]] const Cell& cell_at(double y, double z) const;
 
   Vec3 centre_;
   PowerOfTwo unit_;
   Local lower_, upper_;
-  double places_per_y_ = 0, places_per_z_ = 0;
+  double codes_per_y_ = 0, codes_per_z_ = 0;
   std::vector<Grid> grids_;
   std::vector<Cell> cells_;
   std::vector<Entry> entries_;
-  // The mesh's triangles along the curve, so that neighbours lie together in memory, and their filters.
+  // The mesh's triangles along the Z-curve, so that neighbours lie together in memory, and their filters.
   std::vector<std::uint32_t> triangles_;
   std::vector<Filter> filters_;
 };

@@ -70,9 +70,9 @@ namespace {
 
 // The query context, extended by where candidates go.
 #if RTC_VERSION_MAJOR >= 4
-struct Collector : RTCRayQueryContext {
+struct CandidateContext : RTCRayQueryContext {
 #else
-struct Collector : RTCIntersectContext {
+struct CandidateContext : RTCIntersectContext {
 #endif
   std::vector<std::uint32_t>* candidates = nullptr;
 };
@@ -80,19 +80,19 @@ struct Collector : RTCIntersectContext {
 // Reports no hit, so that the traversal goes on to every box along the ray.
 void collect(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
-  static_cast<Collector*>(args->context)->candidates->push_back(args->primID);
+  static_cast<CandidateContext*>(args->context)->candidates->push_back(args->primID);
 }
 
-void occluded(RTCScene scene, RTCRay& ray, Collector& collector) {
+void occluded(RTCScene scene, RTCRay& ray, CandidateContext& context) {
 #if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&collector);
+  rtcInitRayQueryContext(&context);
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.context = &collector;
+  arguments.context = &context;
   rtcOccluded1(scene, &ray, &arguments);
 #else
-  rtcInitIntersectContext(&collector);
-  rtcOccluded1(scene, &collector, &ray);
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
 #endif
 }
 
@@ -141,8 +141,8 @@ RayCaster::RayCaster(RayCaster&&) noexcept = default;
 
 void RayCaster::find_candidates(const Vec3& origin, std::vector<std::uint32_t>& candidates) const {
   candidates.clear();
-  Collector collector;
-  collector.candidates = &candidates;
+  CandidateContext context;
+  context.candidates = &candidates;
   RTCRay ray{};
   ray.org_x = scene_->x(origin.x);
   ray.org_y = scene_->y(origin.y);
@@ -150,7 +150,7 @@ void RayCaster::find_candidates(const Vec3& origin, std::vector<std::uint32_t>& 
   ray.dir_x = 1.0F;
   ray.tfar = std::numeric_limits<float>::infinity();
   ray.mask = ~0U;
-  occluded(scene_->scene, ray, collector);
+  occluded(scene_->scene, ray, context);
 }
 
 }  // namespace raycone

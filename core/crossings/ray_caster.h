@@ -9,8 +9,9 @@
 
 namespace raycone {
 
-// Embree traverses boxes in float, nothing else: whether a candidate is crossed is decided by core/crossings/crossings.h on the
-// double coordinates. Taking Embree's own hits would be wrong by 1 at some rays, arbitrarily far from the surface.
+// Embree traverses boxes in float, nothing else: whether a candidate is crossed is decided by
+// core/crossings/crossings.h on the double coordinates. Taking Embree's own hits would be wrong by 1 at some rays,
+// arbitrarily far from the surface.
 class RayCaster {
  public:
   // Builds the acceleration structure. `mesh` must outlive the RayCaster and have at least one triangle. Throws

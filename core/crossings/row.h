@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "core/data/vec3.h"
@@ -18,6 +19,13 @@ struct Row {
   double samples_per_unit = 0.0;  // about 1 / spacing: where to look first; 0 where unknown
 
   [[nodiscard]] Vec3 query(std::size_t i) const { return {xs[i], y, z}; }
+};
+
+// Samples [begin, end) along an axis, at most 2^32 - 1.
+struct SampleRange {
+  std::uint32_t begin, end;
+  [[nodiscard]] bool empty() const { return begin >= end; }
+  [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
 // Number of values of the ascending `xs` below `value`. Fast where they are about evenly spaced.

@@ -8,25 +8,21 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kGroup = 128;             // triangles
-constexpr std::size_t kPlacesPerLength = 2048;  // of the mesh along the axis
+constexpr std::size_t kGroup = 128;           // triangles
+constexpr std::size_t kBinsPerLength = 2048;  // of the mesh along the axis
 // What a triangle of a class may be long, as parts of the mesh; longer ones are in the last class.
 constexpr double kClasses[] = {1.0 / 1024, 1.0 / 128, 1.0 / 16};
 
-struct Interval {
-  double lower, upper;
-};
-
-Interval interval_of(const TriangleMesh& mesh, const Triangle& t, int axis) {
+Interval extent_of(const TriangleMesh& mesh, const Triangle& t, int axis) {
   const auto [lower, upper] =
       std::minmax({mesh.vertices[t[0]][axis], mesh.vertices[t[1]][axis], mesh.vertices[t[2]][axis]});
   return {lower, upper};
 }
 
-// Lengths of a mesh as parts of its own.
-class Ruler {
+// Bins by length and position along the axis, as parts of the mesh.
+class AxisBins {
  public:
-  Ruler(const TriangleMesh& mesh, int axis) {
+  AxisBins(const TriangleMesh& mesh, int axis) {
     if (mesh.triangles.empty()) return;
     const Box box = bounding_box(mesh);
     lower_ = box.lower[axis];
@@ -34,27 +30,27 @@ class Ruler {
   }
 
   // Short triangles first, those of a class by their lower end.
-  [[nodiscard]] std::size_t bucket(const Interval& interval) const {
-    const double length = (interval.upper - interval.lower) / length_;
+  [[nodiscard]] std::size_t bucket(const Interval& extent) const {
+    const double length = (extent.upper - extent.lower) / length_;
     std::size_t of_class = 0;
     while (of_class < std::size(kClasses) && length > kClasses[of_class]) ++of_class;
-    const double place = (interval.lower - lower_) / length_ * static_cast<double>(kPlacesPerLength);
-    // Written so that NaN, of a flat mesh or one whose length overflows, has a place.
-    const double within = place > 0.0 ? std::min(place, static_cast<double>(kPlacesPerLength - 1)) : 0.0;
-    return of_class * kPlacesPerLength + static_cast<std::size_t>(within);
+    const double bin = (extent.lower - lower_) / length_ * static_cast<double>(kBinsPerLength);
+    // Written so that NaN, of a flat mesh or one whose length overflows, has a bin.
+    const double within = bin > 0.0 ? std::min(bin, static_cast<double>(kBinsPerLength - 1)) : 0.0;
+    return of_class * kBinsPerLength + static_cast<std::size_t>(within);
   }
-  static constexpr std::size_t kBuckets = (std::size(kClasses) + 1) * kPlacesPerLength;
+  static constexpr std::size_t kBuckets = (std::size(kClasses) + 1) * kBinsPerLength;
 
  private:
   double lower_ = 0.0, length_ = 1.0;
 };
 
 std::vector<std::uint32_t> ordered(const TriangleMesh& mesh, int axis) {
-  const Ruler ruler(mesh, axis);
+  const AxisBins bins(mesh, axis);
   const Buckets<std::uint32_t> buckets(
-      mesh.triangles.size(), Ruler::kBuckets, [&](std::size_t begin, std::size_t end, const auto& emit) {
+      mesh.triangles.size(), AxisBins::kBuckets, [&](std::size_t begin, std::size_t end, const auto& emit) {
         for (std::size_t i = begin; i < end; ++i) {
-          emit(ruler.bucket(interval_of(mesh, mesh.triangles[i], axis)), static_cast<std::uint32_t>(i));
+          emit(bins.bucket(extent_of(mesh, mesh.triangles[i], axis)), static_cast<std::uint32_t>(i));
         }
       });
   std::vector<std::uint32_t> all;
@@ -71,10 +67,9 @@ SlabOrder::SlabOrder(const TriangleMesh& mesh, int axis)
   parallel_for(groups_.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::span<const std::uint32_t> group = (*this)[static_cast<std::uint32_t>(n)];
-      const Interval first = interval_of(mesh, mesh.triangles[group.front()], axis);
-      groups_[n] = {first.lower, first.upper};
+      groups_[n] = extent_of(mesh, mesh.triangles[group.front()], axis);
       for (const std::uint32_t triangle : group) {
-        const Interval one = interval_of(mesh, mesh.triangles[triangle], axis);
+        const Interval one = extent_of(mesh, mesh.triangles[triangle], axis);
         groups_[n] = {std::min(groups_[n].lower, one.lower), std::max(groups_[n].upper, one.upper)};
       }
     }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/data/interval.h"
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
@@ -22,11 +23,8 @@ class SlabOrder {
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t group) const;
 
  private:
-  struct Extent {
-    double lower, upper;
-  };
   std::vector<std::uint32_t> triangles_;  // group by group
-  std::vector<Extent> groups_;
+  std::vector<Interval> groups_;
 };
 
 }  // namespace raycone

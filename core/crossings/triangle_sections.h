@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/crossings/row.h"
+#include "core/data/interval.h"
 #include "core/data/vec3.h"
 
 namespace raycone {
@@ -18,7 +19,7 @@ class TriangleSections {
  public:
   // Lines along one of the axes y and z (1 and 2), across the other one.
   TriangleSections(const Vec3& a, const Vec3& b, const Vec3& c, int along)
-      : edges_{Edge(a, b, along), Edge(b, c, along), Edge(c, a, along)} {}
+      : edges_{EdgeSection(a, b, along), EdgeSection(b, c, along), EdgeSection(c, a, along)} {}
 
   // Calls visit(i) once for each i of [begin, end) where the row at coordinates[i] of the line at `across` meets the
   // closed projection or the line of an edge: all other rows of the closed box, in which [begin, end) lies, neither
@@ -28,17 +29,12 @@ class TriangleSections {
              std::uint32_t end, const Visit& visit) const;
 
  private:
-  struct Interval {
-    double lower, upper;
-    [[nodiscard]] bool empty() const { return !(lower <= upper); }
-  };
-
-  struct Edge {
+  struct EdgeSection {
     double along, across, slope;  // a point on it
     Interval extent;              // across
     bool parallel, point;         // to the lines of the sections; projects to a point
 
-    Edge(const Vec3& a, const Vec3& b, int axis)
+    EdgeSection(const Vec3& a, const Vec3& b, int axis)
         : along(a[axis]),
           across(a[3 - axis]),
           slope((b[axis] - along) / (b[3 - axis] - across)),
@@ -56,7 +52,7 @@ class TriangleSections {
     }
   };
 
-  std::array<Edge, 3> edges_;
+  std::array<EdgeSection, 3> edges_;
 };
 
 template <class Visit>
@@ -66,7 +62,7 @@ void TriangleSections::visit(double across, std::span<const double> coordinates,
   std::array<Interval, 4> parts;
   Interval& section = parts[3] = {all.upper, all.lower};
   for (std::size_t i = 0; i < 3; ++i) {
-    const Edge& edge = edges_[i];
+    const EdgeSection& edge = edges_[i];
     const bool meets = edge.extent.lower <= across && across <= edge.extent.upper;
     parts[i] = edge.parallel ? nothing : edge.at(across);
     const bool unknown = !edge.parallel && parts[i].empty();  // overflow

@@ -9,7 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/data/check_counts.h"
+#include "core/crossings/check_counts.h"
+#include "core/crossings/lattice_rows.h"
 #include "core/distance/distance_band.h"
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"
@@ -101,7 +102,7 @@ struct DistanceEvaluator::Implementation {
   // As DistanceEvaluator::evaluate(), of samples that are not far.
   void evaluate_near(const Lattice& lattice, const LatticeBlock& block, double band,
                      std::span<double> distances) const {
-    const LatticeRows rows = unit_rows(lattice, block);
+    const LatticeRows rows = rows_in_scale(lattice, block, to_unit);
     // No sample that is not far is farther from the mesh than four times kFar.
     const double unit_band = std::min(to_unit(band), 4 * kFar);
     if (descent_is_faster(mesh, unit_band)) {
@@ -124,21 +125,6 @@ struct DistanceEvaluator::Implementation {
   TriangleMesh mesh;
 
  private:
-  [[nodiscard]] LatticeRows unit_rows(const Lattice& lattice, const LatticeBlock& block) const {
-    LatticeRows rows;
-    const std::array<std::vector<double>*, 3> axes{&rows.xs, &rows.ys, &rows.zs};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      for (std::int64_t i = 0; i < block.counts[a]; ++i) {
-        axes[a]->push_back(to_unit(lattice.coordinate(axis, block.first[a] + i)));
-      }
-      const double width = axes[a]->back() - axes[a]->front();
-      const double per_unit = static_cast<double>(block.counts[a] - 1) / width;
-      rows.samples_per_unit[axis] = std::isfinite(per_unit) ? per_unit : 0.0;
-    }
-    return rows;
-  }
-
   mutable std::once_flag tree_built;
   mutable std::optional<DistanceTree> tree;
 };

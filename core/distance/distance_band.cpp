@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/crossings/row.h"
+#include "core/data/interval.h"
 #include "core/distance/triangle_distance.h"
 #include "core/machine/threads.h"
 
@@ -23,10 +24,6 @@ constexpr double kNowhere = std::numeric_limits<double>::infinity();
 std::size_t strip_count(const LatticeRows& rows) { return (rows.ys.size() + kStrip - 1) / kStrip; }
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
-struct Interval {
-  double lower, upper;
-};
 
 // A triangle's neighbourhood, enclosed by what is easily intersected with a row: the triangle's box rounded off at the
 // band, and half-spaces: on either side of the triangle's plane, and beyond each of its edges.
@@ -55,7 +52,7 @@ class Neighbourhood {
   [[nodiscard]] double squared_distance(const Vec3& p) const { return triangle_.squared(p); }
   [[nodiscard]] Interval along(int axis) const { return {box_.lower[axis] - reach_, box_.upper[axis] + reach_}; }
 
-  // The part of the row (y, z); where lower > upper, nothing.
+  // The part of the row (y, z).
   [[nodiscard]] Interval along_row(double y, double z) const {
     const double dy = outside(1, y), dz = outside(2, z);
     const double left = reach_ * reach_ - dy * dy - dz * dz;
@@ -96,16 +93,10 @@ class Neighbourhood {
   std::array<double, 5> most_;  // of normal . p
 };
 
-// Samples [begin, end) of an axis.
-struct Range {
-  std::size_t begin, end;
-};
-
-Range samples_in(const std::vector<double>& samples, double per_unit, const Interval& interval) {
-  const bool none =
-      !(interval.lower <= interval.upper) || interval.upper < samples.front() || interval.lower > samples.back();
-  if (none) return {0, 0};
-  return {count_below(samples, per_unit, interval.lower), count_up_to(samples, per_unit, interval.upper)};
+SampleRange samples_in(const std::vector<double>& samples, double per_unit, const Interval& interval) {
+  if (interval.empty() || interval.upper < samples.front() || interval.lower > samples.back()) return {0, 0};
+  return {static_cast<std::uint32_t>(count_below(samples, per_unit, interval.lower)),
+          static_cast<std::uint32_t>(count_up_to(samples, per_unit, interval.upper))};
 }
 
 class Rasterization {
@@ -140,18 +131,20 @@ class Rasterization {
     return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], band_};
   }
 
-  [[nodiscard]] Range xs_near(const Interval& xs) const { return samples_in(rows_.xs, rows_.samples_per_unit.x, xs); }
-  [[nodiscard]] Range ys_near(const Neighbourhood& near) const {
+  [[nodiscard]] SampleRange xs_near(const Interval& xs) const {
+    return samples_in(rows_.xs, rows_.samples_per_unit.x, xs);
+  }
+  [[nodiscard]] SampleRange ys_near(const Neighbourhood& near) const {
     return samples_in(rows_.ys, rows_.samples_per_unit.y, near.along(1));
   }
-  [[nodiscard]] Range zs_near(const Neighbourhood& near) const {
+  [[nodiscard]] SampleRange zs_near(const Neighbourhood& near) const {
     return samples_in(rows_.zs, rows_.samples_per_unit.z, near.along(2));
   }
 
   void add_visits(std::uint32_t triangle, std::vector<Visit>& visits) const {
     const Neighbourhood near = neighbourhood(triangle);
-    const Range xs = xs_near(near.along(0)), ys = ys_near(near), zs = zs_near(near);
-    if (xs.begin == xs.end || ys.begin == ys.end || zs.begin == zs.end) return;
+    const SampleRange xs = xs_near(near.along(0)), ys = ys_near(near), zs = zs_near(near);
+    if (xs.empty() || ys.empty() || zs.empty()) return;
     for (std::size_t strip = ys.begin / kStrip; strip <= (ys.end - 1) / kStrip; ++strip) {
       visits.push_back({static_cast<std::uint32_t>(strip), triangle});
     }
@@ -173,7 +166,7 @@ class Rasterization {
     }
     std::partial_sum(visitors.begin.begin(), visitors.begin.end(), visitors.begin.begin());
     visitors.triangles.resize(visitors.begin.back());
-    // begin[strip + 1] is the strip's next free place, and its end when all are filled.
+    // begin[strip + 1] is the strip's next free index, and its end when all are filled.
     for (const auto& part : parts) {
       for (const Visit& visit : part) visitors.triangles[visitors.begin[visit.strip + 1]++] = visit.triangle;
     }
@@ -182,12 +175,13 @@ class Rasterization {
 
   void visit(std::uint32_t triangle, std::size_t strip, std::span<double> squares) const {
     const Neighbourhood near = neighbourhood(triangle);
-    const Range ys = ys_near(near), zs = zs_near(near);
+    const SampleRange ys = ys_near(near), zs = zs_near(near);
     for (std::size_t k = zs.begin; k < zs.end; ++k) {
       const double z = rows_.zs[k];
-      for (std::size_t j = std::max(ys.begin, strip * kStrip); j < std::min(ys.end, (strip + 1) * kStrip); ++j) {
+      for (std::size_t j = std::max<std::size_t>(ys.begin, strip * kStrip);
+           j < std::min<std::size_t>(ys.end, (strip + 1) * kStrip); ++j) {
         const double y = rows_.ys[j];
-        const Range xs = xs_near(near.along_row(y, z));
+        const SampleRange xs = xs_near(near.along_row(y, z));
         double* const row = &squares[(k * rows_.ys.size() + j) * rows_.xs.size()];
         for (std::size_t i = xs.begin; i < xs.end; ++i) {
           row[i] = std::min(row[i], near.squared_distance({rows_.xs[i], y, z}));
@@ -202,7 +196,7 @@ class Rasterization {
 };
 
 // Samples [begin, end) of each axis.
-struct Block {
+struct SampleBox {
   std::array<std::size_t, 3> begin, end;
 
   [[nodiscard]] std::size_t side(std::size_t axis) const { return end[axis] - begin[axis]; }
@@ -218,7 +212,7 @@ class Descent {
       : tree_(tree), rows_(rows), band_(band), squares_(squares) {}
 
   // `distance`: of `from`, or infinity.
-  void fill(const Block& block, const Vec3& from, double distance) const {
+  void fill(const SampleBox& block, const Vec3& from, double distance) const {
     const Vec3 center = center_of(block);
     const double radius = length(center - corner_of(block));
     const double reach = std::min(band_ + radius, distance + length(center - from)) * kSlack;
@@ -228,7 +222,7 @@ class Descent {
     if (block.side(axis) <= kSmall) return fill_rows(block, center, std::sqrt(square));
     const std::size_t middle = block.begin[axis] + (block.side(axis) + 1) / 2;
     for (const bool upper : {false, true}) {
-      Block half = block;
+      SampleBox half = block;
       (upper ? half.begin : half.end)[axis] = middle;
       fill(half, center, std::sqrt(square));
     }
@@ -238,15 +232,15 @@ class Descent {
   static constexpr std::size_t kSmall = 4;
   static constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; the tree adds those of distances
 
-  [[nodiscard]] Vec3 corner_of(const Block& block) const {
+  [[nodiscard]] Vec3 corner_of(const SampleBox& block) const {
     return {rows_.xs[block.begin[0]], rows_.ys[block.begin[1]], rows_.zs[block.begin[2]]};
   }
-  [[nodiscard]] Vec3 center_of(const Block& block) const {
+  [[nodiscard]] Vec3 center_of(const SampleBox& block) const {
     return 0.5 * (corner_of(block) +
                   Vec3{rows_.xs[block.end[0] - 1], rows_.ys[block.end[1] - 1], rows_.zs[block.end[2] - 1]});
   }
 
-  void fill_rows(const Block& block, const Vec3& center, double distance) const {
+  void fill_rows(const SampleBox& block, const Vec3& center, double distance) const {
     for (std::size_t k = block.begin[2]; k < block.end[2]; ++k) {
       for (std::size_t j = block.begin[1]; j < block.end[1]; ++j) {
         double* const row = &squares_[(k * rows_.ys.size() + j) * rows_.xs.size()];

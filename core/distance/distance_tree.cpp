@@ -131,19 +131,19 @@ DistanceTree::DistanceTree(const TriangleMesh& mesh) : mesh_(mesh), triangles_(O
 }
 
 double DistanceTree::squared_distance(const Vec3& p, double limit) const {
-  struct Place {
+  struct Candidate {
     double bound;
     std::uint32_t level;  // one above that of the node; 0: a triangle
     std::uint32_t index;
   };
-  std::array<Place, 12 * kWidth> stack;  // at most 7 siblings wait per level, of 11 levels for 2^32 triangles
+  std::array<Candidate, 12 * kWidth> stack;  // at most 7 siblings wait per level, of 11 levels for 2^32 triangles
   std::size_t waiting = 0;
   stack[waiting++] = {0.0, static_cast<std::uint32_t>(levels_.size()), 0};
   double least = kInfinity;
   // What a triangle's own distance may be below that of its box, it may be below the least so far.
   double reach = beyond_error(limit);
   while (waiting > 0) {
-    const Place here = stack[--waiting];
+    const Candidate here = stack[--waiting];
     if (here.bound >= reach) continue;
     if (here.level == 0) {
       const Triangle& t = mesh_.triangles[triangles_[here.index]];

@@ -18,8 +18,8 @@ class DistanceTree {
   // `mesh` has at least one triangle and outlives the tree; the largest coordinate of its triangles is in [1/2, 1].
   explicit DistanceTree(const TriangleMesh& mesh);
 
-  // The least of the triangles' squared distances (core/distance/triangle_distance.h) where that is not above `limit`, nor
-  // beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
+  // The least of the triangles' squared distances (core/distance/triangle_distance.h) where that is not above `limit`,
+  // nor beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
   [[nodiscard]] double squared_distance(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const;
 
  private:

@@ -7,15 +7,15 @@ namespace raycone {
 namespace {
 
 // Indices [first, first + count) along one axis.
-struct Run {
+struct SampleRun {
   std::int64_t first;
   std::int64_t count;
 };
 
-std::vector<Run> runs_alike(const Lattice& lattice, const LatticeBlock& block, int axis,
-                            const std::function<bool(double)>& property) {
+std::vector<SampleRun> runs_alike(const Lattice& lattice, const LatticeBlock& block, int axis,
+                                  const std::function<bool(double)>& property) {
   const auto a = static_cast<std::size_t>(axis);
-  std::vector<Run> runs;
+  std::vector<SampleRun> runs;
   bool last = false;
   for (std::int64_t i = block.first[a]; i < block.first[a] + block.counts[a]; ++i) {
     const bool here = property(lattice.coordinate(axis, i));
@@ -30,14 +30,14 @@ std::vector<Run> runs_alike(const Lattice& lattice, const LatticeBlock& block, i
 
 std::vector<LatticeBlock> parts_alike(const Lattice& lattice, const LatticeBlock& block,
                                       const std::function<bool(double)>& property) {
-  std::array<std::vector<Run>, 3> runs;
+  std::array<std::vector<SampleRun>, 3> runs;
   for (int axis = 0; axis < 3; ++axis) {
     runs[static_cast<std::size_t>(axis)] = runs_alike(lattice, block, axis, property);
   }
   std::vector<LatticeBlock> parts;
-  for (const Run& z : runs[2]) {
-    for (const Run& y : runs[1]) {
-      for (const Run& x : runs[0]) parts.push_back({{x.first, y.first, z.first}, {x.count, y.count, z.count}});
+  for (const SampleRun& z : runs[2]) {
+    for (const SampleRun& y : runs[1]) {
+      for (const SampleRun& x : runs[0]) parts.push_back({{x.first, y.first, z.first}, {x.count, y.count, z.count}});
     }
   }
   return parts;

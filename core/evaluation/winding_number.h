@@ -48,9 +48,9 @@ enum class Summation {
 
 class WindingNumberEvaluator {
  public:
-  // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/mesh/weld.h); vertices used
-  // by triangles are finite. The values of a mesh without triangles are 0. Throws std::bad_alloc, and std::length_error
-  // for more than kMaxTriangles.
+  // Prepares all that depends on the mesh alone but for prepare_points(). `mesh` is welded (core/mesh/weld.h); vertices
+  // used by triangles are finite. The values of a mesh without triangles are 0. Throws std::bad_alloc, and
+  // std::length_error for more than kMaxTriangles.
   explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
                                   SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest);
   ~WindingNumberEvaluator();

@@ -4,14 +4,9 @@
 #pragma once
 
 #include "core/data/triangle_mesh.h"
+#include "core/exact/quad.h"
 
 namespace raycone {
-
-using Quad = __float128;
-
-struct QuadVec3 {
-  Quad x, y, z;
-};
 
 // A number and how far it may be off.
 struct QuadWithin {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 
-namespace raycone {
+#include "core/exact/quad.h"
 
-using Quad = __float128;
+namespace raycone {
 
 // A difference of two doubles, exactly, as the two terms of a sum: nothing is rounded, nothing overflows.
 struct Difference {

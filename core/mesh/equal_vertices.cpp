@@ -35,18 +35,18 @@ struct HashedVertex {
 template <class Same>
 void find_first(std::span<const HashedVertex> bucket, const Same& same, std::vector<std::uint32_t>& first) {
   const std::size_t slots = std::bit_ceil(bucket.size() + 1);
-  std::vector<std::uint32_t> newest(slots, kNone);  // of a slot, as its place in the bucket
-  // Of the same slot as the one at this place.
+  std::vector<std::uint32_t> newest(slots, kNone);  // of a slot, as its index in the bucket
+  // Of the same slot as the one at this index.
   const auto older = std::make_unique_for_overwrite<std::uint32_t[]>(bucket.size());
-  for (std::uint32_t place = 0; place < bucket.size(); ++place) {
-    std::uint32_t& slot = newest[bucket[place].hash & (slots - 1)];
+  for (std::uint32_t i = 0; i < bucket.size(); ++i) {
+    std::uint32_t& slot = newest[bucket[i].hash & (slots - 1)];
     std::uint32_t found = slot;
-    while (found != kNone && !same(bucket[found], bucket[place])) found = older[found];
+    while (found != kNone && !same(bucket[found], bucket[i])) found = older[found];
     if (found == kNone) {
-      older[place] = slot;
-      slot = found = place;
+      older[i] = slot;
+      slot = found = i;
     }
-    first[bucket[place].index] = bucket[found].index;
+    first[bucket[i].index] = bucket[found].index;
   }
 }
 

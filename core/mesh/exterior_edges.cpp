@@ -34,11 +34,11 @@ class Cancellation {
   void add(std::uint32_t low, std::uint32_t high, bool forward) {
     Waiting& here = waiting_[low - first_];
     const unsigned same = forward ? 1 : 0, opposite = 1 - same;
-    const unsigned places = equal(here.high[opposite], high) | equal(here.high[same], kFree) << 4;
-    if (places == 0) return crowd_.push_back({low, high, forward ? 1 : -1});
-    const auto place = static_cast<unsigned>(std::countr_zero(places));
-    const unsigned waits = place >> 2;  // 0: cancels its partner
-    put(here.high[opposite ^ waits], place & 3, high * waits);
+    const unsigned slots = equal(here.high[opposite], high) | equal(here.high[same], kFree) << 4;
+    if (slots == 0) return crowd_.push_back({low, high, forward ? 1 : -1});
+    const auto slot = static_cast<unsigned>(std::countr_zero(slots));
+    const unsigned waits = slot >> 2;  // 0: cancels its partner
+    put(here.high[opposite ^ waits], slot & 3, high * waits);
   }
 
   // What has not been cancelled, by increasing low, then high.
@@ -74,9 +74,9 @@ class Cancellation {
 
   // values[i] = value, as one store of all four: soon they are loaded as four, which would wait for a smaller one.
   static void put(Values& values, unsigned i, std::uint32_t value) {
-    alignas(16) static constexpr std::array<Values, 4> kPlace{
+    alignas(16) static constexpr std::array<Values, 4> kSlot{
         {{~0U, 0, 0, 0}, {0, ~0U, 0, 0}, {0, 0, ~0U, 0}, {0, 0, 0, ~0U}}};
-    const __m128i here = load(kPlace[i]);
+    const __m128i here = load(kSlot[i]);
     const __m128i all = _mm_or_si128(_mm_and_si128(here, _mm_set1_epi32(static_cast<int>(value))),
                                      _mm_andnot_si128(here, load(values)));
     _mm_store_si128(reinterpret_cast<__m128i*>(values.data()), all);
@@ -84,7 +84,7 @@ class Cancellation {
 
   std::size_t first_;
   std::vector<Waiting> waiting_;
-  std::vector<Traversal> crowd_;  // those that found no place
+  std::vector<Traversal> crowd_;  // those that found no slot
 };
 
 template <class Visit>
@@ -156,46 +156,46 @@ class Chains {
       return static_cast<std::size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), v, before) -
                                       vertices_.begin());
     };
-    links_.resize(vertices_.size());
+    incidences_.resize(vertices_.size());
     next_.assign(vertices_.size(), 0);
     used_.assign(edges.size(), false);
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const std::size_t from = rank(edges[i].from), to = rank(edges[i].to);
-      links_[from].push_back({to, i});
-      links_[to].push_back({from, i});
+      incidences_[from].push_back({to, i});
+      incidences_[to].push_back({from, i});
     }
-    for (auto& links : links_) std::sort(links.begin(), links.end());
+    for (auto& incidences : incidences_) std::sort(incidences.begin(), incidences.end());
   }
 
   void append_to(std::vector<ExteriorEdge>& ordered, const std::vector<ExteriorEdge>& edges) {
     for (std::size_t start = 0; start < vertices_.size(); ++start) {
       std::size_t here = start;
-      while (const Link* link = unused_link(here)) {
-        const ExteriorEdge& e = edges[link->edge];
-        used_[link->edge] = true;
+      while (const Incidence* next = unused_incidence(here)) {
+        const ExteriorEdge& e = edges[next->edge];
+        used_[next->edge] = true;
         const bool along = e.from == vertices_[here];
         ordered.push_back(along ? e : ExteriorEdge{e.to, e.from, -e.multiplicity});
-        here = link->neighbour;
-        if (!unused_link(here)) here = start;
+        here = next->neighbour;
+        if (!unused_incidence(here)) here = start;
       }
     }
   }
 
  private:
-  struct Link {
+  struct Incidence {
     std::size_t neighbour;
     std::size_t edge;
-    friend auto operator<=>(const Link&, const Link&) = default;
+    friend auto operator<=>(const Incidence&, const Incidence&) = default;
   };
 
-  const Link* unused_link(std::size_t vertex) {
+  const Incidence* unused_incidence(std::size_t vertex) {
     std::size_t& next = next_[vertex];
-    while (next < links_[vertex].size() && used_[links_[vertex][next].edge]) ++next;
-    return next < links_[vertex].size() ? &links_[vertex][next] : nullptr;
+    while (next < incidences_[vertex].size() && used_[incidences_[vertex][next].edge]) ++next;
+    return next < incidences_[vertex].size() ? &incidences_[vertex][next] : nullptr;
   }
 
-  std::vector<std::uint32_t> vertices_;  // by coordinates; the rest refers to places in this order
-  std::vector<std::vector<Link>> links_;
+  std::vector<std::uint32_t> vertices_;  // by coordinates; the rest refers to indices in this order
+  std::vector<std::vector<Incidence>> incidences_;
   std::vector<std::size_t> next_;
   std::vector<bool> used_;
 };

@@ -14,7 +14,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-struct Range {
+struct RunRange {
   std::uint32_t first, last;  // both belong to it
 };
 
@@ -39,23 +39,23 @@ class Runs {
   // The run that holds x, a coordinate of a vertex.
   [[nodiscard]] std::uint32_t run_of(double x) const {
     const auto above =
-        std::upper_bound(runs_.begin(), runs_.end(), x, [](double y, const Run& r) { return y < r.first; });
+        std::upper_bound(runs_.begin(), runs_.end(), x, [](double y, const CoordinateRun& r) { return y < r.first; });
     return static_cast<std::uint32_t>(above - runs_.begin() - 1);
   }
 
   // Those that hold a coordinate near x, which is in `run`; and the run itself.
-  [[nodiscard]] Range near(double x, std::uint32_t run) const {
+  [[nodiscard]] RunRange near(double x, std::uint32_t run) const {
     const bool below = run > 0 && x - runs_[run - 1].last <= distance_;
     const bool above = run + 1 < runs_.size() && runs_[run + 1].first - x <= distance_;
     return {run - (below ? 1 : 0), run + (above ? 1 : 0)};
   }
 
  private:
-  struct Run {
+  struct CoordinateRun {
     double first, last;
   };
   double distance_;
-  std::vector<Run> runs_;
+  std::vector<CoordinateRun> runs_;
 };
 
 // Representatives by cells, a run of each axis: eight at most are in one, since its eighths are less than the distance
@@ -67,21 +67,22 @@ class RepresentativeCells {
         runs_{Runs(vertices, 0, distance), Runs(vertices, 1, distance), Runs(vertices, 2, distance)} {
     cells_.reserve(vertices.size());
     for (const Vec3& p : vertices) {
-      if (is_finite(p)) cells_.push_back({place_of(p), kNone});
+      if (is_finite(p)) cells_.push_back({index_of(p), kNone});
     }
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.place < b.place; });
-    const auto same = [](const Cell& a, const Cell& b) { return a.place == b.place; };
+    std::sort(cells_.begin(), cells_.end(),
+              [](const OccupiedCell& a, const OccupiedCell& b) { return a.index < b.index; });
+    const auto same = [](const OccupiedCell& a, const OccupiedCell& b) { return a.index == b.index; };
     cells_.erase(std::unique(cells_.begin(), cells_.end(), same), cells_.end());
   }
 
   // The first representative near p, or kNone. None is above p along x.
   [[nodiscard]] std::uint32_t find(const std::vector<Vec3>& representatives, const Vec3& p) const {
-    const Place at = place_of(p);
-    const Range ys = runs_[1].near(p.y, at[1]), zs = runs_[2].near(p.z, at[2]);
+    const CellIndex at = index_of(p);
+    const RunRange ys = runs_[1].near(p.y, at[1]), zs = runs_[2].near(p.z, at[2]);
     std::uint32_t first = kNone;
     for (std::uint32_t x = runs_[0].near(p.x, at[0]).first; x <= at[0]; ++x) {
       for (std::uint32_t y = ys.first; y <= ys.last; ++y) {
-        for (auto cell = cell_from({x, y, zs.first}); cell != cells_.end() && cell->place <= Place{x, y, zs.last};
+        for (auto cell = cell_from({x, y, zs.first}); cell != cells_.end() && cell->index <= CellIndex{x, y, zs.last};
              ++cell) {
           for (std::uint32_t r = cell->newest; r != kNone; r = older_[r]) {
             if (is_near(representatives[r], p, distance_)) first = std::min(first, r);
@@ -95,30 +96,30 @@ class RepresentativeCells {
   // `index`: the number of representatives so far.
   void add(const Vec3& p, std::uint32_t index) {
     older_.resize(index + std::size_t{1}, kNone);
-    if (is_finite(p)) older_[index] = std::exchange(cell_from(place_of(p))->newest, index);
+    if (is_finite(p)) older_[index] = std::exchange(cell_from(index_of(p))->newest, index);
   }
 
  private:
-  using Place = std::array<std::uint32_t, 3>;  // runs along x, y and z
-  struct Cell {
-    Place place;
+  using CellIndex = std::array<std::uint32_t, 3>;  // runs along x, y and z
+  struct OccupiedCell {
+    CellIndex index;
     std::uint32_t newest;  // representative in it
   };
 
-  [[nodiscard]] Place place_of(const Vec3& p) const {
+  [[nodiscard]] CellIndex index_of(const Vec3& p) const {
     return {runs_[0].run_of(p.x), runs_[1].run_of(p.y), runs_[2].run_of(p.z)};
   }
-  static bool is_before(const Cell& cell, const Place& place) { return cell.place < place; }
-  [[nodiscard]] std::vector<Cell>::const_iterator cell_from(const Place& place) const {
-    return std::lower_bound(cells_.begin(), cells_.end(), place, is_before);
+  static bool is_before(const OccupiedCell& cell, const CellIndex& index) { return cell.index < index; }
+  [[nodiscard]] std::vector<OccupiedCell>::const_iterator cell_from(const CellIndex& index) const {
+    return std::lower_bound(cells_.begin(), cells_.end(), index, is_before);
   }
-  [[nodiscard]] std::vector<Cell>::iterator cell_from(const Place& place) {
-    return std::lower_bound(cells_.begin(), cells_.end(), place, is_before);
+  [[nodiscard]] std::vector<OccupiedCell>::iterator cell_from(const CellIndex& index) {
+    return std::lower_bound(cells_.begin(), cells_.end(), index, is_before);
   }
 
   double distance_;
   std::array<Runs, 3> runs_;
-  std::vector<Cell> cells_;           // all that hold vertices
+  std::vector<OccupiedCell> cells_;   // all that hold vertices
   std::vector<std::uint32_t> older_;  // per representative: the one before in its cell
 };
 
@@ -134,8 +135,8 @@ Representatives representatives_within(const std::vector<Vec3>& vertices, double
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const auto by_place = lexicographic_order(vertices[i], vertices[j]);
-    return by_place != 0 ? by_place < 0 : i < j;
+    const auto order_of_two = lexicographic_order(vertices[i], vertices[j]);
+    return order_of_two != 0 ? order_of_two < 0 : i < j;
   });
   RepresentativeCells cells(vertices, distance);
   Representatives result{{}, std::vector<std::uint32_t>(vertices.size())};

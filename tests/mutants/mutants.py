@@ -77,11 +77,11 @@ MUTANTS = [
     Mutant("slabs_miss_triangles", "a slab looks at all triangles that meet it", [
         ("core/crossings/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
     Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
-        ("core/crossings/lattice_sums.cpp", "  for (const std::vector<Crossed>& part : parts_) add_to_samples(part);\n", "")]),
+        ("core/crossings/lattice_sums.cpp", "  for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);\n", "")]),
     Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [
-        ("core/evaluation/winding_number.cpp", "  across.evaluate(engine, values);\n", "")]),
+        ("core/evaluation/rows.cpp", "  across.evaluate(mesh, values);\n", "")]),
     Mutant("level_edges_dropped", "only an edge along the rays has no argument anywhere", [
-        ("core/boundary/cone.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
+        ("core/boundary/boundary.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
 
     # --- The cone's factors ---
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
@@ -94,15 +94,15 @@ MUTANTS = [
         ("core/boundary/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, hn::Set(d, 1.0), sum), t, n);",
          "store(hn::Set(d, 1.0), t, n);")]),
     Mutant("no_factor_through_vertex", "a ray through an end of an edge: (s, P) = (0, -1) there", [
-        ("core/boundary/tied_factor.h", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
-        ("core/boundary/tied_factor.h", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
+        ("core/boundary/edge_factor.cpp", "a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt", "std::nullopt"),
+        ("core/boundary/edge_factor.cpp", "b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt", "std::nullopt")]),
     Mutant("vertex_behind_counts", "an end at or behind the query gives no argument", [
-        ("core/boundary/tied_factor.h", "return a.x > q.x ?", "return true ?"),
-        ("core/boundary/tied_factor.h", "return b.x > q.x ?", "return true ?")]),
+        ("core/boundary/edge_factor.cpp", "return a.x > q.x ?", "return true ?"),
+        ("core/boundary/edge_factor.cpp", "return b.x > q.x ?", "return true ?")]),
     Mutant("meeting_side_ignored", "half a turn only if the edge meets the line ahead of the query", [
-        ("core/boundary/tied_factor.h", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
+        ("core/boundary/edge_factor.cpp", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
     Mutant("edge_at_query_counts", "no argument if the edge meets the line at the query", [
-        ("core/boundary/tied_factor.h", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
+        ("core/boundary/edge_factor.cpp", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
     Mutant("no_near_edge_factor", "near an edge z cancels, in any precision", [
         ("core/boundary/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
     Mutant("near_edge_normal_in_double", "N must be known to full relative precision", [
@@ -138,7 +138,7 @@ MUTANTS = [
         ("core/boundary/product_lanes-inl.h", "hn::Add(z.passages, hn::IfNegativeThenElse(hn::Xor(z.im, im), direction, hn::Zero(d)))",
          "z.passages")]),
     Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
-        ("core/boundary/product_lanes-inl.h", "z.turns[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
+        ("core/boundary/product_lanes-inl.h", "z.passages[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
     Mutant("product_never_scaled", "the power of two is taken out of the product", [
         ("core/boundary/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
     Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
@@ -148,29 +148,30 @@ MUTANTS = [
         ("core/boundary/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
         ("core/boundary/product_lanes-inl.h", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
     Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
-        ("core/boundary/cone.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
+        ("core/boundary/boundary.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
 
     Mutant("crowds_in_double", "arguments that are multiplied by hundreds have 64 bits", [
         ("core/boundary/cone.cpp", "kLargestInDouble = 256;", "kLargestInDouble = 2'000'000'000;")]),
     *[Mutant(f"{kernel}_off_by_{by}", "a value is right, and --verify finds out where it is not", [
-        (f"core/{kernel}_kernel.cpp", "  finish(products, samples.count);\n",
-         "  finish(products, samples.count);\n"
+        (f"core/boundary/{kernel}_kernel.cpp", "  set_arguments(products, samples.count);\n",
+         "  set_arguments(products, samples.count);\n"
          f"  for (std::size_t i = 0; i < samples.count; ++i) products.argument[i] += {by};\n")])
       for kernel in ("cone", "solid_angle") for by in ("1e-9", "1e-6", "0.1")],
 
     # --- Rules ---
     Mutant("halves_by_rounding", "in the plane of an opening w is 1/2 exactly", [
-        ("core/evaluation/winding_number.cpp", "      settle_halves(scratch.tile, values.subspan(begin, scratch.tile.count));\n", "")]),
+        ("core/evaluation/scaled_mesh.cpp",
+         "    values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);\n", "")]),
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
-        ("core/evaluation/winding_number.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
+        ("core/boundary/boundary_term.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
-        ("core/boundary/cone_settle.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
+        ("core/boundary/boundary.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
-        ("core/boundary/cone_settle.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
+        ("core/boundary/boundary.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
     Mutant("settled_in_80_bits", "113 bits tell what 80 cannot", [
-        ("core/boundary/cone_settle.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
+        ("core/boundary/boundary.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
     Mutant("settled_to_the_wrong_side", "a value is on the side of a half-integer on which w is", [
-        ("core/boundary/cone_settle.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
+        ("core/boundary/boundary.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
 
     # --- Magnitudes ---
     Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [
@@ -179,14 +180,14 @@ MUTANTS = [
     Mutant("mesh_scaled_at_a_loss", "no scaling where it would cost a vertex bits", [
         ("core/exact/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
     Mutant("query_scaled_at_a_loss", "no scaling where it would cost a query bits", [
-        ("core/evaluation/winding_number.cpp", "return std::abs(x) >= least_ || x == 0.0;", "return least_ >= 0.0 || x == 0.0;")]),
+        ("core/evaluation/scaled_mesh.h", "return std::abs(x) >= least_ || x == 0.0;", "return least_ >= 0.0 || x == 0.0;")]),
     Mutant("query_not_clamped", "queries beyond 2^1000 mesh sizes are taken to be there", [
-        ("core/evaluation/winding_number.cpp", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
+        ("core/evaluation/scaled_mesh.h", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
 
     Mutant("long_triangles_trusted", "a factor of a triangle with one minute and two huge corners is not trusted", [
         ("core/boundary/solid_angles.cpp", "kLongest = 0x1p60;", "kLongest = HUGE_VAL;")]),
     Mutant("scale_by_block", "whether a sample is evaluated in scale depends on no other sample", [
-        ("core/evaluation/winding_number.cpp", "if (parts.size() != 1) return evaluate_parts", "if (parts.empty()) return evaluate_parts")]),
+        ("core/evaluation/rows.cpp", "if (parts.size() == 1) return evaluate_part(", "if (!parts.empty()) return evaluate_part(")]),
 
     # --- Polygons ---
     Mutant("concave_fanned", "concave polygons are cut", [
@@ -222,7 +223,7 @@ MUTANTS = [
         ("core/mesh/polygon_cut.cpp", "      add_flat(first, p, run.end, whole);\n", "")]),
     Mutant("cut_turned_over", "no triangle is turned over", [
         ("core/mesh/polygon_cut.cpp",
-         "if (turn(links_[low].place, p, links_[high].place) <= 0) return false;",
+         "if (turn(links_[low].point, p, links_[high].point) <= 0) return false;",
          "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
 
     # --- Determinism, identity, error bound ---
@@ -239,9 +240,9 @@ MUTANTS = [
     Mutant("loops_take_part_in_others", "who waits for a loop within a loop takes no part in the outer one", [
         ("core/machine/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
     Mutant("error_bound_too_small", "the error bound is rigorous", [
-        ("core/evaluation/winding_number.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
+        ("core/boundary/boundary_term.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
-        ("core/evaluation/winding_number.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
+        ("core/boundary/boundary_term.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
 
     # --- Points that are drawn ---
     Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [

@@ -1,0 +1,115 @@
+#include "core/boundary/boundary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "core/boundary/enclosure.h"
+#include "core/data/rule.h"
+#include "core/exact/predicates.h"
+#include "core/mesh/exterior_edges.h"
+
+namespace raycone {
+namespace {
+
+// The argument of an edge along the rays is 0 from everywhere, which the kernel would find out by predicates.
+bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.z == b.z; }
+
+constexpr long double kWideRounding = std::numeric_limits<long double>::epsilon() / 2;
+constexpr Quad kQuadRounding = 0x1p-113;
+
+// Whether w, which differs from `value` by at most 1/8 and from -(turns of the cone) by an integer, is above
+// `critical` (1), below (-1), or cannot be told from it (0). `rounding`: u of Real.
+template <class Real>
+int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real rounding) {
+  const auto rest = static_cast<long double>(cone.rest);
+  const auto n = static_cast<std::int64_t>(std::nearbyint(value + (static_cast<long double>(cone.whole) + rest)));
+  const Real whole = static_cast<Real>(n - cone.whole);
+  const Real w = whole - cone.rest;
+  const Real difference = w - static_cast<Real>(critical);
+  const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
+  const Real bound = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
+  const Real error = bound > Real(kIndistinguishable) ? bound : Real(kIndistinguishable);
+  return static_cast<int>(difference > error) - static_cast<int>(difference < -error);
+}
+
+bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return on_triangle(a, b, b, q); }
+
+}  // namespace
+
+Boundary::Boundary(const TriangleMesh& mesh) {
+  add_chains(mesh);
+  find_plane();
+}
+
+// The steps of edges along the rays are not joined.
+void Boundary::add_chains(const TriangleMesh& mesh) {
+  const std::vector<ExteriorEdge> edges = raycone::exterior_edges(mesh);
+  edges_ = edges.size();
+  const ExteriorEdge* previous = nullptr;
+  for (const ExteriorEdge& e : edges) {
+    const std::int32_t multiplicity = std::abs(e.multiplicity);
+    if (groups_.empty() || groups_.back().multiplicity != multiplicity) {
+      groups_.push_back({multiplicity, {}});
+      previous = nullptr;
+    }
+    std::vector<ChainStep>& steps = groups_.back().steps;
+    if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
+    const Vec3 &from = mesh.vertices[e.from], &to = mesh.vertices[e.to];
+    const bool along_rays = projects_to_a_point(from, to);
+    if (along_rays) edges_along_rays_.push_back({from, to});
+    steps.push_back({to, !along_rays, e.multiplicity < 0});
+    total_multiplicity_ += multiplicity;
+    previous = &e;
+  }
+}
+
+// The plane through all exterior edges, if there is one and no more.
+void Boundary::find_plane() {
+  const Vec3 *a = nullptr, *b = nullptr, *c = nullptr;
+  for (const ChainGroup& group : groups_) {
+    for (const ChainStep& step : group.steps) {
+      const Vec3& v = step.to;
+      if (!a) {
+        a = &v;
+      } else if (!b) {
+        if (v != *a) b = &v;
+      } else if (!c) {
+        if (!collinear(*a, *b, v)) c = &v;
+      } else if (plane_side(*a, *b, *c, v) != 0) {
+        return;
+      }
+    }
+  }
+  if (c) plane_ = {*a, *b, *c};
+}
+
+// In the plane of all exterior edges the cone over them with its apex in that plane is flat: it covers nothing, or half
+// of all directions, of a query that is on none of the edges. w is then a multiple of 1/2.
+bool Boundary::lies_in_plane_of_edges(const Vec3& q) const {
+  if (!plane_ || plane_side((*plane_)[0], (*plane_)[1], (*plane_)[2], q) != 0) return false;
+  for (const auto& [a, b] : edges_along_rays_) {
+    if (on_segment(a, b, q)) return false;
+  }
+  for (const ChainGroup& group : groups_) {
+    for (std::size_t i = 1; i < group.steps.size(); ++i) {
+      const ChainStep& step = group.steps[i];
+      if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;
+    }
+  }
+  return true;
+}
+
+double Boundary::settle(const Vec3& q, double w, double critical) const {
+  const bool multiple_of_half = std::nearbyint(2 * critical) == 2 * critical;
+  if (multiple_of_half && std::abs(w - critical) < 0.25 && lies_in_plane_of_edges(q)) return critical;
+  int side = side_of<long double>(critical, w, enclose<long double>(groups_, q), kWideRounding);
+  if (side == 0) side = side_of<Quad>(critical, w, enclose<Quad>(groups_, q), kQuadRounding);
+  if (side == 0) return critical;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return side > 0 ? std::max(w, std::nextafter(critical, kInfinity))
+                  : std::min(w, std::nextafter(critical, -kInfinity));
+}
+
+}  // namespace raycone

@@ -1,0 +1,48 @@
+// The boundary of a mesh: its exterior edges, and what they say for certain about a winding number.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/boundary/chain.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+class Boundary {
+ public:
+  // Of a welded mesh.
+  explicit Boundary(const TriangleMesh& mesh);
+
+  // Number of undirected edges; 0: the mesh is closed.
+  [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
+
+  // The sum of |multiplicities|: no value w is off by more than a fraction of a turn times this.
+  [[nodiscard]] double total_multiplicity() const { return total_multiplicity_; }
+
+  // All edges but those along the rays, whose factor is 1 from everywhere.
+  [[nodiscard]] std::span<const ChainGroup> groups() const { return groups_; }
+
+  // `w`, a winding number of the mesh at q that is off by at most kMostDoubt, on the side of `critical` on which the
+  // true one is; `critical` itself where that cannot be told. Takes as long as thousands of winding numbers, but no
+  // longer than two where the answer is a half-integer because all exterior edges lie in one plane with q. Needs
+  // DefaultFloatingPoint. Thread-safe.
+  [[nodiscard]] double settle(const Vec3& q, double w, double critical) const;
+  static constexpr double kMostDoubt = 0.125;
+
+ private:
+  void add_chains(const TriangleMesh& mesh);
+  void find_plane();
+  [[nodiscard]] bool lies_in_plane_of_edges(const Vec3& q) const;
+
+  std::uint64_t edges_ = 0;
+  double total_multiplicity_ = 0.0;
+  std::vector<ChainGroup> groups_;
+  std::vector<std::array<Vec3, 2>> edges_along_rays_;
+  std::optional<std::array<Vec3, 3>> plane_;  // through all edges, where there is just one
+};
+
+}  // namespace raycone

@@ -1,0 +1,28 @@
+#include "core/boundary/boundary_term.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/boundary/enclosure.h"
+
+namespace raycone {
+
+// No factor that double precision is trusted with has an argument that is off by more, in turns, its part of the
+// product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
+static constexpr double kDoubtPerEdge = 0x1p-41;
+
+// The least of the two is met at 10^11 edges only.
+ExactTerm::ExactTerm(const Boundary& boundary, double edge_factors)
+    : boundary_(boundary), doubt_(std::min(kDoubtPerEdge * edge_factors, Boundary::kMostDoubt)) {}
+
+// |w - w2| + the bound of w2 = n - enclosure, rounded up.
+double ExactTerm::error_bound(const Vec3& q, double w, std::int64_t crossings) const {
+  constexpr long double u = std::numeric_limits<long double>::epsilon() / 2;
+  const TurnsWithin<long double> enclosure = enclose<long double>(boundary_.groups(), q);
+  const long double w2 = static_cast<long double>(crossings - enclosure.whole) - enclosure.rest;
+  const long double bound = std::abs(w - w2) + enclosure.bound + u * std::abs(w2);
+  return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace raycone

@@ -1,0 +1,64 @@
+// The boundary term: what there is between the winding number w and the number n of triangles that a ray crosses, which
+// is exact. Every engine that computes it has this interface.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/boundary/boundary.h"
+#include "core/boundary/sample_tile.h"
+
+namespace raycone {
+
+// An engine: the winding numbers of one open mesh, tile by tile. It promises one of two things:
+//
+// - Exact engines (ExactTerm) sum up all that there is, in an order that the mesh alone gives. A value is off by
+//   rounding, and by nothing else.
+// - Bounded engines leave out what they can bound. That bound is part of doubt() and of error_bound().
+//
+// Both give a query the same bits in any tile, on any thread, at any SIMD level, and w on the surface and at ties is
+// that of the perturbed query (core/exact/predicates.h). Calls may run concurrently; they need DefaultFloatingPoint.
+class BoundaryTerm {
+ public:
+  BoundaryTerm() = default;
+  BoundaryTerm(const BoundaryTerm&) = delete;
+  BoundaryTerm& operator=(const BoundaryTerm&) = delete;
+  virtual ~BoundaryTerm() = default;
+
+  // Whether values depend on n. Where not, nobody needs to count crossings.
+  [[nodiscard]] virtual bool counts_crossings() const = 0;
+
+  // Sets w[i] to the winding number at sample i, whose ray has n = crossings[i]; any number where these do not count.
+  // Both spans are as long as the tile, which holds at least one sample.
+  virtual void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
+                               std::span<double> w) const = 0;
+
+  // No value is off by more, turns; at most Boundary::kMostDoubt. Closer to a critical value of a rule than this, a
+  // value is to be settled (Boundary::settle()).
+  [[nodiscard]] virtual double doubt() const = 0;
+
+  // How far `w`, which winding_numbers() has set for q, is off at most, turns: rigorous and close, all that doubt()
+  // bounds beforehand included. It may take a hundred times as long as the value. `crossings`: n.
+  [[nodiscard]] virtual double error_bound(const Vec3& q, double w, std::int64_t crossings) const = 0;
+};
+
+// What exact engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone in
+// extended precision tells how far a value is off.
+class ExactTerm : public BoundaryTerm {
+ public:
+  [[nodiscard]] double doubt() const final { return doubt_; }
+  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final;
+
+ protected:
+  // `edge_factors`: how many edges' factors round in a value, with their multiplicities; a triangle counts as three.
+  // `boundary` must outlive this.
+  ExactTerm(const Boundary& boundary, double edge_factors);
+
+  [[nodiscard]] const Boundary& boundary() const { return boundary_; }
+
+ private:
+  const Boundary& boundary_;
+  double doubt_;
+};
+
+}  // namespace raycone

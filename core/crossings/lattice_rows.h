@@ -1,0 +1,30 @@
+// The rows of a block of a lattice.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "core/crossings/row.h"
+#include "core/data/lattice.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// Rows (y, z) for all y of ys and z of zs, with the samples xs each; all ascending. Row number j + k * ys.size() is
+// (ys[j], zs[k]).
+struct LatticeRows {
+  std::vector<double> xs, ys, zs;
+  Vec3 samples_per_unit;  // as in Row, per axis
+
+  [[nodiscard]] std::size_t size() const { return ys.size() * zs.size(); }
+  [[nodiscard]] Row row(std::size_t number) const {
+    return {ys[number % ys.size()], zs[number / ys.size()], xs, samples_per_unit.x};
+  }
+};
+
+// Those of a block that has samples, each coordinate by to_scale(), which keeps their order.
+[[nodiscard]] LatticeRows rows_in_scale(const Lattice& lattice, const LatticeBlock& block,
+                                        const std::function<double(double)>& to_scale);
+
+}  // namespace raycone

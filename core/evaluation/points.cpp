@@ -1,0 +1,200 @@
+#include "core/evaluation/points.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <numeric>
+#include <vector>
+
+#include "core/machine/buckets.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// Diagnostics of the samples [begin, begin + count).
+Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
+  return {all.crossings.subspan(begin, count), all.degenerate.subspan(begin, count),
+          all.on_surface.subspan(begin, count), all.error_bound.subspan(begin, count)};
+}
+
+// A radix sort by position along a curve through the projections that moves the points themselves, so that none has to
+// be fetched from afar in the end.
+class CoherentOrder {
+ public:
+  struct SortedPoint {
+    Vec3 point;
+    std::uint32_t index;  // among the points
+    std::uint16_t key;
+  };
+  static constexpr std::size_t kBuckets = 256;
+
+  // Less than 2^32 points.
+  CoherentOrder(const ScaledMesh& mesh, std::span<const Vec3> points) : CoherentOrder(points, keys_of(mesh, points)) {}
+
+  // Whether the mesh can take all of the points.
+  [[nodiscard]] bool all_taken() const { return all_taken_; }
+
+  // Those of one bucket, in order.
+  [[nodiscard]] std::vector<SortedPoint> operator[](std::size_t bucket) const {
+    std::array<std::uint32_t, kKeysPerBucket + 1> next{};
+    for (const SortedPoint& p : buckets_[bucket]) ++next[p.key % kKeysPerBucket + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<SortedPoint> ordered(buckets_[bucket].size());
+    for (const SortedPoint& p : buckets_[bucket]) ordered[next[p.key % kKeysPerBucket]++] = p;
+    return ordered;
+  }
+
+ private:
+  static constexpr std::size_t kKeysPerBucket = ProjectedGrid::kMortonCodes / kBuckets;
+
+  struct Keys {
+    std::vector<std::uint16_t> of_points;
+    bool all_taken = true;
+  };
+
+  CoherentOrder(std::span<const Vec3> points, const Keys& keys)
+      : all_taken_(keys.all_taken),
+        buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const std::uint16_t key = keys.of_points[i];
+            emit(key / kKeysPerBucket, SortedPoint{points[i], static_cast<std::uint32_t>(i), key});
+          }
+        }) {}
+
+  // Embree's rays go in the order of the points: they are for comparison.
+  static Keys keys_of(const ScaledMesh& mesh, std::span<const Vec3> points) {
+    Keys keys;
+    keys.of_points.resize(points.size());
+    std::atomic<bool> all_taken = true;
+    constexpr std::size_t kPointsPerTask = 4096;
+    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      bool taken = true;
+      for (std::size_t i = begin; i < end; ++i) {
+        taken = taken && mesh.can_take(points[i]);
+        keys.of_points[i] = mesh.options().ray_engine == RayEngine::kScan
+                                ? mesh.grid().morton_code(mesh.to_scale(points[i]))
+                                : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kMortonCodes + 1));
+      }
+      if (!taken) all_taken = false;
+    });
+    keys.all_taken = all_taken;
+    return keys;
+  }
+
+  bool all_taken_;
+  Buckets<SortedPoint> buckets_;
+};
+
+// What all triangles say about one point.
+struct PointCrossings {
+  std::int64_t n = 0;  // the sum of the signs of the ray's crossings
+  std::int64_t ties = 0;
+  bool on_surface = false;
+
+  void add(const TriangleCrossing& crossing) {
+    if (crossing.crossed > 0) n += crossing.sigma;
+    if (crossing.met > 0) ties += crossing.ties;
+    on_surface = on_surface || crossing.on_begin < crossing.on_end;
+  }
+};
+
+// Points that are evaluated together, and where their values belong.
+class PointTile {
+ public:
+  [[nodiscard]] bool full() const { return samples_.count == kTile; }
+
+  void add(std::size_t index, const Vec3& scaled_point) {
+    indices_[samples_.count] = index;
+    samples_.add(scaled_point);
+  }
+
+  // Evaluates the points, if any, and forgets them.
+  Tally evaluate(const ScaledMesh& mesh, std::span<double> values, const Diagnostics* diagnostics) {
+    Tally tally;
+    if (samples_.count == 0) return tally;
+    std::array<std::int64_t, kTile> n;
+    std::array<double, kTile> w;
+    for (std::size_t i = 0; i < samples_.count; ++i) {
+      const PointCrossings crossings = crossings_at(mesh, samples_.query(i));
+      n[i] = crossings.n;
+      tally += {static_cast<std::uint64_t>(crossings.ties), crossings.on_surface ? 1U : 0U};
+      if (!diagnostics) continue;
+      diagnostics->crossings[indices_[i]] = crossings.n;
+      diagnostics->degenerate[indices_[i]] = crossings.ties;
+      diagnostics->on_surface[indices_[i]] = crossings.on_surface ? 1 : 0;
+    }
+    mesh.set_values(samples_, {n.data(), samples_.count}, {w.data(), samples_.count});
+    for (std::size_t i = 0; i < samples_.count; ++i) {
+      values[indices_[i]] = w[i];
+      if (diagnostics) diagnostics->error_bound[indices_[i]] = mesh.error_bound(samples_.query(i), w[i], n[i]);
+    }
+    samples_.clear();
+    return tally;
+  }
+
+ private:
+  PointCrossings crossings_at(const ScaledMesh& mesh, const Vec3& q) {
+    PointCrossings result;
+    const auto decide = [&](std::uint32_t triangle) { result.add(mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}})); };
+    if (mesh.options().ray_engine == RayEngine::kScan) {
+      result.n += mesh.grid().crossings(q, decide);
+    } else {
+      mesh.rays().find_candidates(q, candidates_);
+      for (const std::uint32_t triangle : candidates_) decide(triangle);
+    }
+    return result;
+  }
+
+  std::array<std::size_t, kTile> indices_;
+  SampleTile samples_;
+  std::vector<std::uint32_t> candidates_;
+};
+
+// Some of the points, at most as many as CoherentOrder takes.
+Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
+                     std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const ScaledMesh& scaled = meshes.scaled();
+  // What the points need is built before the loops over them, within which threads would wait for one another.
+  scaled.prepare_points();
+  const CoherentOrder order(scaled, points);
+  if (!order.all_taken()) meshes.unscaled().prepare_points();
+  std::mutex mutex;
+  Tally total;
+  parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
+    PointTile tile;
+    Tally tally;
+    for (std::size_t bucket = begin; bucket < end; ++bucket) {
+      const auto sorted = order[bucket];
+      for (const CoherentOrder::SortedPoint& p : sorted) {
+        const bool exact = order.all_taken() || scaled.can_take(p.point);
+        if (!exact) tally += tile.evaluate(scaled, values, diagnostics);
+        const ScaledMesh& mesh = meshes.of_query(exact);
+        tile.add(p.index, mesh.to_scale(p.point));
+        if (!exact || tile.full()) tally += tile.evaluate(mesh, values, diagnostics);
+      }
+      if (done) done->fetch_add(sorted.size(), std::memory_order_relaxed);
+    }
+    tally += tile.evaluate(scaled, values, diagnostics);
+    const std::lock_guard<std::mutex> lock(mutex);
+    total += tally;  // integers: their order does not matter
+  });
+  return total;
+}
+
+}  // namespace
+
+Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
+                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  Tally total;
+  constexpr std::size_t kBatch = std::size_t{1} << 17;  // bounds the memory; points enough that neighbours are near
+  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, points.size() - begin);
+    const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
+    total += evaluate_batch(meshes, points.subspan(begin, count), values.subspan(begin, count), done,
+                            diagnostics ? &of_batch : nullptr);
+  }
+  return total;
+}
+
+}  // namespace raycone

@@ -1,0 +1,163 @@
+#include "core/evaluation/rows.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/crossings/lattice_rows.h"
+#include "core/crossings/lattice_scan.h"
+#include "core/crossings/lattice_sums.h"
+#include "core/evaluation/block_parts.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// ---- What the rays cross ---------------------------------------------------------------------------------------
+
+// By Embree, which looks at one row at a time.
+void cast_rays(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
+  parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+    LatticeSums::Collector collector(sums);
+    std::vector<std::uint32_t> candidates;
+    for (std::size_t number = begin; number < end; ++number) {
+      const Row row = rows.row(number);
+      mesh.rays().find_candidates(row.query(0), candidates);
+      for (const std::uint32_t triangle : candidates) collector.add(number, mesh.crossing(triangle, row));
+    }
+    collector.finish();
+  });
+}
+
+// The order of the triangles along the axis across which the block is a thin slab of the lattice, if it is.
+std::optional<OrderedSlab> ordered_slab(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block) {
+  constexpr std::int64_t kWorthSorting = 4;  // slabs
+  for (const int axis : {2, 1}) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (block.counts[a] <= lattice.counts[a] / kWorthSorting) return OrderedSlab{mesh.slab_order(axis), axis};
+  }
+  return std::nullopt;
+}
+
+// ---- What the boundary adds ------------------------------------------------------------------------------------
+
+// Samples that are evaluated together, and where their values belong.
+class LatticeTile {
+ public:
+  [[nodiscard]] bool full() const { return samples_.count == kTile; }
+
+  void add(std::size_t index, const Vec3& scaled_query) {
+    indices_[samples_.count] = index;
+    samples_.add(scaled_query);
+  }
+
+  // Turns the crossings of the samples, if any, into winding numbers, and forgets them.
+  void evaluate(const ScaledMesh& mesh, std::span<double> values) {
+    if (samples_.count == 0) return;
+    const std::span<const std::size_t> indices(indices_.data(), samples_.count);
+    std::array<std::int64_t, kTile> crossings{};
+    std::array<double, kTile> w;
+    if (mesh.counts_crossings()) {
+      std::ranges::transform(indices, crossings.begin(),
+                             [&](std::size_t index) { return static_cast<std::int64_t>(values[index]); });
+    }
+    mesh.set_values(samples_, {crossings.data(), indices.size()}, {w.data(), indices.size()});
+    for (std::size_t i = 0; i < indices.size(); ++i) values[indices[i]] = w[i];
+    samples_.clear();
+  }
+
+ private:
+  std::array<std::size_t, kTile> indices_;
+  SampleTile samples_;
+};
+
+// Turns crossings of the rows [begin, end) into winding numbers. Samples of a row share a ray, which saves work; where
+// a row leaves fewer than fill the lanes, those of several rows are taken together.
+void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
+                       std::span<double> values) {
+  constexpr std::size_t kAlone = 8;  // samples
+  const std::size_t samples = rows.xs.size();
+  LatticeTile along, across;
+  for (std::size_t number = begin; number < end; ++number) {
+    const Row row = rows.row(number);
+    for (std::size_t first = 0; first < samples; first += kTile) {
+      const std::size_t last = std::min(first + kTile, samples);
+      LatticeTile& tile = last - first >= kAlone ? along : across;
+      for (std::size_t i = first; i < last; ++i) {
+        tile.add(number * samples + i, row.query(i));
+        if (tile.full()) tile.evaluate(mesh, values);
+      }
+      along.evaluate(mesh, values);
+    }
+  }
+  across.evaluate(mesh, values);
+}
+
+void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
+                  std::span<const double> values, const Diagnostics& diagnostics) {
+  const std::size_t samples = rows.xs.size();
+  for (std::size_t n = begin * samples; n < end * samples; ++n) {
+    const Vec3 query = rows.row(n / samples).query(n % samples);
+    diagnostics.error_bound[n] = mesh.error_bound(query, values[n], diagnostics.crossings[n]);
+  }
+}
+
+// ---- The whole -------------------------------------------------------------------------------------------------
+
+// Sets the values of rows whose crossings are known. Returns how many samples lie on the surface.
+std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
+                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  std::atomic<std::uint64_t> on_surface = 0;
+  const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
+  parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
+    std::uint64_t here = 0;
+    for (std::size_t begin = first; begin < last; begin += rows_per_task) {
+      const std::size_t end = std::min(begin + rows_per_task, last);
+      for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
+      if (!mesh.is_closed()) add_boundary_term(mesh, rows, begin, end, values);
+      if (diagnostics) bound_errors(mesh, rows, begin, end, values, *diagnostics);
+      if (done) done->fetch_add((end - begin) * rows.xs.size(), std::memory_order_relaxed);
+    }
+    on_surface += here;
+  });
+  return on_surface;
+}
+
+// Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
+Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
+                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
+  const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+  const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
+  const bool counts = mesh.counts_crossings() || diagnostics;
+  LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
+  if (mesh.options().ray_engine == RayEngine::kScan) {
+    scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
+  } else {
+    mesh.prepare_points();  // not within the loop over rows, whose threads would wait for one another
+    cast_rays(mesh, rows, sums);
+  }
+  sums.arrange();
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics);
+  return {sums.ties(), on_surface};
+}
+
+}  // namespace
+
+Tally evaluate_block(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
+                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const std::vector<LatticeBlock> parts =
+      parts_alike(lattice, block, [&](double x) { return meshes.scaled().can_take(x); });
+  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics);
+  Tally tally;
+  for (const LatticeBlock& part : parts) {
+    PartSamples samples(static_cast<std::size_t>(part.size()));
+    const Diagnostics* part_diagnostics = diagnostics ? &samples.diagnostics() : nullptr;
+    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics);
+    samples.copy_to(block, part, values, diagnostics);
+  }
+  return tally;
+}
+
+}  // namespace raycone

@@ -1,0 +1,100 @@
+#include "core/evaluation/scaled_mesh.h"
+
+#include <limits>
+#include <utility>
+
+#include "core/boundary/cone.h"
+#include "core/boundary/solid_angles.h"
+
+namespace raycone {
+namespace {
+
+TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
+  for (Vec3& p : mesh.vertices) p = scale(p);
+  return mesh;
+}
+
+// The engine that is asked for.
+std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary,
+                                                  const EvaluatorOptions& options) {
+  if (boundary.exterior_edges() == 0) return nullptr;
+  const bool cheapest = options.summation == Summation::kCheapest;
+  const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
+  if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
+    auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);
+    if (!cheapest || !triangles->has_repeated_faces()) return triangles;
+  }
+  return std::make_unique<const Cone>(boundary, options.level);
+}
+
+double nearest_integer(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
+
+}  // namespace
+
+ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options)
+    : scale_(scale),
+      inverse_(-scale.exponent()),
+      least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
+      options_(options),
+      mesh_(in_scale(std::move(mesh), scale)),
+      boundary_(mesh_),
+      term_(boundary_term(mesh_, boundary_, options)) {}
+
+TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
+
+const RayCaster& ScaledMesh::rays() const {
+  std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
+  return *rays_;
+}
+
+const ProjectedGrid& ScaledMesh::grid() const {
+  std::call_once(grid_built_, [this] { grid_.emplace(mesh_); });
+  return *grid_;
+}
+
+const SlabOrder& ScaledMesh::slab_order(int axis) const {
+  const auto n = static_cast<std::size_t>(axis - 1);
+  std::call_once(slab_orders_built_[n], [&] { slab_orders_[n].emplace(mesh_, axis); });
+  return *slab_orders_[n];
+}
+
+void ScaledMesh::prepare_points() const {
+  if (options_.ray_engine == RayEngine::kScan) {
+    (void)grid();
+  } else {
+    (void)rays();
+  }
+}
+
+TriangleCrossing ScaledMesh::crossing(std::uint32_t triangle, const Row& row) const {
+  const Triangle& t = mesh_.triangles[triangle];
+  return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
+}
+
+void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings,
+                            std::span<double> values) const {
+  if (!term_) {
+    std::copy(crossings.begin(), crossings.end(), values.begin());
+    return;
+  }
+  term_->winding_numbers(samples, crossings, values);
+  const double doubt = term_->doubt();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (0.5 - std::abs(values[i] - nearest_integer(values[i])) > doubt) continue;
+    values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);
+  }
+}
+
+ScaledMeshes::ScaledMeshes(TriangleMesh mesh, const EvaluatorOptions& options)
+    : ScaledMeshes(unit_scale(mesh), std::move(mesh), options) {}
+
+ScaledMeshes::ScaledMeshes(const PowerOfTwo& scale, TriangleMesh&& mesh, const EvaluatorOptions& options)
+    : scaled_(std::move(mesh), scale, options) {}
+
+const ScaledMesh& ScaledMeshes::unscaled() const {
+  std::call_once(unscaled_built_,
+                 [this] { unscaled_.emplace(scaled_.unscaled_mesh(), PowerOfTwo(0), scaled_.options()); });
+  return *unscaled_;
+}
+
+}  // namespace raycone

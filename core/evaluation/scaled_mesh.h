@@ -1,0 +1,121 @@
+// A mesh in a scale in which predicates are fast, with all that is needed to evaluate queries in that scale.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+
+#include "core/boundary/boundary.h"
+#include "core/boundary/boundary_term.h"
+#include "core/boundary/sample_tile.h"
+#include "core/crossings/crossings.h"
+#include "core/crossings/projected_grid.h"
+#include "core/crossings/ray_caster.h"
+#include "core/crossings/row.h"
+#include "core/crossings/slab_order.h"
+#include "core/data/triangle_mesh.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/scale.h"
+
+namespace raycone {
+
+// How the evaluator was asked to go about it.
+struct EvaluatorOptions {
+  RayEngine ray_engine = RayEngine::kScan;
+  SimdLevel level = SimdLevel::kBest;
+  Summation summation = Summation::kCheapest;
+};
+
+class ScaledMesh {
+ public:
+  ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options);
+  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_, term_ to boundary_
+  ScaledMesh& operator=(const ScaledMesh&) = delete;
+
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const EvaluatorOptions& options() const { return options_; }
+  [[nodiscard]] const Boundary& boundary() const { return boundary_; }
+  [[nodiscard]] bool is_closed() const { return boundary_.exterior_edges() == 0; }
+
+  // The mesh as it was given: the scaling lost nothing.
+  [[nodiscard]] TriangleMesh unscaled_mesh() const;
+
+  // Whether scaling a query coordinate loses nothing that a predicate could see: scaled down, it may not become
+  // subnormal, even where it would keep its bits; so that on an axis of a lattice few intervals answer alike.
+  [[nodiscard]] bool can_take(double x) const { return std::abs(x) >= least_ || x == 0.0; }
+  [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
+
+  [[nodiscard]] double to_scale(double x) const {
+    return scale_.exponent() > 0 ? std::clamp(scale_(x), -kFarthest, kFarthest) : scale_(x);
+  }
+  [[nodiscard]] Vec3 to_scale(const Vec3& q) const { return {to_scale(q.x), to_scale(q.y), to_scale(q.z)}; }
+
+  // Built when first needed: lattices may need none of them.
+  [[nodiscard]] const RayCaster& rays() const;
+  [[nodiscard]] const ProjectedGrid& grid() const;
+  [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
+  void prepare_points() const;
+
+  // What follows takes queries in the scale.
+
+  [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const;
+
+  // Whether values depend on how many triangles a ray crosses.
+  [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
+
+  // No value is off by more.
+  [[nodiscard]] double doubt() const { return term_ ? term_->doubt() : 0.0; }
+
+  // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
+  // thresholds, is on the right side of it or is it. At least one sample.
+  void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
+
+  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
+    return term_ ? term_->error_bound(q, w, crossings) : 0.0;
+  }
+
+ private:
+  // Queries that scaling up brings beyond this are as good as at it: a mesh of size 1 has vanished.
+  static constexpr double kFarthest = 0x1p1000;
+
+  PowerOfTwo scale_;
+  PowerOfTwo inverse_;
+  double least_;  // magnitude of query coordinates, beside 0, that scaling keeps
+  EvaluatorOptions options_;
+  TriangleMesh mesh_;
+  Boundary boundary_;
+  std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
+  mutable std::once_flag rays_built_, grid_built_;
+  mutable std::array<std::once_flag, 2> slab_orders_built_;
+  mutable std::optional<RayCaster> rays_;
+  mutable std::optional<ProjectedGrid> grid_;
+  mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
+};
+
+// A mesh in the scale in which predicates are fast, and as it is for queries with a coordinate that this scale would
+// drop bits of (a number below 1e-290 mesh sizes). A matter of each query alone, since the two may round differently.
+class ScaledMeshes {
+ public:
+  ScaledMeshes(TriangleMesh mesh, const EvaluatorOptions& options);
+
+  [[nodiscard]] const ScaledMesh& scaled() const { return scaled_; }
+  // Built when first needed. Predicates are slower there.
+  [[nodiscard]] const ScaledMesh& unscaled() const;
+  [[nodiscard]] const ScaledMesh& of_query(bool scaling_is_exact) const {
+    return scaling_is_exact ? scaled_ : unscaled();
+  }
+
+ private:
+  ScaledMeshes(const PowerOfTwo& scale, TriangleMesh&& mesh, const EvaluatorOptions& options);
+
+  ScaledMesh scaled_;
+  mutable std::once_flag unscaled_built_;
+  mutable std::optional<ScaledMesh> unscaled_;
+};
+
+}  // namespace raycone

@@ -7,9 +7,9 @@
 #include "app/process/exit_code.h"
 #include "app/process/signals.h"
 #include "app/process/stack_limit.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/run/grid_reader.h"
-#include "app/run/run.h"
+#include "app/run_command.h"
 
 namespace raycone {
 namespace {

@@ -28,7 +28,7 @@
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"

@@ -20,7 +20,7 @@
 #include "app/options/options.h"
 #include "app/process/limits.h"
 #include "app/process/signals.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/run/run_lattice.h"
 #include "app/run/run_points.h"
 #include "app/run/run_steps.h"

@@ -9,8 +9,8 @@
 
 #include "app/batch/batch_meshes.h"
 #include "app/batch/shard.h"
-#include "app/options/fields.h"
 #include "app/process/progress.h"
+#include "app/run/fields.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/sampled_points.h"
 #include "app/run/slice_choice.h"

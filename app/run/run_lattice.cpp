@@ -10,13 +10,13 @@
 #include <variant>
 #include <vector>
 
-#include "app/options/fields.h"
-#include "app/process/disk_space.h"
 #include "app/process/limits.h"
 #include "app/process/progress.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
+#include "app/run/disk_space.h"
 #include "app/run/field_evaluator.h"
+#include "app/run/fields.h"
 #include "app/run/grid_reader.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/slabs.h"

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "app/options/options.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/run/run_steps.h"
 #include "core/data/lattice.h"
 

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "app/options/fields.h"
-#include "app/process/disk_space.h"
 #include "app/process/limits.h"
 #include "app/process/progress.h"
 #include "app/process/stopwatch.h"
+#include "app/run/disk_space.h"
 #include "app/run/field_evaluator.h"
+#include "app/run/fields.h"
 #include "app/run/sampled_points.h"
 #include "app/run/verify.h"
 #include "core/mesh/weld.h"

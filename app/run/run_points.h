@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/run/run_steps.h"
 
 namespace raycone {

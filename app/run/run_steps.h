@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/options/options.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "core/data/triangle_mesh.h"
 #include "core/machine/threads.h"
 #include "io/fields/field_writer.h"
@@ -67,7 +67,8 @@ struct SideFiles {
 // Throws OutputError.
 [[nodiscard]] SideFiles open_side_files(const OutputFiles& output);
 
-// The mesh file with its concave polygons cut. Throws InputError, LimitError where the file alone is too large for the memory.
+// The mesh file with its concave polygons cut. Throws InputError, LimitError where the file alone is too large for the
+// memory.
 [[nodiscard]] MeshFile read(const MeshOptions& mesh, const RunLimits& limits);
 
 // A report that says what was asked for; what comes out of it is yet to be filled in.

@@ -1,6 +1,6 @@
 // Verification of a run by other means: some of its samples are computed again by definition, as direct sums over all
-// triangles and as distances to each of them (core/exact/direct_sum.h, core/exact/direct_distance.h), and compared with the numbers
-// that the run is about to hand over.
+// triangles and as distances to each of them (core/exact/direct_sum.h, core/exact/direct_distance.h), and compared with
+// the numbers that the run is about to hand over.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "app/options/fields.h"
 #include "app/run/field_evaluator.h"
+#include "app/run/fields.h"
 #include "core/data/lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"

@@ -1,5 +1,5 @@
 // One line per message, its wording made where the cause is known.
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 
 #include <cstdio>
 #include <exception>

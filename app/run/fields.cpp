@@ -1,4 +1,4 @@
-#include "app/options/fields.h"
+#include "app/run/fields.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // From a command to its results, reports and summary.
-#include "app/run/run.h"
+#include "app/run_command.h"
 
 #include <memory>
 #include <string>

@@ -1,12 +1,12 @@
-// The commands, each a straight line from its files to its results.
+// All commands, each done by the folder that it belongs to.
 #pragma once
 
-#include "app/options/options.h"
+#include "app/options/command.h"
 #include "app/process/exit_code.h"
 
 namespace raycone {
 
-// Does what `command` says and returns how it ended; failures are exceptions (report.h: report_current_exception).
-[[nodiscard]] ExitCode run(const Command& command);
+// Does what `command` says and returns how it ended; failures are exceptions (app/process/messages.h).
+[[nodiscard]] ExitCode run_command(const Command& command);
 
 }  // namespace raycone

@@ -17,7 +17,7 @@
 #include "app/process/limits.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
-#include "app/run/run_steps.h"
+#include "app/run/written_files.h"
 #include "app/text/html.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/report/run_report.h"
+#include "app/process/messages.h"
 #include "app/text/html.h"
 
 namespace raycone {

@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "app/batch/worker.h"
-#include "app/options/options.h"
+#include "app/command_line/parse_command_line.h"
 #include "app/process/exit_code.h"
+#include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "app/process/stack_limit.h"
-#include "app/report/report.h"
 #include "app/run/grid_reader.h"
-#include "app/run/run.h"
+#include "app/run_command.h"
 
 namespace raycone {
 namespace {
@@ -17,9 +17,9 @@ namespace {
 // Raycone starts itself for some of its work, by commands that are not for users.
 ExitCode run_words(const std::vector<std::string>& words) {
   const std::string command = words.empty() ? "" : words.front();
-  if (command == kWorkerCommand) return run_worker({words.begin() + 1, words.end()});
+  if (command == kWorkerCommand) return run_worker();
   if (command == kGridReaderCommand) return run_grid_reader({words.begin() + 1, words.end()});
-  return run(parse_command_line(words));
+  return run_command(parse_command_line(words));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ sh "$root/tests/check_licences.sh" "$root"
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 cp -RL "$root/core" "$root/io" "$root/app" "$copy"
-echo '#include <CGAL/Triangulation_2.h>' >>"$copy/core/projection.cpp"
+echo '#include <CGAL/Triangulation_2.h>' >>"$copy/core/exact/projection.cpp"
 if output=$(sh "$root/tests/check_licences.sh" "$copy" 2>&1); then
   echo "not noticed: CGAL/Triangulation_2.h in core/exact/projection.cpp" >&2
   exit 1

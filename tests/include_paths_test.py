@@ -10,13 +10,24 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-# docs/architecture.md, "Who may include whom": a folder sees itself, folders above it in its list, and those named here.
+# docs/architecture.md, "Who may include whom": a folder sees itself, folders above it in its list, and those named
+# here.
 STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/evaluation"]
 BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/crossings"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]
 OF_CORE = {"core/data", "core/machine"}  # what io may see of core
+# app: what each folder sees, and with it all that those see. The files in app/ itself are the top: they see everything.
+APP = {"app/text": [],
+       "app/process": ["app/text", "io/files", "core/machine"],
+       "app/options": ["app/process", "io/fields", "io/points", "core/evaluation", "core/sampling"],
+       "app/command_line": ["app/options"],
+       "app/report": ["app/process", "io/mesh", "core/evaluation"],
+       "app/picture": ["core/data"],
+       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance"],
+       "app/batch": ["app/run"],
+       "app/manual": ["app/command_line"]}
 
 
 def allowed(folder):
@@ -28,6 +39,8 @@ def allowed(folder):
     if folder.startswith("io/"):
         above = FILES if folder in FILES else FIELDS
         return OF_CORE | set(above[:above.index(folder) + 1])
+    if folder in APP:
+        return {folder}.union(*map(allowed, APP[folder]))
     return None
 
 
@@ -60,7 +73,7 @@ def folders_seen(arguments):
 def compiles(compiler, arguments, header):
     paths = [a for a in arguments if a.startswith("-I")]
     result = subprocess.run([compiler, "-std=c++20", *paths, "-x", "c++", "-fsyntax-only", "-"],
-                            input=f'#include "{header}"\n', text=True, capture_output=True)
+                            input=f'#include "{header}"\n', text=True, capture_output=True, cwd="/")
     return result.returncode == 0
 
 
@@ -88,7 +101,11 @@ def main(build, compiler):
                                   ("core/exact", "io/files/file_error.h", False),
                                   ("io/mesh", "core/data/triangle_mesh.h", True),
                                   ("io/mesh", "core/mesh/weld.h", False),
-                                  ("io/files", "io/mesh/read_mesh.h", False)]:
+                                  ("io/files", "io/mesh/read_mesh.h", False),
+                                  ("app/run", "app/options/lattice_command.h", True),
+                                  ("app/run", "app/command_line/parse_command_line.h", False),
+                                  ("app/options", "app/batch/shard.h", False),
+                                  ("app/batch", "app/command_line/batch_options.h", False)]:
         if compiles(compiler, of_folder[folder], header) != works:
             failures.append(f'{folder}: #include "{header}" {"does not compile" if works else "compiles"}')
     print("\n".join(failures) or f"{checked} sources see what they may")

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Device and inode.
-using FileIdentity = std::pair<dev_t, ino_t>;
+using DirectoryIdentity = std::pair<dev_t, ino_t>;
 
 bool has_mesh_extension(const fs::path& path) {
   const std::string extension = path.extension().string();
@@ -42,7 +42,7 @@ class DirectorySearch {
     struct stat status {};
     const std::string path = path_of(name);
     if (stat(path.c_str(), &status) != 0) return add(name);
-    const FileIdentity identity{status.st_dev, status.st_ino};
+    const DirectoryIdentity identity{status.st_dev, status.st_ino};
     if (std::ranges::count(ancestors_, identity) > 0) return;  // a link to a directory above
     std::error_code error;
     fs::directory_iterator entries(path, error);
@@ -72,7 +72,7 @@ class DirectorySearch {
   }
 
   std::string root_;
-  std::vector<FileIdentity> ancestors_;
+  std::vector<DirectoryIdentity> ancestors_;
   std::vector<BatchMesh> meshes_;
 };
 

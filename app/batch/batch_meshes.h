@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/batch/file_stamp.h"
+#include "app/options/batch_command.h"
 
 namespace raycone {
 
@@ -13,13 +14,6 @@ struct BatchMesh {
   std::string name;    // relative to the directory given, or the file's own name: its identity in the results
   std::string output;  // relative to the directory of outputs
   FileStamp stamp;
-};
-
-struct MeshSearch {
-  std::vector<std::string> operands;  // MESH, DIR, @LIST, and @- or - for a list on standard input
-  bool nul_separated_lists = false;
-  bool full_names = false;  // outputs keep the extension of the mesh
-  std::string extension;    // of outputs, without the dot
 };
 
 // In byte order of their names; a file given twice is there once. Directories are searched recursively for the

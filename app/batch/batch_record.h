@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/csv.h"
 #include "app/batch/file_stamp.h"
 #include "app/batch/result_row.h"
+#include "app/text/csv.h"
 
 namespace raycone {
 

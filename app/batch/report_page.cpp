@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "app/batch/batch_record.h"
-#include "app/batch/html.h"
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
 #include "app/process/limits.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
-#include "app/run/run_steps.h"
+#include "app/run/written_files.h"
+#include "app/text/html.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/output_file.h"

@@ -1,7 +1,7 @@
 // `raycone report`: a page about a batch.
 #pragma once
 
-#include "app/options/options.h"
+#include "app/options/batch_command.h"
 
 namespace raycone {
 

@@ -31,9 +31,9 @@ CsvRecord to_fields(const MeshFigures& f) {
 }
 
 // Reads the fields of a record one after the other; `valid` is false once one of them is no number.
-class FieldReader {
+class FigureReader {
  public:
-  FieldReader(const CsvRecord& record, std::size_t first) : record_(record), next_(first) {}
+  FigureReader(const CsvRecord& record, std::size_t first) : record_(record), next_(first) {}
 
   std::uint64_t count() {
     const std::optional<std::int64_t> number = integer_from(record_[next_++]);
@@ -54,7 +54,7 @@ class FieldReader {
 };
 
 std::optional<MeshFigures> figures_from(const CsvRecord& record) {
-  FieldReader fields(record, kFirstFigure);
+  FigureReader fields(record, kFirstFigure);
   MeshFigures f;
   for (std::uint64_t* const count : {&f.faces, &f.exterior_edges, &f.samples, &f.degenerate, &f.on_surface}) {
     *count = fields.count();

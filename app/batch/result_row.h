@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/batch/csv.h"
+#include "app/text/csv.h"
 
 namespace raycone {
 

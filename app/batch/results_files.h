@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/batch/batch_record.h"
-#include "app/batch/shard.h"
+#include "app/options/batch_command.h"
 
 namespace raycone {
 

@@ -19,16 +19,15 @@
 #include "app/batch/batch_summary.h"
 #include "app/batch/plan.h"
 #include "app/batch/results_files.h"
+#include "app/batch/shard.h"
 #include "app/batch/supervisor.h"
-#include "app/batch/worker.h"
-#include "app/command_line/batch_options.h"
 #include "app/process/limits.h"
+#include "app/process/messages.h"
 #include "app/process/progress.h"
 #include "app/process/signals.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
-#include "app/report/report.h"
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
@@ -53,8 +52,7 @@ std::vector<std::string> other_inputs(const BatchCommand& command) {
     if (operand == "-") inputs.push_back(operand);
     if (operand.starts_with('@')) inputs.push_back(operand.substr(1));
   }
-  const MeshCommand of_mesh = mesh_command_of(command.format, command.mesh_options);
-  if (const GridReference* const grid = grid_of(of_mesh)) inputs.push_back(grid->path);
+  if (const GridReference* const grid = grid_of(command.for_each)) inputs.push_back(grid->path);
   return inputs;
 }
 
@@ -66,7 +64,7 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
   };
   for (const BatchMesh& mesh : meshes) add(mesh.path);
   for (const std::string& path : other_inputs(command)) add(path);
-  std::map<std::string, std::string> outputs;  // by the place where links lead
+  std::map<std::string, std::string> outputs;  // by the path where links lead
   for (const BatchMesh& mesh : meshes) {
     const std::string path = command.directory + '/' + mesh.output;
     const std::optional<FileIdentity> file = identity_of_output(path);
@@ -75,8 +73,8 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
     const bool is_input = file->new_name.empty() && input != inputs.end();
     const fs::path target = follow_links(path);
     std::error_code error;
-    const fs::path place = fs::canonical(directory_of(target.string()), error) / target.filename();
-    const auto [other, is_free] = outputs.emplace(place.string(), mesh.path);
+    const fs::path target_path = fs::canonical(directory_of(target.string()), error) / target.filename();
+    const auto [other, is_free] = outputs.emplace(target_path.string(), mesh.path);
     if (is_input) throw UsageError(mesh.path + ": its output " + path + " would replace the input " + input->second);
     if (!is_free) throw UsageError(mesh.path + ": its output " + path + " would replace that of " + other->second);
   }
@@ -86,10 +84,10 @@ std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
   std::vector<BatchMesh> all = find_meshes(command.search);
   if (all.empty()) print_message("warning: no meshes found");
   for (const BatchMesh& mesh : all) {
-    if (command.format == "none" || !is_results_file(mesh.output)) continue;
+    if (!command.writes || !is_results_file(mesh.output)) continue;
     throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
   }
-  if (command.format != "none") refuse_to_replace(command, all);
+  if (command.writes) refuse_to_replace(command, all);
   if (!command.shard) return all;
   std::vector<SizedName> names;
   for (const BatchMesh& mesh : all) names.push_back({mesh.name, mesh.stamp.size});
@@ -98,23 +96,16 @@ std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
   return part;
 }
 
-// The options that outputs and results depend on, as text.
-std::string shaping_options(const BatchCommand& command) {
-  const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
-  std::string text = "--format=" + command.format;
-  for (const std::string& option : command.mesh_options) {
-    if (!without_effect.contains(option.substr(0, option.find('=')))) text += '\n' + option;
-  }
-  const MeshCommand of_mesh = mesh_command_of(command.format, command.mesh_options);
-  if (const GridReference* const grid = grid_of(of_mesh)) text += '\n' + sha256_of_file(grid->path);
-  return text;
+// What outputs and results depend on beside the mesh, as text.
+std::string result_options(const BatchCommand& command) {
+  const GridReference* const grid = grid_of(command.for_each);
+  return grid ? command.result_options + '\n' + sha256_of_file(grid->path) : command.result_options;
 }
 
 SupervisorOptions supervisor_options(const BatchCommand& command) {
   constexpr double kDefaultTimeout = 3600.0;  // seconds
   SupervisorOptions options;
-  options.worker_words = {"raycone", kWorkerCommand, command.format};
-  options.worker_words.insert(options.worker_words.end(), command.mesh_options.begin(), command.mesh_options.end());
+  options.for_each = command.for_each;
   options.threads = command.run.threads ? *command.run.threads : default_threads();
   options.jobs = std::min(command.jobs.value_or(options.threads), options.threads);
   options.memory_limit = command.run.memory_limit ? *command.run.memory_limit
@@ -125,10 +116,10 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
 
 PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& limits) {
   return {.directory = command.directory,
-          .writes = command.format != "none",
+          .writes = command.writes,
           .retry_failed = command.retry_failed,
           .version = kVersion,
-          .options = shaping_options(command),
+          .options = result_options(command),
           .memory_limit = limits.memory_limit,
           .default_memory_limit = !command.run.memory_limit,
           .timeout = limits.timeout};

@@ -1,7 +1,7 @@
 // `raycone batch`: lattices or samples of many meshes.
 #pragma once
 
-#include "app/options/options.h"
+#include "app/options/batch_command.h"
 #include "app/process/exit_code.h"
 
 namespace raycone {

@@ -5,17 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "app/options/batch_command.h"
+
 namespace raycone {
-
-// The I-th of N disjoint parts, 1 <= I <= N.
-struct Shard {
-  std::uint64_t index = 1;
-  std::uint64_t count = 1;
-};
-
-// "3/8", or "slurm": the task of the array job that this process runs in, by SLURM_ARRAY_TASK_ID, _MIN, _MAX and
-// _STEP. Throws UsageError, also for an array with gaps (_COUNT tells), where the parts would not add up to the whole.
-[[nodiscard]] Shard shard_from(const std::string& text);
 
 struct SizedName {
   std::string name;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "app/batch/worker_process.h"
 #include "app/process/exit_code.h"
@@ -34,6 +35,18 @@ JobResult failed(MeshStatus status, int exit, const std::string& message) {
   return result;
 }
 
+MeshCommand command_for(const SupervisedJob& job, int threads, const SupervisorOptions& options) {
+  MeshCommand command = options.for_each;
+  const auto fill_in = [&](auto& one) {
+    one.mesh.path = job.mesh;
+    one.output.path = job.output;
+    one.run.threads = threads;
+    one.run.memory_limit = options.memory_limit;
+  };
+  std::visit(fill_in, command);
+  return command;
+}
+
 // A worker and what it is doing.
 struct Slot {
   std::unique_ptr<WorkerProcess> worker;
@@ -53,7 +66,7 @@ class Supervisor {
       if (std::ranges::none_of(slots_, [](const Slot& slot) { return slot.running.has_value(); })) return 0;
       wait(signals);
       if (const int signal = signals.take()) return signal;
-      for (Slot& slot : slots_) look_after(slot);
+      for (Slot& slot : slots_) attend_to(slot);
       tick();
     }
   }
@@ -81,11 +94,11 @@ class Supervisor {
   void begin(const Schedule::Start& start) {
     const SupervisedJob& job = jobs_[start.mesh];
     Slot& slot = idle_slot();
-    if (!slot.worker) slot.worker = std::make_unique<WorkerProcess>(options_.worker_words);
+    if (!slot.worker) slot.worker = std::make_unique<WorkerProcess>();
     slot.running = start;
     slot.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                        std::chrono::duration<double>(std::min(options_.timeout, kMaxTimeout)));
-    slot.worker->send({job.mesh, job.output, start.threads, options_.memory_limit});
+    slot.worker->send(command_for(job, start.threads, options_));
   }
 
   // Until a worker or a signal has something to say, the next deadline, or the next tick.
@@ -101,7 +114,7 @@ class Supervisor {
     poll(descriptors.data(), descriptors.size(), static_cast<int>(std::max<decltype(milliseconds)>(milliseconds, 0)));
   }
 
-  void look_after(Slot& slot) {
+  void attend_to(Slot& slot) {
     if (!slot.running || stopped_) return;
     if (std::optional<JobResult> result = slot.worker->receive()) {
       const MeshStatus status = result->row.status;

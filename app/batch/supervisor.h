@@ -6,24 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/job.h"
+#include "app/batch/job_result.h"
 #include "app/batch/schedule.h"
+#include "app/options/batch_command.h"
 #include "app/process/signals.h"
 
 namespace raycone {
 
 struct SupervisedJob {
-  std::string mesh;  // files, as for Job
-  std::string output;
+  std::string mesh;        // file to read
+  std::string output;      // file to write
   std::uint64_t size = 0;  // of the mesh, bytes
 };
 
 struct SupervisorOptions {
-  std::vector<std::string> worker_words;  // the command line of a worker, the program's name first
-  int threads = 1;                        // busy ones at a time, in all workers together
-  int jobs = 1;                           // meshes at a time
-  std::uint64_t memory_limit = 0;         // of each mesh, bytes
-  double timeout = 0.0;                   // of each mesh, seconds
+  MeshCommand for_each;            // what is done to each mesh, but for its files, threads and memory
+  int threads = 1;                 // busy ones at a time, in all workers together
+  int jobs = 1;                    // meshes at a time
+  std::uint64_t memory_limit = 0;  // of each mesh, bytes
+  double timeout = 0.0;            // of each mesh, seconds
 };
 
 // Told of each mesh, by its position, as soon as it is done, and what part of the work that makes, 0 to 1. Ends the

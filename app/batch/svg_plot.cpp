@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <map>
 
-#include "app/batch/html.h"
+#include "app/text/html.h"
 
 namespace raycone {
 namespace {

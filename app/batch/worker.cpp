@@ -14,16 +14,18 @@
 #include <utility>
 #include <variant>
 
-#include "app/batch/job.h"
+#include "app/batch/command_message.h"
+#include "app/batch/job_result.h"
 #include "app/batch/thumbnail.h"
-#include "app/command_line/batch_options.h"
-#include "app/options/options.h"
+#include "app/options/batch_command.h"
 #include "app/process/limits.h"
+#include "app/process/messages.h"
 #include "app/process/signals.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 #include "app/run/run_lattice.h"
+#include "app/run/run_limits.h"
 #include "app/run/run_points.h"
-#include "app/run/run_steps.h"
+#include "app/run/written_files.h"
 #include "core/machine/threads.h"
 #include "io/files/base64.h"
 #include "io/files/read_file.h"
@@ -152,16 +154,6 @@ JobResult result_of(const Failure& failure) {
   return result;
 }
 
-// `command` with the files and limits of `job`.
-template <typename OneCommand>
-OneCommand command_for(const Job& job, OneCommand command) {
-  command.mesh.path = job.mesh;
-  command.output.path = job.output;
-  command.run.threads = job.threads;
-  command.run.memory_limit = job.memory_limit;
-  return command;
-}
-
 JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
   Thumbnail thumbnail;
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
@@ -188,7 +180,7 @@ JobResult perform(const OneCommand& command) {
   reset_peak_memory();
   try {
     return within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
-      refuse_to_replace_input(files_written(command.output), {command.mesh.path});
+      refuse_to_replace_input(files_written(command), inputs_of(command));
       return evaluate(command, limits);
     });
   } catch (...) {
@@ -198,14 +190,13 @@ JobResult perform(const OneCommand& command) {
 
 }  // namespace
 
-ExitCode run_worker(const std::vector<std::string>& words) {
+ExitCode run_worker() {
   leave_signals_to_supervisor();
   std::set_terminate(end_without_memory);
   Connection supervisor(take_socket());
-  const MeshCommand command = mesh_command_of(words.at(0), {words.begin() + 1, words.end()});
   while (const std::optional<Message> message = supervisor.receive()) {
-    const Job job = job_from(*message);
-    const JobResult result = std::visit([&job](const auto& one) { return perform(command_for(job, one)); }, command);
+    const MeshCommand command = mesh_command_from(*message);
+    const JobResult result = std::visit([](const auto& one) { return perform(one); }, command);
     if (!supervisor.send(to_message(result))) break;
     return_unused_memory(peak_memory());
   }

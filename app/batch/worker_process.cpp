@@ -6,11 +6,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <exception>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include "app/batch/command_message.h"
+#include "app/batch/worker.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -30,17 +34,17 @@ namespace {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::vector<std::string>& words) {
+WorkerProcess::WorkerProcess() {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw LimitError("cannot connect to a worker: " + std::generic_category().message(errno));
   }
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  std::string program = "raycone";
+  std::string command = kWorkerCommand;
+  const std::array<char*, 3> words{program.data(), command.data(), nullptr};
   const pid_t parent = getpid();
   process_ = fork();
-  if (process_ == 0) become_worker(ends[1], parent, arguments.data());
+  if (process_ == 0) become_worker(ends[1], parent, words.data());
   const int error = errno;
   close(ends[1]);
   socket_ = ends[0];
@@ -54,8 +58,8 @@ WorkerProcess::~WorkerProcess() {
   close(socket_);
 }
 
-void WorkerProcess::send(const Job& job) {
-  const std::string frame = to_frame(to_message(job));  // an idle worker's socket has room for it
+void WorkerProcess::send(const MeshCommand& command) {
+  const std::string frame = to_frame(to_message(command));  // an idle worker's socket has room for it
   ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL);
 }
 

@@ -4,11 +4,10 @@
 #include <sys/types.h>
 
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "app/batch/job.h"
+#include "app/batch/job_result.h"
 #include "app/batch/message.h"
+#include "app/options/batch_command.h"
 
 namespace raycone {
 
@@ -16,8 +15,8 @@ namespace raycone {
 // does. To be used by the thread that started it, the only one of its process.
 class WorkerProcess {
  public:
-  // Starts this executable with `words`. Throws LimitError.
-  explicit WorkerProcess(const std::vector<std::string>& words);
+  // Starts this executable. Throws LimitError.
+  WorkerProcess();
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
@@ -26,7 +25,7 @@ class WorkerProcess {
   [[nodiscard]] int descriptor() const { return socket_; }
 
   // Of a worker that has ended nothing is heard: see ended().
-  void send(const Job& job);
+  void send(const MeshCommand& command);
   // Takes what has arrived: the answer, once it is complete. Nothing to be understood ends the worker.
   [[nodiscard]] std::optional<JobResult> receive();
   [[nodiscard]] bool ended() const { return ended_; }

@@ -2,10 +2,13 @@
 #include "app/command_line/batch_options.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/lattice_options.h"
+#include "app/command_line/parse_shard.h"
 #include "app/command_line/points_options.h"
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
@@ -58,24 +61,66 @@ bool is_handed_on(const std::string& name) {
   return contains(lattice, name) || kOfSamples.contains(name);
 }
 
-// Throws UsageError for options that belong to the other one of lattices and samples.
-std::vector<std::string> mesh_options_in(const Values& values) {
+// Of the options of one mesh, by their long names. Throws UsageError for those that belong to the other one of lattices
+// and samples.
+using MeshValues = std::map<std::string, std::vector<std::string>>;
+MeshValues mesh_values_in(const Values& values) {
   const bool sampled = values.given("--sample");
   const OptionNames known = option_names(sampled ? points_spec() : lattice_spec());
-  std::vector<std::string> options;
+  MeshValues of_mesh;
   for (const auto& [name, given] : values.all()) {
     if (!is_handed_on(name)) continue;
     if (!contains(known, name)) {
       if (sampled) throw UsageError("--sample: cannot be combined with " + name);
       invalid(name, given.back(), "--sample with it");
     }
-    options.push_back(known.flags.contains(name) ? name : name + '=' + given.back());
+    of_mesh.emplace(name, given);
   }
-  return options;
+  return of_mesh;
 }
 
 // How outputs are written if nothing else is said.
 std::string default_format(bool sampled) { return sampled ? "npz" : "vdb"; }
+
+// The name of a format in lower case, "none" included.
+std::string parse_batch_format(const Values& values) {
+  std::string format = values.given("--format") ? values.text("--format") : default_format(values.given("--sample"));
+  std::ranges::transform(format, format.begin(),
+                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return format;
+}
+
+// What is done to one mesh, whose files and limits are yet to be filled in: a lattice, or the points that are drawn.
+MeshCommand parse_for_each(const std::string& format, MeshValues of_mesh) {
+  const bool sampled = of_mesh.contains("--sample");
+  // What writes nothing accepts what any format does.
+  const bool writes = format != "none";
+  of_mesh["--format"] = {writes ? format : default_format(sampled)};
+  of_mesh["--output"] = {"-"};
+  of_mesh["--progress"] = {"never"};
+  of_mesh["--quiet"] = {"true"};
+  of_mesh["MESH"] = {"MESH"};
+  const Values values(std::move(of_mesh));
+  const auto finish = [writes](auto command) -> MeshCommand {
+    if (!writes) command.encoding.format = FieldFormat::kNone;
+    return command;
+  };
+  const Command command = sampled ? parse_points(values) : parse_lattice(values);
+  return sampled ? finish(std::get<PointsCommand>(command)) : finish(std::get<LatticeCommand>(command));
+}
+
+// A line an option, as it was given: "--name=value", flags "--name". Batches keep this text: to change how an option is
+// written there makes all results out of date.
+std::string result_options(const std::string& format, const MeshValues& of_mesh) {
+  static const OptionNames known = option_names(batch_spec());
+  const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
+  std::string text = "--format=" + format;
+  for (const auto& [name, given] : of_mesh) {
+    if (without_effect.contains(name)) continue;
+    text += '\n' + (known.flags.contains(name) ? name : name + '=' + given.back());
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -107,35 +152,19 @@ CommandSpec batch_spec() {
   return spec;
 }
 
-MeshCommand mesh_command_of(const std::string& format, const std::vector<std::string>& options) {
-  const bool sampled = std::ranges::any_of(options, [](const auto& word) { return word.starts_with("--sample="); });
-  // What writes nothing accepts what any format does.
-  const bool writes = format != "none";
-  std::vector<std::string> words{sampled ? "points" : "lattice", "--output=-", "--quiet", "--progress=never"};
-  words.push_back("--format=" + (writes ? format : default_format(sampled)));
-  words.insert(words.end(), options.begin(), options.end());
-  words.insert(words.end(), {"--", "MESH"});
-  const auto finish = [writes](auto command) -> MeshCommand {
-    if (!writes) command.output.format = FieldFormat::kNone;
-    return command;
-  };
-  const Command command = parse_command_line(words);
-  return sampled ? finish(std::get<PointsCommand>(command)) : finish(std::get<LatticeCommand>(command));
-}
-
 Command parse_batch(const Values& values) {
   if (!values.given("--out-dir")) throw UsageError("no directory given, expected --out-dir DIR" + help_hint("batch"));
   values.exclude("--fail-fast", {"--keep-going"});
   BatchCommand command;
-  command.format = values.given("--format") ? values.text("--format") : default_format(values.given("--sample"));
-  std::ranges::transform(command.format, command.format.begin(),
-                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  command.mesh_options = mesh_options_in(values);
-  (void)mesh_command_of(command.format, command.mesh_options);  // throws where they are wrong
+  const std::string format = parse_batch_format(values);
+  const MeshValues of_mesh = mesh_values_in(values);
+  command.writes = format != "none";
+  command.for_each = parse_for_each(format, of_mesh);
+  command.result_options = result_options(format, of_mesh);
   command.directory = values.text("--out-dir");
-  const bool full_names = values.given("--full-names") || command.format == "none";  // no outputs, no collisions
-  command.search = {values.texts("MESH|DIR|@LIST"), values.given("--null"), full_names, command.format};
-  if (values.given("--shard")) command.shard = shard_from(values.text("--shard"));
+  const bool full_names = values.given("--full-names") || !command.writes;  // no outputs, no collisions
+  command.search = {values.texts("MESH|DIR|@LIST"), values.given("--null"), full_names, format};
+  if (values.given("--shard")) command.shard = parse_shard(values.text("--shard"));
   command.run = parse_run(values);
   constexpr std::int64_t kMaxJobs = 1024;  // each has open files
   if (values.given("--jobs")) command.jobs = static_cast<int>(values.integer("--jobs", 1, kMaxJobs));

@@ -84,11 +84,10 @@ OutputFiles parse_output_files(const Values& values) {
   return output;
 }
 
-OutputOptions parse_output(const Values& values, const OutputFormats& formats) {
-  OutputOptions output;
-  static_cast<OutputFiles&>(output) = parse_output_files(values);
-  output.format = parse_format(values, output.path, formats);
-  return output;
+FieldEncoding parse_encoding(const Values& values, const OutputFiles& output, const OutputFormats& formats) {
+  FieldEncoding encoding;
+  encoding.format = parse_format(values, output.path, formats);
+  return encoding;
 }
 
 OptionGroup run_group() {

@@ -7,7 +7,9 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/values.h"
-#include "app/options/options.h"
+#include "app/options/mesh_options.h"
+#include "app/options/output_options.h"
+#include "app/options/run_options.h"
 
 namespace raycone {
 
@@ -26,7 +28,9 @@ struct OutputFormats {
   std::string listed;                    // for messages
   std::optional<FieldFormat> only = {};  // whatever the output is called
 };
-[[nodiscard]] OutputOptions parse_output(const Values& values, const OutputFormats& formats);
+// Of values that go to `output`. No option but --format is looked at.
+[[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,
+                                           const OutputFormats& formats);
 
 [[nodiscard]] OptionGroup run_group();
 [[nodiscard]] RunOptions parse_run(const Values& values);

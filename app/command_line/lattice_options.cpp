@@ -40,7 +40,7 @@ GridReference parse_like(const std::string& text) {
 
 // An array of a lattice has one axis per axis of the lattice.
 void check_npy(const LatticeCommand& command) {
-  if (command.output.format != FieldFormat::kNpy) return;
+  if (command.encoding.format != FieldFormat::kNpy) return;
   constexpr const char* kReason = "npy holds one number per sample, expected vdb, csv or vti";
   if (command.field.diagnostics) throw UsageError(std::string("--diagnostics: ") + kReason);
   if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
@@ -57,22 +57,21 @@ void make_room_for_band(const Values& values, LatticeCommand& command) {
 
 // What only grids of OpenVDB have.
 void parse_grid_options(const Values& values, LatticeCommand& command) {
-  OutputOptions& output = command.output;
+  FieldEncoding& encoding = command.encoding;
   values.exclude("--half", {"--double"});
   for (const char* const name : {"--half", "--grid-name"}) {
-    if (values.given(name) && output.format != FieldFormat::kVdb) {
+    if (values.given(name) && encoding.format != FieldFormat::kVdb) {
       throw UsageError(std::string(name) + ": is for grids, expected the format vdb");
     }
   }
-  output.half_precision = values.given("--half");
+  encoding.half_precision = values.given("--half");
   if (!values.given("--grid-name")) return;
-  output.grid_name = values.text("--grid-name");
+  encoding.grid_name = values.text("--grid-name");
   if (command.field.fields.size() > 1) {
-    throw UsageError("--grid-name " + *output.grid_name + ": names a single grid, expected one field");
+    throw UsageError("--grid-name " + *encoding.grid_name + ": names a single grid, expected one field");
   }
-  for (const FieldDescription& other : describe_diagnostics(command.field)) {
-    if (other.grid == *output.grid_name)
-      invalid("--grid-name", *output.grid_name, "another name than the diagnostics'");
+  if (command.field.diagnostics && std::ranges::count(kDiagnosticNames, *encoding.grid_name) > 0) {
+    invalid("--grid-name", *encoding.grid_name, "another name than the diagnostics'");
   }
 }
 
@@ -149,9 +148,11 @@ Command parse_lattice(const Values& values) {
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
   if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
-  command.output = parse_output(
-      values, {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti}, "vdb, csv, npy or vti"});
-  command.output.double_precision = values.given("--double");
+  command.output = parse_output_files(values);
+  command.encoding = parse_encoding(
+      values, command.output,
+      {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti}, "vdb, csv, npy or vti"});
+  command.encoding.double_precision = values.given("--double");
   parse_grid_options(values, command);
   check_npy(command);
   return command;

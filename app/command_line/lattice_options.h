@@ -6,7 +6,8 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/values.h"
-#include "app/options/options.h"
+#include "app/options/command.h"
+#include "app/options/lattice_request.h"
 
 namespace raycone {
 

@@ -1,6 +1,6 @@
-// The command line, from words to a Command. CLI11 checks it against the specification of the command and prints the
+// CLI11 checks it against the specification of the command and prints the
 // help; values stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
-#include "app/options/options.h"
+#include "app/command_line/parse_command_line.h"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>

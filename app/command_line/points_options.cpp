@@ -96,7 +96,8 @@ Command parse_points(const Values& values) {
   parse_points_source(values, command);
   command.reading = parse_point_columns(values);
   command.reading.raw = parse_raw(values);
-  command.output = parse_output(values, output_formats(command));
+  command.output = parse_output_files(values);
+  command.encoding = parse_encoding(values, command.output, output_formats(command));
   return command;
 }
 

@@ -2,7 +2,7 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/values.h"
-#include "app/options/options.h"
+#include "app/options/command.h"
 
 namespace raycone {
 

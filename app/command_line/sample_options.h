@@ -5,7 +5,7 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/values.h"
-#include "app/run/sampled_points.h"
+#include "app/options/points_command.h"
 
 namespace raycone {
 

@@ -91,12 +91,12 @@ SliceRequest parse_request(const Values& values, const Values& up) {
 
 // --up has two meanings here, told apart by their values: how the mesh is turned, as with all commands, and which
 // direction is up in the picture. The last one of either counts.
-struct Ups {
+struct UpOptions {
   Values mesh;
   Values picture;
 };
 
-Ups split_ups(const Values& values) {
+UpOptions split_up_options(const Values& values) {
   std::vector<std::string> mesh;
   std::vector<std::string> picture;
   for (const std::string& text : values.texts("--up")) {
@@ -141,11 +141,11 @@ CommandSpec slice_spec() {
 
 Command parse_slice(const Values& values) {
   if (!values.given("--output")) throw UsageError("no output given, expected -o OUT.png" + help_hint("slice"));
-  const Ups ups = split_ups(values);
+  const UpOptions up = split_up_options(values);
   SliceCommand command;
-  command.mesh = parse_mesh(ups.mesh);
+  command.mesh = parse_mesh(up.mesh);
   command.run = parse_run(values);
-  command.slice = parse_request(values, ups.picture);
+  command.slice = parse_request(values, up.picture);
   command.output = parse_output_files(values);
   check_format(values, command.output.path);
   command.legend = !values.given("--no-legend");

@@ -14,7 +14,7 @@ constexpr double kDarkest = 0.37;
 
 // The strongest colour, part of the way out. sRGB holds these chromas at these hues and lightnesses.
 constexpr double kMostChroma = 0.14;
-constexpr double kPlaceOfMostChroma = 0.62;
+constexpr double kPositionOfMostChroma = 0.62;
 
 constexpr double kHueBelow = 248.0;  // degrees: blue
 constexpr double kHueAbove = 35.0;   // red
@@ -41,13 +41,13 @@ Rgb from_oklab(double lightness, double a, double b) {
           srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-// `place`: from -1, the lower end, to 1.
-Rgb colour_at(double place) {
-  const double outwards = std::abs(place);
+// `position`: from -1, the lower end, to 1.
+Rgb colour_at(double position) {
+  const double outwards = std::abs(position);
   const double lightness = kLightest + (kDarkest - kLightest) * outwards;
-  const double from_most = (outwards - kPlaceOfMostChroma) / kPlaceOfMostChroma;
+  const double from_most = (outwards - kPositionOfMostChroma) / kPositionOfMostChroma;
   const double chroma = kMostChroma * (1.0 - from_most * from_most);
-  const double hue = (place < 0.0 ? kHueBelow : kHueAbove) * std::numbers::pi / 180.0;
+  const double hue = (position < 0.0 ? kHueBelow : kHueAbove) * std::numbers::pi / 180.0;
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
@@ -76,8 +76,8 @@ ColourMap::ColourMap(const ColourRange& range) : range_(range), colours_(kColour
 }
 
 Rgb ColourMap::operator()(double value) const {
-  const double place = std::clamp((value - range_.least()) / (range_.most() - range_.least()), 0.0, 1.0);
-  return colours_[static_cast<std::size_t>(std::lround(place * static_cast<double>(kColours - 1)))];
+  const double position = std::clamp((value - range_.least()) / (range_.most() - range_.least()), 0.0, 1.0);
+  return colours_[static_cast<std::size_t>(std::lround(position * static_cast<double>(kColours - 1)))];
 }
 
 }  // namespace raycone

@@ -23,7 +23,7 @@ struct PlaneView {
            ((static_cast<double>(height - 1 - row) + 0.5) * pixel) * up;
   }
   // Where the picture shows `point`, or its foot on the plane.
-  [[nodiscard]] PicturePoint seen(const Vec3& point) const {
+  [[nodiscard]] PicturePoint picture_point(const Vec3& point) const {
     const Vec3 from_corner = point - corner;
     return {dot(from_corner, right) / pixel, static_cast<double>(height) - dot(from_corner, up) / pixel};
   }

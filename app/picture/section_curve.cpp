@@ -14,15 +14,15 @@ bool in_front_if_in_plane(const Vec3& normal) {
 }
 
 // A vertex as the plane has it.
-struct Corner {
+struct VertexAtPlane {
   Vec3 position;
   double distance;  // positive in front
   bool in_front;
 };
 
-PicturePoint crossing(const Corner& a, const Corner& b, const PlaneView& view) {
+PicturePoint crossing(const VertexAtPlane& a, const VertexAtPlane& b, const PlaneView& view) {
   const double t = a.distance / (a.distance - b.distance);
-  return view.seen(a.position + t * (b.position - a.position));
+  return view.picture_point(a.position + t * (b.position - a.position));
 }
 
 }  // namespace
@@ -31,16 +31,16 @@ std::vector<PictureSegment> section_curve(const TriangleMesh& mesh, const PlaneV
   const bool tie = in_front_if_in_plane(view.normal);
   std::vector<PictureSegment> curve;
   for (const Triangle& triangle : mesh.triangles) {
-    std::array<Corner, 3> corners{};
+    std::array<VertexAtPlane, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 position = mesh.vertices[triangle[k]];
       const double distance = dot(view.normal, position - view.corner);
       corners[k] = {position, distance, distance > 0.0 || (distance == 0.0 && tie)};
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      const Corner& alone = corners[k];
-      const Corner& next = corners[(k + 1) % 3];
-      const Corner& last = corners[(k + 2) % 3];
+      const VertexAtPlane& alone = corners[k];
+      const VertexAtPlane& next = corners[(k + 1) % 3];
+      const VertexAtPlane& last = corners[(k + 2) % 3];
       if (alone.in_front == next.in_front || alone.in_front == last.in_front) continue;
       curve.push_back({crossing(alone, next, view), crossing(alone, last, view)});
     }

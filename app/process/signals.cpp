@@ -15,7 +15,7 @@
 #include <cstring>
 
 #include "app/process/exit_code.h"
-#include "app/report/report.h"
+#include "app/process/messages.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {

@@ -2,11 +2,9 @@
 #include "app/report/info.h"
 
 #include <cstdio>
-#include <vector>
+#include <utility>
 
-#include "app/run/lattice_choice.h"
 #include "app/text/plain_text.h"
-#include "io/files/file_error.h"
 
 namespace raycone {
 namespace {
@@ -48,11 +46,7 @@ std::string readable_seconds(double seconds) {
   return text;
 }
 
-std::string cost_of_lattice(const MeshInfo& info, std::int64_t resolution, int threads) {
-  LatticeRequest request;
-  request.sampling = LongestSide{resolution};
-  std::vector<std::string> warnings;  // of flat sides: none with one count for all axes
-  const Lattice lattice = choose_lattice(info.bounds, request, warnings);
+std::string cost_of(const Lattice& lattice, const MeshInfo& info, int threads) {
   const auto [nx, ny, nz] = lattice.counts;
   const double samples = static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz);
   const double edges = static_cast<double>(info.statistics.exterior_edges);
@@ -78,7 +72,7 @@ class Table {
 
 }  // namespace
 
-std::string info_text(const MeshInfo& info, int threads) {
+std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const MeshStatistics& s = info.statistics;
   Table table;
   table.row("faces", readable(info.faces));
@@ -95,12 +89,9 @@ std::string info_text(const MeshInfo& info, int threads) {
   table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
   table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
   const std::string on_threads = threads == 1 ? "1 thread" : std::to_string(threads) + " threads";
-  try {
-    table.row("cost on " + on_threads, cost_of_lattice(info, 64, threads));
-    table.row("", cost_of_lattice(info, 256, threads));
-  } catch (const LimitError& error) {
-    table.row("no lattice", error.what());
-  }
+  std::string heading = "cost on " + on_threads;
+  for (const Lattice& lattice : costed.lattices) table.row(std::exchange(heading, ""), cost_of(lattice, info, threads));
+  if (costed.no_more) table.row("no lattice", *costed.no_more);
   return plain_text(info.mesh, "?") + "\n" + table.text();
 }
 

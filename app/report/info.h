@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/mesh_statistics.h"
 
@@ -19,7 +22,13 @@ struct MeshInfo {
   MeshStatistics statistics;  // of the welded mesh
 };
 
+// Lattices whose cost the text tells.
+struct CostedLattices {
+  std::vector<Lattice> lattices;
+  std::optional<std::string> no_more;  // why there are no others
+};
+
 // Aligned text for people; the costs are those of `threads` threads.
-[[nodiscard]] std::string info_text(const MeshInfo& info, int threads);
+[[nodiscard]] std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads);
 
 }  // namespace raycone

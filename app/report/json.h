@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/report/info.h"
-#include "app/report/report.h"
+#include "app/report/run_report.h"
 
 namespace raycone {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "app/options/fields.h"
+#include "app/run/fields.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"

@@ -16,9 +16,10 @@ inline constexpr const char* kGridReaderCommand = "grid-reader";
 // descriptor to write to (OpenVDB prints warnings to the standard ones), the path and the name.
 [[nodiscard]] ExitCode run_grid_reader(const std::vector<std::string>& words);
 
-// read_vdb_lattice() of io/vdb/read_vdb.h, by this executable started anew, so that no thread of this process is missed.
-// The other process says nothing, leaves no core file, and ends with this one at the latest. A crash is an InputError,
-// too. Throws std::bad_alloc where the other one had no memory, and LimitError where there can be no other process.
+// read_vdb_lattice() of io/vdb/read_vdb.h, by this executable started anew, so that no thread of this process is
+// missed. The other process says nothing, leaves no core file, and ends with this one at the latest. A crash is an
+// InputError, too. Throws std::bad_alloc where the other one had no memory, and LimitError where there can be no other
+// process.
 [[nodiscard]] Lattice read_grid_lattice(const std::string& path, const std::string& name);
 
 }  // namespace raycone

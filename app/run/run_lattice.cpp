@@ -1,27 +1,24 @@
-// Straight lines: output opened, mesh read, welded, evaluator built, samples evaluated and written.
 #include "app/run/run_lattice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "app/options/fields.h"
-#include "app/process/disk_space.h"
 #include "app/process/limits.h"
-#include "app/process/progress.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
-#include "app/run/field_evaluator.h"
+#include "app/run/disk_space.h"
+#include "app/run/field_run.h"
 #include "app/run/grid_reader.h"
 #include "app/run/lattice_choice.h"
+#include "app/run/mesh_run.h"
 #include "app/run/slabs.h"
-#include "app/run/verify.h"
-#include "core/mesh/weld.h"
+#include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
 #include "io/files/output_file.h"
 
@@ -76,24 +73,25 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
                                            const OutputDescription& description, const RunLimits& limits) {
   constexpr double kMappedByModule = 160.0 * 1024 * 1024;
   constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
-  const bool loads = command.output.format == FieldFormat::kVdb;
+  const bool loads = command.encoding.format == FieldFormat::kVdb;
   if (loads) check_memory(command.mesh.path, kTouchedByModule, limits.memory());
   if (loads) cap_memory(limits.memory(), kMappedByModule);
-  std::unique_ptr<LatticeWriter> writer = make_lattice_writer(command.output.format, output, lattice, description);
+  std::unique_ptr<LatticeWriter> writer = make_lattice_writer(command.encoding.format, output, lattice, description);
   if (loads) cap_memory(limits.memory());
   return writer;
 }
 
 // Refuses lattices that cannot fit, before any work on them.
-std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, OutputFile& output, const RunReport& report,
-                                           const RunLimits& limits) {
+std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRun& run) {
+  const RunReport& report = run.report;
+  const RunLimits& limits = run.limits();
   const Lattice& lattice = *report.lattice;
-  const FieldFormat format = command.output.format;
-  const OutputDescription description = description_of(report, command.field, command.output);
+  const FieldFormat format = command.encoding.format;
+  const OutputDescription description = description_of(report, command.field, command.encoding);
   const double of_writer = writer_memory(lattice, format, description);
   check_memory(report.mesh, of_writer, limits.memory());
-  output.reserve(least_lattice_file(format, description, report.samples));
-  std::unique_ptr<LatticeWriter> writer = make_writer(command, output, lattice, description, limits);
+  run.output.reserve(least_lattice_file(format, description, report.samples));
+  std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);
   const LatticeBlock smallest = Slabs(lattice, *writer, 1).first();
   check_memory(report.mesh, of_writer + slab_memory(smallest, command.field), limits.memory());
   return writer;
@@ -102,62 +100,40 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, Output
 // Slabs as memory allows.
 Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                const RunLimits& limits) {
-  const OutputDescription description = description_of(report, command.field, command.output);
-  const double of_writer = writer_memory(*report.lattice, command.output.format, description);
+  const OutputDescription description = description_of(report, command.field, command.encoding);
+  const double of_writer = writer_memory(*report.lattice, command.encoding.format, description);
   const double left = static_cast<double>(limits.memory()) - memory_in_use() - of_writer;
   return {*report.lattice, writer, slab_samples(command.field, left)};
 }
 
-void evaluate_lattice(const FieldEvaluator& evaluator, const Slabs& slabs, LatticeWriter& writer, FieldSamples& samples,
-                      SampleDraw& draw, const SlabObserver& observe, Progress& progress, RunReport& report) {
-  const Lattice& lattice = *report.lattice;
+void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& writer, const SlabObserver& observe,
+                      MeshRun& run) {
+  const Lattice& lattice = *run.report.lattice;
+  std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
-    report.tally +=
-        timed(report.seconds.evaluate, [&] { return evaluator.evaluate(lattice, slab, samples, progress.done()); });
-    draw.offer(lattice, slab, samples.numbers());
-    if (observe) observe(lattice, slab, samples.winding_numbers());
-    timed(report.seconds.write, [&] { writer.write(slab, samples.fields()); });
+    fields.evaluate(lattice, slab, done);
+    if (observe) observe(lattice, slab, fields.winding_numbers());
+    timed(run.report.seconds.write, [&] { writer.write(slab, fields.values()); });
   }
 }
 
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, const SlabObserver& observe) {
-  RunReport report = report_on(command.mesh, command.output, limits);
-  auto total = std::make_optional<Stopwatch>(report.seconds.total);
-  OutputFile output(command.output.path, command.output.no_clobber);
-
-  MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
-  describe(file, report);
-  refuse_to_replace_input(files_written(command.output), report.files_read);
-  TriangleMesh mesh =
-      timed(report.seconds.prepare, [&] { return weld(std::move(file.parsed.mesh), command.mesh.weld); });
-  report.warnings = std::move(file.parsed.warnings);
+  MeshRun run(command.mesh, command.output, command.run, limits);
+  RunReport& report = run.report;
+  TriangleMesh mesh = run.load_mesh(files_written(command));
   report.lattice = lattice_for(command, mesh, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(*report.lattice);
-  warn(report.warnings, command.run, command.mesh.path);
+  run.print_warnings();
 
-  const TriangleMesh original = mesh_to_verify(mesh, command.field);
-  const auto evaluator = timed(report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), command.field); });
-  prepare_engine(evaluator.winding_number(), command.field, limits);
-  report.exterior_edges = evaluator.winding_number().exterior_edges();
-  const std::unique_ptr<LatticeWriter> writer = open_writer(command, output, report, limits);
-
-  Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
-  FieldSamples samples(command.field);
-  SampleDraw draw(command.field.verify);
-  const Slabs slabs = slabs_of(command, *writer, report, limits);
-  evaluate_lattice(evaluator, slabs, *writer, samples, draw, observe, progress, report);
-  if (command.field.verify > 0) {
-    report.verification = verify(report.mesh, original, evaluator, command.field,
-                                 command.field.band * report.lattice->spacing.x, draw.samples());
-  }
+  FieldRun fields(run, std::move(mesh), command.field);
+  const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
+  evaluate_lattice(fields, slabs_of(command, *writer, report, limits), *writer, observe, run);
+  fields.verify(command.field.band * report.lattice->spacing.x);
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
-  progress.stop();
-  total.reset();
-  report.peak_memory_bytes = peak_memory();
-  return report;
+  return run.finish();
 }
 
 }  // namespace raycone

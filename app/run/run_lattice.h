@@ -4,9 +4,9 @@
 #include <functional>
 #include <span>
 
-#include "app/options/options.h"
-#include "app/report/report.h"
-#include "app/run/run_steps.h"
+#include "app/options/lattice_command.h"
+#include "app/report/run_report.h"
+#include "app/run/run_limits.h"
 #include "core/data/lattice.h"
 
 namespace raycone {

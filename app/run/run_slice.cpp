@@ -1,11 +1,11 @@
-// A straight line: outputs opened, mesh read, welded, evaluator built, pixels evaluated, drawn and written.
 #include "app/run/run_slice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,12 +13,12 @@
 
 #include "app/picture/slice_picture.h"
 #include "app/process/limits.h"
-#include "app/process/progress.h"
 #include "app/process/stopwatch.h"
 #include "app/process/version.h"
+#include "app/run/mesh_run.h"
 #include "app/run/slice_choice.h"
+#include "app/run/written_files.h"
 #include "core/evaluation/winding_number.h"
-#include "core/mesh/weld.h"
 #include "io/fields/write_npy.h"
 #include "io/fields/write_png.h"
 #include "io/files/output_file.h"
@@ -42,7 +42,7 @@ void turn_rows_over(std::span<double> values, std::int64_t width, std::int64_t h
 }
 
 Tally evaluate_view(const WindingNumberEvaluator& evaluator, const PlaneView& view, std::span<double> values,
-                    Progress& progress) {
+                    std::atomic<std::uint64_t>* done) {
   Tally tally;
   std::vector<Vec3> points;
   const std::int64_t pixels = view.width * view.height;
@@ -51,25 +51,25 @@ Tally evaluate_view(const WindingNumberEvaluator& evaluator, const PlaneView& vi
     points.clear();
     for (std::int64_t n = first; n < first + count; ++n) points.push_back(view.centre(n % view.width, n / view.width));
     const auto part = values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    tally += evaluator.evaluate(points, part, progress.done());
+    tally += evaluator.evaluate(points, part, done);
   }
   return tally;
 }
 
 Tally evaluate(const WindingNumberEvaluator& evaluator, const Slice& slice, std::span<double> values,
-               Progress& progress) {
-  if (!slice.lattice) return evaluate_view(evaluator, slice.view, values, progress);
-  const Tally tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), values, progress.done());
+               std::atomic<std::uint64_t>* done) {
+  if (!slice.lattice) return evaluate_view(evaluator, slice.view, values, done);
+  const Tally tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), values, done);
   turn_rows_over(values, slice.view.width, slice.view.height);
   return tally;
 }
 
-void write_picture(OutputFile& output, const Image& image, const std::string& mesh, const std::string& place) {
+void write_picture(OutputFile& output, const Image& image, const std::string& mesh, const std::string& plane) {
   const std::string name = std::filesystem::path(mesh).filename().string();
   const PngDescription description{image.width(),
                                    image.height(),
                                    {{"Title", name},
-                                    {"Description", "winding number at " + place},
+                                    {"Description", "winding number at " + plane},
                                     {"Software", std::string("raycone ") + kVersion}}};
   static_assert(sizeof(Rgb) == 3);
   write_png(output, description,
@@ -79,38 +79,28 @@ void write_picture(OutputFile& output, const Image& image, const std::string& me
 }  // namespace
 
 RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
-  RunReport report = report_on(command.mesh, command.output, limits);
-  auto total = std::make_optional<Stopwatch>(report.seconds.total);
-  OutputFile output(command.output.path, command.output.no_clobber);
+  MeshRun run(command.mesh, command.output, command.run, limits);
+  RunReport& report = run.report;
   std::unique_ptr<OutputFile> values_file;
   if (command.values) values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber);
-
-  MeshFile file = timed(report.seconds.read, [&] { return read(command.mesh, limits); });
-  describe(file, report);
-  refuse_to_replace_input(files_written(command), report.files_read);
-  const TriangleMesh mesh = timed(report.seconds.prepare, [&] { return weld(file.parsed.mesh, command.mesh.weld); });
-  report.warnings = std::move(file.parsed.warnings);
-  file.parsed.mesh = {};
+  const TriangleMesh mesh = run.load_mesh(files_written(command));
   const Slice slice = choose_slice(bounding_box(mesh), command.slice, report.warnings);
   report.lattice = slice.lattice;
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
-  warn(report.warnings, command.run, command.mesh.path);
+  run.print_warnings();
+
   check_slice_memory(slice, report.mesh, limits);
   if (values_file) values_file->reserve(report.samples * sizeof(double));
-
   const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(mesh); });
   report.exterior_edges = evaluator.exterior_edges();
-  Progress progress(progress_is_shown(command.run.progress, command.run.quiet, command.output.path), report.samples);
+  std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   std::vector<double> values(report.samples);
-  report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, values, progress); });
+  report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, values, done); });
   timed(report.seconds.write, [&] {
-    write_picture(output, slice_picture(slice.view, values, mesh, command.legend), report.mesh, slice.place);
+    write_picture(run.output, slice_picture(slice.view, values, mesh, command.legend), report.mesh, slice.plane);
     if (values_file) write_npy_rows(*values_file, slice.view.height, slice.view.width, values);
   });
-  progress.stop();
-  total.reset();
-  report.peak_memory_bytes = peak_memory();
-  return report;
+  return run.finish();
 }
 
 }  // namespace raycone

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/run/lattice_choice.h"
+#include "core/sampling/point_sampler.h"
 #include "io/files/file_error.h"
 
 namespace raycone {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "app/options/fields.h"
+#include "app/run/fields.h"
 #include "core/data/lattice.h"
 #include "io/fields/field_writer.h"
 

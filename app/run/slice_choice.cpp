@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/process/usage_error.h"
+#include "app/run/lattice_choice.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -97,7 +98,7 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   Slice slice;
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
-  slice.place = std::string(1, "xyz"[plane.axis]) + " = " + printed(at);
+  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + printed(at);
   return slice;
 }
 
@@ -169,7 +170,7 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
   view.corner = origin + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
-  slice.place = "normal " + printed(view.normal.x) + "," + printed(view.normal.y) + "," + printed(view.normal.z) +
+  slice.plane = "normal " + printed(view.normal.x) + "," + printed(view.normal.y) + "," + printed(view.normal.z) +
                 " through " + printed(origin.x) + "," + printed(origin.y) + "," + printed(origin.z);
   return slice;
 }

@@ -40,7 +40,7 @@ std::string text(double number) {
   return {characters.data(), std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr};
 }
 
-std::string place_of(const DrawnSample& sample) {
+std::string position_text(const DrawnSample& sample) {
   return "sample " + std::to_string(sample.number) + " at (" + text(sample.point.x) + ", " + text(sample.point.y) +
          ", " + text(sample.point.z) + ")";
 }
@@ -60,7 +60,7 @@ std::vector<NamedNumber> numbers_of(const DrawnSample& sample) {
 
 [[noreturn]] void fail(const std::string& name, const DrawnSample& sample, const NamedNumber& number,
                        const std::string& expected) {
-  throw VerificationError(name + ": " + place_of(sample) + " has the " + number.name + " " + text(number.number) +
+  throw VerificationError(name + ": " + position_text(sample) + " has the " + number.name + " " + text(number.number) +
                           ", " + expected);
 }
 
@@ -232,7 +232,7 @@ void SampleDraw::keep(const DrawnSample& sample) {
 
 void SampleDraw::offer(const Lattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers) {
   if (count_ == 0) return;
-  const auto place = [&](std::size_t axis, std::int64_t index) {
+  const auto layer = [&](std::size_t axis, std::int64_t index) {
     return static_cast<std::uint64_t>(index - lattice.index_min[axis]);
   };
   const auto nx = static_cast<std::uint64_t>(lattice.counts[0]), ny = static_cast<std::uint64_t>(lattice.counts[1]);
@@ -240,7 +240,7 @@ void SampleDraw::offer(const Lattice& lattice, const LatticeBlock& block, const 
   for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
     for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
       for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i, ++n) {
-        const std::uint64_t number = (place(2, k) * ny + place(1, j)) * nx + place(0, i);
+        const std::uint64_t number = (layer(2, k) * ny + layer(1, j)) * nx + layer(0, i);
         const std::uint64_t rank = rank_of(number);
         if (!takes(rank)) continue;
         keep(drawn(number, rank, {lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)},

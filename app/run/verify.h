@@ -1,6 +1,6 @@
 // Verification of a run by other means: some of its samples are computed again by definition, as direct sums over all
-// triangles and as distances to each of them (core/exact/direct_sum.h, core/exact/direct_distance.h), and compared with the numbers
-// that the run is about to hand over.
+// triangles and as distances to each of them (core/exact/direct_sum.h, core/exact/direct_distance.h), and compared with
+// the numbers that the run is about to hand over.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "app/options/fields.h"
+#include "app/report/run_report.h"
 #include "app/run/field_evaluator.h"
+#include "app/run/fields.h"
 #include "core/data/lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
@@ -52,15 +53,6 @@ class SampleDraw {
   std::uint64_t count_;
   std::uint64_t points_ = 0;          // offered so far
   std::vector<DrawnSample> samples_;  // a heap, the highest rank in front
-};
-
-struct Verification {
-  std::uint64_t samples = 0;                            // compared
-  std::uint64_t on_surface = 0;                         // of these; the value there is that of the perturbed query
-  std::uint64_t unresolved = 0;                         // drawn, but not known well enough by definition: not compared
-  double largest_difference = 0.0;                      // of winding numbers and densities
-  double largest_bound = 0.0;                           // of the values' error bounds
-  std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
 };
 
 // A value is wrong: exit status 6. what() is one line that names the sample, both values and the bound.

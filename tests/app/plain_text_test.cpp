@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "app/batch/html.h"
-#include "app/report/report.h"
+#include "app/process/messages.h"
+#include "app/text/html.h"
 
 namespace raycone {
 namespace {

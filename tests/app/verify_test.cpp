@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/report.h"
+#include "app/process/messages.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 

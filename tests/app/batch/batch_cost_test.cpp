@@ -5,9 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "app/command_line/batch_options.h"
 #include "app/run/run_lattice.h"
-#include "app/run/run_steps.h"
+#include "app/run/run_limits.h"
 #include "tests/app/batch/batch_fixture.h"
 
 namespace raycone::test {
@@ -50,8 +49,12 @@ double cpu_seconds(int who) {
 // CPU time depends on what else a machine does, but 1.5 has room: 0.9 to 1.0 was measured.
 TEST_F(BatchCost, IsLessThanHalfAgainThatOfOneProcess) {
   constexpr int kMeshes = 300;
-  auto command = std::get<LatticeCommand>(mesh_command_of("vdb", {"--resolution=32"}));
+  LatticeCommand command;
+  std::get<LatticeRequest>(command.lattice).sampling = LongestSide{32};
+  command.encoding.format = FieldFormat::kVdb;
   command.run.threads = 1;
+  command.run.quiet = true;
+  command.run.progress = ProgressMode::kNever;
   std::vector<std::string> paths;
   for (int i = 0; i < kMeshes; ++i) paths.push_back(put(std::to_string(i) + ".obj", torus_with_holes(16 + i % 16)));
 

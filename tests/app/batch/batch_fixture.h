@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/batch/csv.h"
 #include "app/batch/result_row.h"
+#include "app/text/csv.h"
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "app/command_line/parse_shard.h"
 #include "app/process/usage_error.h"
 
 namespace raycone::test {
@@ -38,40 +39,40 @@ Environment array_task(const std::string& id, const std::string& least, const st
 }
 
 TEST(Shard, IsReadFromText) {
-  EXPECT_EQ(shard_from("1/1").count, 1U);
-  EXPECT_EQ(shard_from("3/8").index, 3U);
-  EXPECT_EQ(shard_from("3/8").count, 8U);
+  EXPECT_EQ(parse_shard("1/1").count, 1U);
+  EXPECT_EQ(parse_shard("3/8").index, 3U);
+  EXPECT_EQ(parse_shard("3/8").count, 8U);
   for (const char* const wrong : {"", "3", "0/8", "9/8", "-1/8", "1/0", "1/8x", "1/8/2", "a/b", "1.0/2", "/"}) {
-    EXPECT_THROW((void)shard_from(wrong), UsageError) << wrong;
+    EXPECT_THROW((void)parse_shard(wrong), UsageError) << wrong;
   }
 }
 
 TEST(Shard, OfSlurmCountsTheTasksOfTheArray) {
   {
     const Environment environment = array_task("12", "10", "16", "2", "4");
-    EXPECT_EQ(shard_from("slurm").index, 2U);
-    EXPECT_EQ(shard_from("slurm").count, 4U);
+    EXPECT_EQ(parse_shard("slurm").index, 2U);
+    EXPECT_EQ(parse_shard("slurm").count, 4U);
   }
   {
     const Environment environment = array_task("0", "0", "0", "1");
-    EXPECT_EQ(shard_from("slurm").index, 1U);
-    EXPECT_EQ(shard_from("slurm").count, 1U);
+    EXPECT_EQ(parse_shard("slurm").index, 1U);
+    EXPECT_EQ(parse_shard("slurm").count, 1U);
   }
 }
 
 TEST(Shard, OfSlurmRefusesArraysWithGaps) {
-  EXPECT_THROW((void)shard_from("slurm"), UsageError) << "not in an array job";
+  EXPECT_THROW((void)parse_shard("slurm"), UsageError) << "not in an array job";
   {
     const Environment environment = array_task("3", "1", "7", "1", "3");  // --array=1,3,7
-    EXPECT_THROW((void)shard_from("slurm"), UsageError);
+    EXPECT_THROW((void)parse_shard("slurm"), UsageError);
   }
   {
     const Environment environment = array_task("4", "1", "7", "2");
-    EXPECT_THROW((void)shard_from("slurm"), UsageError);
+    EXPECT_THROW((void)parse_shard("slurm"), UsageError);
   }
   {
     const Environment environment = array_task("1", "1", "8", "0");
-    EXPECT_THROW((void)shard_from("slurm"), UsageError);
+    EXPECT_THROW((void)parse_shard("slurm"), UsageError);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/html.h"
+#include "app/text/html.h"
 
 namespace raycone::test {
 namespace {

@@ -1,5 +1,7 @@
-#include "app/batch/job.h"
+#include "app/batch/job_result.h"
 
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -14,16 +16,6 @@ std::int64_t integer_in(const std::string& text) {
 }
 
 }  // namespace
-
-Message to_message(const Job& job) {
-  return {job.mesh, job.output, std::to_string(job.threads), std::to_string(job.memory_limit)};
-}
-
-Job job_from(const Message& message) {
-  if (message.size() != 4) throw std::runtime_error("not a job");
-  return {message[0], message[1], static_cast<int>(integer_in(message[2])),
-          static_cast<std::uint64_t>(integer_in(message[3]))};
-}
 
 // The row, the thumbnail, the number of companions with two strings each, and the warnings.
 Message to_message(const JobResult& result) {

@@ -1,4 +1,4 @@
-#include "app/process/disk_space.h"
+#include "app/run/disk_space.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "app/batch/html.h"
+#include "app/text/html.h"
 
 #include "app/text/plain_text.h"
 

@@ -1,54 +1,21 @@
-// The fields of a job: their names, what they are computed from, and room for their numbers.
+// The fields of a run: what files say of them, and room for their numbers.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "app/options/field_options.h"
 #include "core/data/diagnostics.h"
-#include "core/data/rule.h"
-#include "core/evaluation/winding_number.h"
-#include "core/machine/simd.h"
 #include "io/fields/field_writer.h"
 
 namespace raycone {
 
-enum class Field {
-  kWinding,
-  kInside,    // whether the rule holds
-  kDensity,   // the winding number, clamped to [0, 1]
-  kDistance,  // to the triangles, signed: negative inside
-};
-
-// "winding", "inside", "density" or "sdf".
-[[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
-
-// As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
-[[nodiscard]] std::optional<Rule> rule_from_name(std::string_view name);
-[[nodiscard]] std::string name_of(const Rule& rule);
-
-struct FieldOptions {
-  std::vector<Field> fields{Field::kWinding};  // at least one, none twice
-  Rule rule;
-  double band = 3.0;  // voxels; of distances on lattices
-  bool diagnostics = false;
-  std::uint64_t verify = 0;             // samples to be computed again by definition
-  RayEngine engine = RayEngine::kScan;  // no value depends on these two
-  SimdLevel simd = SimdLevel::kBest;
-
-  [[nodiscard]] bool has(Field field) const;
-};
-
 // What is written of each sample, in this order: the fields, then crossings, degenerate, on_surface and error_bound
 // where diagnostics are wanted. `band_width`: where distances are cut off, in world units.
 [[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width);
-
-// The latter part of that list alone.
-[[nodiscard]] std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options);
 
 // Numbers of some samples; those of fields that are not wanted are missing.
 struct SampleNumbers {

@@ -1,8 +1,6 @@
-// One mesh of a batch: what a worker is asked to do, and what it answers.
+// What a worker answers about one mesh of a batch; what it is asked is a MeshCommand (command_message.h).
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,13 +10,6 @@
 
 namespace raycone {
 
-struct Job {
-  std::string mesh;    // file to read
-  std::string output;  // file to write
-  int threads = 1;
-  std::uint64_t memory_limit = 0;  // bytes
-};
-
 struct JobResult {
   ResultRow row;                        // its `mesh` and `output` are left empty
   std::vector<std::string> warnings;    // about the mesh
@@ -26,10 +17,8 @@ struct JobResult {
   std::string thumbnail;                // BMP in base64; empty where there is none
 };
 
-[[nodiscard]] Message to_message(const Job& job);
 [[nodiscard]] Message to_message(const JobResult& result);
-// Throw std::runtime_error for any other message.
-[[nodiscard]] Job job_from(const Message& message);
+// Throws std::runtime_error for any other message.
 [[nodiscard]] JobResult result_from(const Message& message);
 
 }  // namespace raycone

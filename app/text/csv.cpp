@@ -1,4 +1,4 @@
-#include "app/batch/csv.h"
+#include "app/text/csv.h"
 
 #include <cstddef>
 #include <optional>

@@ -1,14 +1,11 @@
-// What a run tells its user: warnings and one summary line on standard error, errors, and the numbers behind them.
+// What a run tells its user when it is done: one summary line, and the numbers behind it.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "app/process/exit_code.h"
-#include "app/run/verify.h"
 #include "core/data/lattice.h"
 #include "core/evaluation/winding_number.h"
 #include "io/mesh/read_mesh.h"
@@ -21,6 +18,16 @@ struct Seconds {
   double evaluate = 0.0;  // the rest of the evaluation
   double write = 0.0;
   double total = 0.0;
+};
+
+// What verification found (app/run/verify.h).
+struct Verification {
+  std::uint64_t samples = 0;                            // compared
+  std::uint64_t on_surface = 0;                         // of these; the value there is that of the perturbed query
+  std::uint64_t unresolved = 0;                         // drawn, but not known well enough by definition: not compared
+  double largest_difference = 0.0;                      // of winding numbers and densities
+  double largest_bound = 0.0;                           // of the values' error bounds
+  std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
 };
 
 struct RunReport {
@@ -45,24 +52,5 @@ struct RunReport {
 // "bunny.obj: 69451 faces, 223 exterior edges, 125000 samples in 0.42 s (read 0.05, ...) -> bunny.vdb", and, where
 // asked for, ", verified 100 samples, largest difference 3e-16"
 [[nodiscard]] std::string summary_line(const RunReport& report);
-
-// "raycone: ", `message` and a line feed: one line that moves no terminal, whatever bytes its file
-// names hold.
-[[nodiscard]] std::string message_line(std::string_view message);
-
-// Writes that line to standard error.
-void print_message(std::string_view message);
-
-// How a run failed: its exit status, and what to tell the user.
-struct Failure {
-  ExitCode code = ExitCode::kInternal;
-  std::string message;
-};
-
-// The exception being handled. Call in a catch block.
-[[nodiscard]] Failure current_failure();
-
-// Prints it and returns its exit status.
-[[nodiscard]] ExitCode report_current_exception();
 
 }  // namespace raycone

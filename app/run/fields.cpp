@@ -1,10 +1,7 @@
-#include "app/options/fields.h"
+#include "app/run/fields.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
-#include "app/text/parse_value.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -33,63 +30,23 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
   return description;
 }
 
-}  // namespace
-
-bool FieldOptions::has(Field field) const { return std::ranges::count(fields, field) > 0; }
-
-std::optional<Field> field_from_name(std::string_view name) {
-  if (name == "winding") return Field::kWinding;
-  if (name == "inside") return Field::kInside;
-  if (name == "density") return Field::kDensity;
-  if (name == "sdf") return Field::kDistance;
-  return std::nullopt;
-}
-
-std::optional<Rule> rule_from_name(std::string_view name) {
-  if (name == "nonzero") return Rule{RuleKind::kNonzero, 0.5};
-  if (name == "positive") return Rule{RuleKind::kPositive, 0.5};
-  if (name == "odd") return Rule{RuleKind::kOdd, 0.5};
-  for (const auto& [prefix, kind] :
-       {std::pair("threshold=", RuleKind::kThreshold), std::pair("abs=", RuleKind::kAbs)}) {
-    if (!name.starts_with(prefix)) continue;
-    const std::optional<double> threshold = number_from(name.substr(std::string_view(prefix).size()));
-    return threshold ? std::optional(Rule{kind, *threshold}) : std::nullopt;
-  }
-  return std::nullopt;
-}
-
-std::string name_of(const Rule& rule) {
-  switch (rule.kind) {
-    case RuleKind::kNonzero:
-      return "nonzero";
-    case RuleKind::kPositive:
-      return "positive";
-    case RuleKind::kOdd:
-      return "odd";
-    case RuleKind::kThreshold:
-    case RuleKind::kAbs:
-      break;
-  }
-  std::array<char, 32> number;
-  char* const end = std::to_chars(number.data(), number.data() + number.size(), rule.threshold).ptr;
-  return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
-}
-
-std::vector<FieldDescription> describe_diagnostics(const FieldOptions& options) {
+std::vector<FieldDescription> describe_diagnostics() {
   std::vector<FieldDescription> descriptions;
-  if (!options.diagnostics) return descriptions;
-  for (const auto& [name, kind] :
-       {std::pair("crossings", FieldKind::kCount), std::pair("degenerate", FieldKind::kCount),
-        std::pair("on_surface", FieldKind::kFlag), std::pair("error_bound", FieldKind::kBound)}) {
-    descriptions.push_back({name, name, name, kind, 0.0, ""});
+  constexpr std::array kKinds{FieldKind::kCount, FieldKind::kCount, FieldKind::kFlag, FieldKind::kBound};
+  for (std::size_t n = 0; n < kDiagnosticNames.size(); ++n) {
+    const char* const name = kDiagnosticNames[n];
+    descriptions.push_back({name, name, name, kKinds[n], 0.0, ""});
   }
   return descriptions;
 }
 
+}  // namespace
+
 std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
   std::vector<FieldDescription> descriptions;
   for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
-  const std::vector<FieldDescription> diagnostics = describe_diagnostics(options);
+  if (!options.diagnostics) return descriptions;
+  const std::vector<FieldDescription> diagnostics = describe_diagnostics();
   descriptions.insert(descriptions.end(), diagnostics.begin(), diagnostics.end());
   return descriptions;
 }

@@ -1,0 +1,53 @@
+// `raycone batch` and `raycone report`: many meshes, and a page about them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/options/lattice_command.h"
+#include "app/options/points_command.h"
+#include "app/options/run_options.h"
+
+namespace raycone {
+
+// What is done to one mesh.
+using MeshCommand = std::variant<LatticeCommand, PointsCommand>;
+
+// Which meshes a batch is about, and the outputs they are to have.
+struct MeshSearch {
+  std::vector<std::string> operands;  // MESH, DIR, @LIST, and @- or - for a list on standard input
+  bool nul_separated_lists = false;
+  bool full_names = false;  // outputs keep the extension of the mesh
+  std::string extension;    // of outputs, without the dot
+};
+
+// The I-th of N disjoint parts, 1 <= I <= N.
+struct Shard {
+  std::uint64_t index = 1;
+  std::uint64_t count = 1;
+};
+
+// What is done to each mesh of a batch, how, and where results go.
+struct BatchCommand {
+  MeshSearch search;
+  std::string directory;       // of outputs and results
+  std::optional<Shard> shard;  // else the whole
+  bool writes = true;          // outputs, not just measurements
+  MeshCommand for_each;        // its files, threads and memory are those of each mesh in turn
+  std::string result_options;  // those that results depend on, as text: kept beside them
+  RunOptions run;
+  std::optional<int> jobs;  // meshes at a time; else as many as threads
+  bool retry_failed = false;
+  bool fail_fast = false;
+  bool dry_run = false;
+};
+
+struct ReportCommand {
+  std::string directory;  // of a batch
+  std::string output;     // "-": standard output
+};
+
+}  // namespace raycone

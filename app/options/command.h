@@ -1,0 +1,30 @@
+// A command line as data: plain values that need no parser. What needs no file has been checked.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "app/options/batch_command.h"
+#include "app/options/lattice_command.h"
+#include "app/options/mesh_options.h"
+#include "app/options/points_command.h"
+#include "app/options/run_options.h"
+#include "app/options/slice_command.h"
+
+namespace raycone {
+
+struct InfoCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  bool json = false;
+};
+
+// --help and --version: their text is a result.
+struct PrintCommand {
+  std::string text;
+};
+
+using Command =
+    std::variant<LatticeCommand, PointsCommand, SliceCommand, InfoCommand, BatchCommand, ReportCommand, PrintCommand>;
+
+}  // namespace raycone

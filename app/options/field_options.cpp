@@ -1,0 +1,51 @@
+#include "app/options/field_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "app/text/parse_value.h"
+
+namespace raycone {
+
+bool FieldOptions::has(Field field) const { return std::ranges::count(fields, field) > 0; }
+
+std::optional<Field> field_from_name(std::string_view name) {
+  if (name == "winding") return Field::kWinding;
+  if (name == "inside") return Field::kInside;
+  if (name == "density") return Field::kDensity;
+  if (name == "sdf") return Field::kDistance;
+  return std::nullopt;
+}
+
+std::optional<Rule> rule_from_name(std::string_view name) {
+  if (name == "nonzero") return Rule{RuleKind::kNonzero, 0.5};
+  if (name == "positive") return Rule{RuleKind::kPositive, 0.5};
+  if (name == "odd") return Rule{RuleKind::kOdd, 0.5};
+  for (const auto& [prefix, kind] :
+       {std::pair("threshold=", RuleKind::kThreshold), std::pair("abs=", RuleKind::kAbs)}) {
+    if (!name.starts_with(prefix)) continue;
+    const std::optional<double> threshold = number_from(name.substr(std::string_view(prefix).size()));
+    return threshold ? std::optional(Rule{kind, *threshold}) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::string name_of(const Rule& rule) {
+  switch (rule.kind) {
+    case RuleKind::kNonzero:
+      return "nonzero";
+    case RuleKind::kPositive:
+      return "positive";
+    case RuleKind::kOdd:
+      return "odd";
+    case RuleKind::kThreshold:
+    case RuleKind::kAbs:
+      break;
+  }
+  std::array<char, 32> number;
+  char* const end = std::to_chars(number.data(), number.data() + number.size(), rule.threshold).ptr;
+  return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
+}
+
+}  // namespace raycone

@@ -1,0 +1,17 @@
+// Which mesh is read, and what is done to it before it is evaluated.
+#pragma once
+
+#include <string>
+
+#include "core/mesh/weld.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+
+struct MeshOptions {
+  std::string path;  // "-": standard input
+  ReadMeshOptions reading;
+  Weld weld;
+};
+
+}  // namespace raycone

@@ -1,0 +1,26 @@
+// Where results go, and how they are written.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+struct OutputFiles {
+  std::string path;  // "-": standard output
+  bool no_clobber = false;
+  std::optional<std::string> report;
+  std::optional<std::string> depfile;
+};
+
+// How the values of fields are stored.
+struct FieldEncoding {
+  FieldFormat format = FieldFormat::kCsv;
+  bool double_precision = false;
+  bool half_precision = false;
+  std::optional<std::string> grid_name;  // of the only field's grid
+};
+
+}  // namespace raycone

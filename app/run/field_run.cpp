@@ -1,0 +1,69 @@
+#include "app/run/field_run.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "app/process/limits.h"
+#include "app/process/stopwatch.h"
+
+namespace raycone {
+namespace {
+
+// Where Embree is asked for, prepares it, which maps much memory and touches little.
+void prepare_engine(const WindingNumberEvaluator& evaluator, const FieldOptions& field, const RunLimits& limits) {
+  constexpr double kMappedByEmbree = 192.0 * 1024 * 1024;
+  if (field.engine != RayEngine::kEmbree) return;
+  cap_memory(limits.memory(), kMappedByEmbree);
+  evaluator.prepare_points();
+  cap_memory(limits.memory());
+}
+
+}  // namespace
+
+FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field)
+    : run_(run),
+      field_(field),
+      original_(field.verify > 0 ? mesh : TriangleMesh{}),
+      evaluator_(timed(run.report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), field); })),
+      samples_(field),
+      draw_(field.verify) {
+  timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
+  run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+}
+
+void FieldRun::prepare_points() {
+  timed(run_.report.seconds.prepare, [&] { evaluator_.prepare_points(); });
+}
+
+void FieldRun::evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done) {
+  run_.report.tally +=
+      timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(lattice, block, samples_, done); });
+  draw_.offer(lattice, block, samples_.numbers());
+}
+
+void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done) {
+  run_.report.tally += timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(points, samples_, done); });
+  draw_.offer(points, samples_.numbers());
+}
+
+void FieldRun::verify(double band_width) {
+  if (field_.verify == 0) return;
+  run_.report.verification =
+      raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
+}
+
+OutputDescription description_of(const RunReport& report, const FieldOptions& field, const FieldEncoding& encoding) {
+  OutputDescription description;
+  description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->spacing.x : 0.0);
+  if (encoding.grid_name) description.fields.front().grid = *encoding.grid_name;
+  description.mesh = std::filesystem::path(report.mesh).filename().string();
+  description.mesh_sha256 = report.sha256;
+  description.faces = report.faces;
+  description.exterior_edges = report.exterior_edges;
+  description.double_precision = encoding.double_precision;
+  description.half_precision = encoding.half_precision;
+  return description;
+}
+
+}  // namespace raycone

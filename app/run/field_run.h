@@ -1,0 +1,50 @@
+// What runs have in common that evaluate fields and write them with writers of formats.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "app/options/field_options.h"
+#include "app/options/output_options.h"
+#include "app/run/field_evaluator.h"
+#include "app/run/fields.h"
+#include "app/run/mesh_run.h"
+#include "app/run/verify.h"
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "io/fields/field_writer.h"
+
+namespace raycone {
+
+class FieldRun {
+ public:
+  // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this.
+  FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field);
+
+  // Builds the search structures that points need and lattices do not.
+  void prepare_points();
+
+  // Evaluates a block or some finite points: values() are theirs then. Those that verification wants are kept.
+  void evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
+  void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);
+  [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
+  [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
+
+  // Where it is asked for, verifies what was evaluated. `band_width`: where distances are cut off, world units.
+  void verify(double band_width);
+
+ private:
+  MeshRun& run_;
+  const FieldOptions& field_;
+  TriangleMesh original_;  // to verify; empty where that is not asked for
+  FieldEvaluator evaluator_;
+  FieldSamples samples_;
+  SampleDraw draw_;
+};
+
+// What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.
+[[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,
+                                               const FieldEncoding& encoding);
+
+}  // namespace raycone

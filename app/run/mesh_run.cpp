@@ -1,0 +1,49 @@
+#include "app/run/mesh_run.h"
+
+#include <utility>
+
+#include "app/process/limits.h"
+#include "app/run/mesh_input.h"
+
+namespace raycone {
+
+MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& output_files, const RunOptions& options,
+                 const RunLimits& limits)
+    : output(output_files.path, output_files.no_clobber),
+      mesh_(mesh),
+      files_(output_files),
+      options_(options),
+      limits_(limits),
+      total_(std::in_place, report.seconds.total) {
+  report.mesh = mesh.path;
+  report.output = output_files.path;
+  report.threads = limits.threads();
+}
+
+TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
+  MeshFile file = timed(report.seconds.read, [&] { return read_mesh_file(mesh_, limits_); });
+  report.sha256 = file.sha256;
+  report.companions = file.companions;
+  report.files_read.push_back(report.mesh);
+  for (const FileRead& companion : file.companions) report.files_read.push_back(companion.path);
+  report.vertices = file.parsed.mesh.vertices.size();
+  report.faces = file.parsed.mesh.triangles.size();
+  report.warnings = std::move(file.parsed.warnings);
+  refuse_to_replace_input(written, report.files_read);
+  return timed(report.seconds.prepare, [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_); });
+}
+
+void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }
+
+std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {
+  return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, files_.path), total).done();
+}
+
+RunReport MeshRun::finish() {
+  if (progress_) progress_->stop();
+  total_.reset();
+  report.peak_memory_bytes = peak_memory();
+  return std::move(report);
+}
+
+}  // namespace raycone

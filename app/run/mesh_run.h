@@ -1,0 +1,64 @@
+// What every run over a mesh goes through, whatever is made of it.
+//
+//   MeshRun run(command.mesh, command.output, command.run, limits);  // the output is open
+//   TriangleMesh mesh = run.load_mesh(files_written(command));       // read, and made ready to be evaluated
+//   ...                                                              // what is evaluated is chosen: run.report
+//   run.print_warnings();
+//   ...                                                              // evaluated and written to run.output
+//   return run.finish();
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/options/mesh_options.h"
+#include "app/options/output_options.h"
+#include "app/options/run_options.h"
+#include "app/process/progress.h"
+#include "app/process/stopwatch.h"
+#include "app/report/run_report.h"
+#include "app/run/run_limits.h"
+#include "app/run/written_files.h"
+#include "core/data/triangle_mesh.h"
+#include "io/files/output_file.h"
+
+namespace raycone {
+
+class MeshRun {
+ public:
+  // Opens the output. What is given here must outlive this. Throws OutputError.
+  MeshRun(const MeshOptions& mesh, const OutputFiles& output, const RunOptions& options, const RunLimits& limits);
+  MeshRun(const MeshRun&) = delete;  // total_ refers to the report
+  MeshRun& operator=(const MeshRun&) = delete;
+
+  // The mesh to evaluate; the report says where it is from, and has the warnings about it. Throws InputError,
+  // LimitError, and UsageError where one of `written` would replace a file that the mesh refers to.
+  [[nodiscard]] TriangleMesh load_mesh(const std::vector<WrittenFile>& written);
+
+  // Prints what the report has by now; throws InputError with --strict.
+  void print_warnings() const;
+
+  // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
+  // to be increased by the work.
+  [[nodiscard]] std::atomic<std::uint64_t>* start_progress(std::optional<std::uint64_t> total);
+
+  // Everything is written: the report is complete.
+  [[nodiscard]] RunReport finish();
+
+  [[nodiscard]] const RunLimits& limits() const { return limits_; }
+
+  RunReport report;
+  OutputFile output;
+
+ private:
+  const MeshOptions& mesh_;
+  const OutputFiles& files_;
+  const RunOptions& options_;
+  const RunLimits& limits_;
+  std::optional<Stopwatch> total_;
+  std::optional<Progress> progress_;
+};
+
+}  // namespace raycone

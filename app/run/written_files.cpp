@@ -1,0 +1,87 @@
+#include "app/run/written_files.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <variant>
+
+#include "app/process/messages.h"
+#include "app/process/usage_error.h"
+#include "app/report/depfile.h"
+#include "app/report/json.h"
+#include "io/files/file_identity.h"
+
+namespace raycone {
+namespace {
+
+std::string name_of_output(const std::string& path) { return path == "-" ? "standard output" : path; }
+
+std::vector<WrittenFile> files_written(const OutputFiles& output) {
+  std::vector<WrittenFile> written{{output.path, "output"}};
+  if (output.report) written.push_back({*output.report, "report"});
+  if (output.depfile) written.push_back({*output.depfile, "depfile"});
+  return written;
+}
+
+}  // namespace
+
+std::vector<WrittenFile> files_written(const LatticeCommand& command) { return files_written(command.output); }
+
+std::vector<WrittenFile> files_written(const PointsCommand& command) { return files_written(command.output); }
+
+std::vector<WrittenFile> files_written(const SliceCommand& command) {
+  std::vector<WrittenFile> written = files_written(command.output);
+  if (command.values) written.push_back({*command.values, "values"});
+  return written;
+}
+
+std::vector<std::string> inputs_of(const LatticeCommand& command) {
+  std::vector<std::string> inputs{command.mesh.path};
+  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) inputs.push_back(grid->path);
+  return inputs;
+}
+
+std::vector<std::string> inputs_of(const PointsCommand& command) {
+  std::vector<std::string> inputs{command.mesh.path};
+  if (!command.sample) inputs.push_back(command.points);
+  return inputs;
+}
+
+std::vector<std::string> inputs_of(const SliceCommand& command) { return {command.mesh.path}; }
+
+void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {
+  std::vector<std::optional<FileIdentity>> read;
+  for (const std::string& input : inputs) read.push_back(identity_of_input(input));
+  for (std::size_t n = 0; n < written.size(); ++n) {
+    const auto& [path, role] = written[n];
+    const std::optional<FileIdentity> identity = identity_of_output(path);
+    if (identity && std::ranges::count(read, identity) > 0) {
+      throw UsageError(name_of_output(path) + ": is input and " + role);
+    }
+    for (std::size_t before = 0; before < n; ++before) {
+      const auto& [other, other_role] = written[before];
+      if (path == other || (identity && identity == identity_of_output(other))) {
+        throw UsageError(name_of_output(path) + ": is " + other_role + " and " + role);
+      }
+    }
+  }
+}
+
+SideFiles open_side_files(const OutputFiles& output) {
+  SideFiles files;
+  if (output.report) files.report = std::make_unique<OutputFile>(*output.report, output.no_clobber);
+  if (output.depfile) files.depfile = std::make_unique<OutputFile>(*output.depfile, output.no_clobber);
+  return files;
+}
+
+void publish(const RunReport& report, const RunOptions& options, const SideFiles& files) {
+  const auto write = [](OutputFile& file, const std::string& text) {
+    file.write(text.data(), text.size());
+    file.commit();
+  };
+  if (files.report) write(*files.report, to_json(report));
+  if (files.depfile) write(*files.depfile, depfile_text(report.output, report.files_read));
+  if (!options.quiet) print_message(summary_line(report));
+}
+
+}  // namespace raycone

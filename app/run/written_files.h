@@ -1,0 +1,46 @@
+// The files that a command writes: kept apart from what it reads, and those beside its results.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/options/lattice_command.h"
+#include "app/options/points_command.h"
+#include "app/options/run_options.h"
+#include "app/options/slice_command.h"
+#include "app/report/run_report.h"
+#include "io/files/output_file.h"
+
+namespace raycone {
+
+// What a command writes, and as what: "output", "report", ...
+struct WrittenFile {
+  std::string path;  // "-": standard output
+  std::string role;
+};
+[[nodiscard]] std::vector<WrittenFile> files_written(const LatticeCommand& command);
+[[nodiscard]] std::vector<WrittenFile> files_written(const PointsCommand& command);
+[[nodiscard]] std::vector<WrittenFile> files_written(const SliceCommand& command);
+
+// The files that a command names to be read, the mesh first.
+[[nodiscard]] std::vector<std::string> inputs_of(const LatticeCommand& command);
+[[nodiscard]] std::vector<std::string> inputs_of(const PointsCommand& command);
+[[nodiscard]] std::vector<std::string> inputs_of(const SliceCommand& command);
+
+// Throws UsageError where one of `written` would replace or grow one of `inputs` ("-": standard input) or another of
+// `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,
+// and once more when it is known which files a mesh refers to.
+void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs);
+
+// What is written beside the results; null where not asked for.
+struct SideFiles {
+  std::unique_ptr<OutputFile> report, depfile;
+};
+// Throws OutputError.
+[[nodiscard]] SideFiles open_side_files(const OutputFiles& output);
+
+// Writes the `files` about the run, and prints its summary. Throws OutputError.
+void publish(const RunReport& report, const RunOptions& options, const SideFiles& files);
+
+}  // namespace raycone

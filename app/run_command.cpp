@@ -1,0 +1,64 @@
+#include "app/run_command.h"
+
+#include <string>
+#include <variant>
+
+#include "app/batch/report_page.h"
+#include "app/batch/run_batch.h"
+#include "app/run/run_info.h"
+#include "app/run/run_lattice.h"
+#include "app/run/run_limits.h"
+#include "app/run/run_points.h"
+#include "app/run/run_slice.h"
+#include "app/run/written_files.h"
+#include "io/files/output_file.h"
+
+namespace raycone {
+namespace {
+
+void print(const std::string& text) {
+  OutputFile standard_output("-");
+  standard_output.write(text.data(), text.size());
+  standard_output.commit();
+}
+
+RunReport evaluate(const LatticeCommand& command, const RunLimits& limits) { return run_lattice(command, limits); }
+RunReport evaluate(const PointsCommand& command, const RunLimits& limits) { return run_points(command, limits); }
+RunReport evaluate(const SliceCommand& command, const RunLimits& limits) { return run_slice(command, limits); }
+
+// From a mesh to files about it: lattice, points, slice.
+template <typename EvaluatingCommand>
+ExitCode dispatch(const EvaluatingCommand& command) {
+  within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
+    refuse_to_replace_input(files_written(command), inputs_of(command));
+    const SideFiles side_files = open_side_files(command.output);
+    publish(evaluate(command, limits), command.run, side_files);
+  });
+  return ExitCode::kDone;
+}
+
+ExitCode dispatch(const InfoCommand& command) {
+  within_limits(command.run, command.mesh.path,
+                [&command](const RunLimits& limits) { print(run_info(command, limits)); });
+  return ExitCode::kDone;
+}
+
+ExitCode dispatch(const BatchCommand& command) { return run_batch(command); }
+
+ExitCode dispatch(const ReportCommand& command) {
+  write_report_page(command);
+  return ExitCode::kDone;
+}
+
+ExitCode dispatch(const PrintCommand& command) {
+  print(command.text);
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+ExitCode run_command(const Command& command) {
+  return std::visit([](const auto& one) { return dispatch(one); }, command);
+}
+
+}  // namespace raycone

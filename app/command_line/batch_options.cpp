@@ -25,25 +25,25 @@ const std::set<std::string> kOfBatches{"--format", "--threads", "--memory-limit"
 OptionGroup batch_group(const std::string& formats) {
   return {
       "Batch",
-      {{"--out-dir", "DIR", "Where outputs and results.csv go"},
-       {"--format", formats + "|npz|none", "Format of outputs (default: vdb, or npz of samples); none: measure only"},
-       {"--full-names", "", "Keep the extension of the mesh: a.stl.vdb"},
-       {"-0,--null", "", "Lists are separated by NUL, not by line feeds"},
-       {"--jobs", "J", "Meshes at a time (default: as --threads allows)"},
-       {"--shard", "I/N|slurm", "Do the I-th of N parts; slurm: that of this array task"},
-       {"--retry-failed", "", "Try all again that failed"},
+      {{"--out-dir", "DIR", "Directory for the outputs and results.csv"},
+       {"--format", formats + "|npz|none", "Format of outputs (default: vdb; npz of samples); none: results.csv only"},
+       {"--full-names", "", "Keep the mesh's extension in the output's name: a.stl.vdb"},
+       {"-0,--null", "", "Paths in lists end with NUL, not with a line feed"},
+       {"--jobs", "J", "Number of meshes at a time (default: as --threads allows)"},
+       {"--shard", "I/N|slurm", "Do only part I of N; slurm: the part of this array task"},
+       {"--retry-failed", "", "Try failed meshes again"},
        {"--keep-going", "", "Go on when a mesh fails (default)"},
        {"--fail-fast", "", "Stop when a mesh fails"},
-       {"--dry-run", "", "List what would be done, with the reason"}}};
+       {"--dry-run", "", "List what would be done and why, and do nothing"}}};
 }
 
 OptionGroup batch_run_group() {
   OptionGroup group = run_group();
   for (OptionSpec& option : group.options) {
     if (option.names == "--threads")
-      option.description = "Busy threads in all (default: RAYCONE_THREADS, else the CPUs)";
-    if (option.names == "--memory-limit") option.description = "Memory of a mesh (default: an equal share)";
-    if (option.names == "--timeout") option.description = "Give a mesh up after S seconds (default: 3600)";
+      option.description = "Number of threads, all meshes together (default: RAYCONE_THREADS, else the CPUs)";
+    if (option.names == "--memory-limit") option.description = "Memory per mesh (default: an equal share)";
+    if (option.names == "--timeout") option.description = "Give up on a mesh after S seconds (default: 3600)";
   }
   return group;
 }
@@ -127,7 +127,7 @@ std::string result_options(const std::string& format, const MeshValues& of_mesh)
 CommandSpec batch_spec() {
   CommandSpec spec = lattice_spec();
   spec.name = "batch";
-  spec.description = "Lattices or samples of many meshes: resumable, each mesh on its own";
+  spec.description = "Evaluate many meshes, each in its own process; resumable";
   spec.operands = {{"MESH|DIR|@LIST", "Mesh, directory to search, or list of them; @- for a list on standard input",
                     OperandCount::kMany}};
   std::string formats;

@@ -19,7 +19,7 @@ const std::vector<CommandEntry>& commands() {
 const CommandSpec& program_spec() {
   static const CommandSpec spec{
       .name = "raycone",
-      .description = "Exact winding numbers of triangle meshes",
+      .description = "Tell inside from outside for triangle meshes, by their exact winding number",
       .operands = {},
       .groups = {{"Options",
                   {{"-h,--help", "", "Print this help"},

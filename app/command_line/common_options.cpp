@@ -69,8 +69,8 @@ OptionGroup output_group(const std::string& formats) {
        {"--format", formats,
         is_choice ? "Format of OUT (default: by its extension, csv for -)" : "Format of OUT, whatever its extension"},
        {"--no-clobber", "", "Never replace an existing file"},
-       {"--report", "FILE.json", "Write what was done, for machines"},
-       {"--depfile", "FILE.d", "Write which files were read, for Make"}}};
+       {"--report", "FILE.json", "Write a report of the run as JSON"},
+       {"--depfile", "FILE.d", "Write the files that were read as a rule for Make"}}};
 }
 
 OutputFiles parse_output_files(const Values& values) {
@@ -92,10 +92,10 @@ FieldEncoding parse_encoding(const Values& values, const OutputFiles& output, co
 
 OptionGroup run_group() {
   return {"Run",
-          {{"--threads", "T", "Threads (default: RAYCONE_THREADS, else the CPUs that may be used)"},
-           {"--memory-limit", "8G", "Refuse what needs more memory (default: what is available)"},
+          {{"--threads", "T", "Number of threads (default: RAYCONE_THREADS, else the available CPUs)"},
+           {"--memory-limit", "8G", "Refuse work that needs more memory (default: what is available)"},
            {"--timeout", "S", "Give up after S seconds"},
-           {"--progress", "always|never|auto", "Progress on standard error (default: on a terminal)"},
+           {"--progress", "always|never|auto", "Show progress on standard error (default: auto, on a terminal)"},
            {"--quiet", "", "Print errors only"},
            {"--strict", "", "Treat warnings about the mesh as errors"},
            {"-h,--help", "", "Print this help"}}};

@@ -48,13 +48,13 @@ SimdLevel parse_simd(const std::string& text) {
 OptionGroup field_group() {
   return {"Field",
           {{"--field", "winding|inside|density|sdf[,...]",
-            "Winding number (default), inside or not, w clamped to 0..1, signed distance"},
+            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance"},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
-           {"--band", "B", "Voxels on either side of the surface where sdf is not cut off (default: 3)"},
-           {"--diagnostics", "", "Also crossings, degenerate, on_surface, error_bound of each value; slow if open"},
-           {"--verify", "N", "Check N samples by definition in 113 bits, all fields: 2.7 us per triangle and sample"},
-           {"--engine", "auto|scan|embree", "How crossings are found; for tests, values do not depend on it"},
-           {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, values do not depend on them"}}};
+           {"--band", "B", "Cut sdf off at B voxels from the surface (default: 3)"},
+           {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
+           {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
+           {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
+           {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
 }
 
 // Exact is all there is: 0, the default, is accepted for scripts that state it.

@@ -6,7 +6,7 @@ namespace raycone {
 
 CommandSpec info_spec() {
   return {.name = "info",
-          .description = "What a mesh is, and what evaluation will cost",
+          .description = "Describe a mesh and estimate the cost of evaluating it",
           .operands = {mesh_operand()},
           .groups = {mesh_group(), {"Output", {{"--json", "", "Print JSON"}}}, run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",

@@ -79,12 +79,12 @@ void parse_grid_options(const Values& values, LatticeCommand& command) {
 
 OptionGroup lattice_group() {
   return {"Lattice",
-          {{"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to sample (default: that of the mesh)"},
+          {{"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to sample (default: the bounding box of the mesh)"},
            {"--padding", "P|Nv", "Widen the box by P, or by N voxels, on every side"},
-           {"--resolution", "N|NX,NY,NZ", "Samples along the longest side (64), or along each"},
-           {"--voxel-size", "H|HX,HY,HZ", "Samples at the multiples of H"},
-           {"--like", "GRID.vdb[:NAME]", "Transform and extent of an existing grid"},
-           {"--centers", "", "Samples at the centres of cells instead of their corners"}}};
+           {"--resolution", "N|NX,NY,NZ", "Samples along the longest side (default: 64), or along x, y and z"},
+           {"--voxel-size", "H|HX,HY,HZ", "Spacing of the samples; they lie at multiples of H"},
+           {"--like", "GRID.vdb[:NAME]", "Use the transform and extent of an existing grid"},
+           {"--centers", "", "Sample the centres of cells instead of their corners"}}};
 }
 
 Box parse_bounds(const std::string& text) {
@@ -130,7 +130,7 @@ CommandSpec lattice_spec() {
   output.options.push_back({"--half", "", "16-bit values in VDB"});
   output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
   return {.name = "lattice",
-          .description = "Values on a regular lattice",
+          .description = "Evaluate a mesh on a regular lattice",
           .operands = {mesh_operand()},
           .groups = {mesh_group(), lattice_group(), field_group(), unlisted_field_group(), output, run_group()},
           .examples = {"raycone lattice bunny.obj -o bunny.vdb                     64 samples along the longest side",

@@ -68,14 +68,14 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 
 CommandSpec points_spec() {
   return {.name = "points",
-          .description = "Values at given points",
+          .description = "Evaluate a mesh at given or random points",
           .operands = {mesh_operand(),
                        {"POINTS", "CSV, TSV or blank-separated text, NPY or PLY file; - for text on standard input",
                         OperandCount::kOptional}},
           .groups = {mesh_group(),
                      {"Points",
                       {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
-                       {"--raw", "f64|f32", "Little-endian triples in, values out, nothing else"}}},
+                       {"--raw", "f64|f32", "Read little-endian x y z triples, write bare values"}}},
                      sample_group(),
                      field_group(),
                      unlisted_field_group(),

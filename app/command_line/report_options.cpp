@@ -8,7 +8,7 @@ namespace raycone {
 CommandSpec report_spec() {
   return {
       .name = "report",
-      .description = "A page about a batch and its shards",
+      .description = "Make an HTML page about a batch",
       .operands = {{"DIR", "The --out-dir of a batch"}},
       .groups = {{"Output",
                   {{"-o,--output", "REPORT.html", "File to write; - for standard output (default: DIR/report.html)"},

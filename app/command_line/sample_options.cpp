@@ -45,9 +45,9 @@ WorldPadding parse_world_padding(const Values& values) {
 OptionGroup sample_group() {
   return {"Sampling",
           {{"--sample", "uniform=N|near=N:SIGMA[,...]",
-            "Draw points in the box, and off the surface by SIGMA box diagonals"},
-           {"--seed", "S", "Draw others (default: 1)"},
-           {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to draw from (default: that of the mesh)"},
+            "Draw N points in the box, or N about SIGMA box diagonals off the surface"},
+           {"--seed", "S", "Seed of the random points (default: 1)"},
+           {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to draw points in (default: the bounding box of the mesh)"},
            {"--padding", "P", "Widen the box by P on every side"}}};
 }
 

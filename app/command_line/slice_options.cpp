@@ -117,18 +117,18 @@ OptionGroup mesh_group_with_both_ups() {
 
 CommandSpec slice_spec() {
   OptionGroup output = output_group("png");
-  output.options.push_back({"--values", "OUT.npy", "The numbers too, float64, (height, width), row 0 at the top"});
-  output.options.push_back({"--no-legend", "", "No colour bar in the picture"});
+  output.options.push_back({"--values", "OUT.npy", "Write numbers too: float64, (height, width), row 0 at the top"});
+  output.options.push_back({"--no-legend", "", "Leave out the colour bar"});
   return {.name = "slice",
-          .description = "A picture of one cross-section",
+          .description = "Draw a picture of one cross-section",
           .operands = {mesh_operand()},
           .groups = {mesh_group_with_both_ups(),
                      {"Plane",
-                      {{"--axis", "x|y|z", "Axis across the plane (default: z)"},
-                       {"--at", "Z|P%", "Where on the axis: coordinate, or part of the box (default: 50%)"},
-                       {"--normal", "X,Y,Z", "Any other plane: its normal, towards the viewer"},
-                       {"--origin", "X,Y,Z", "A point of that plane (default: the middle of the box)"},
-                       {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to show (default: that of the mesh)"},
+                      {{"--axis", "x|y|z", "Axis that is perpendicular to the plane (default: z)"},
+                       {"--at", "Z|P%", "Position on the axis: a coordinate, or percent of the box (default: 50%)"},
+                       {"--normal", "X,Y,Z", "Normal of any other plane; it points at the viewer"},
+                       {"--origin", "X,Y,Z", "Point on that plane (default: the middle of the box)"},
+                       {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to show (default: the bounding box of the mesh)"},
                        {"--padding", "P|Nv", "Widen the box by P, or the picture by N pixels, on every side"},
                        {"--size", "N", "Pixels along the longer side (default: 1024)"}}},
                      output,

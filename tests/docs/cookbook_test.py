@@ -1,9 +1,10 @@
 """What the documents tell readers to copy: python3 cookbook_test.py RAYCONE REPOSITORY
 
-Every ```sh block of docs/cookbook.md and docs/tutorial.md, and of those sections of README.md that use the tool, runs
-with `sh -e`; where a ```text block follows, the block must have printed exactly that. A ```make block is run as a
-Makefile, for the goal that the text before it names. A ```console block, for what needs more than the tests install
-(Blender), is not run. Each section has a fresh directory with a copy of data/, in which its blocks run in order.
+Every ```sh block of docs/cookbook.md and docs/tutorial.md, and of those sections of README.md and docs/formats.md that
+use the tool, runs with `sh -e`. Where a ```text block follows, the block must have printed exactly that. A ```make block
+is run as a Makefile, for the goal that the text before it names. Blocks of ```console and ```cmake are not run: they
+need more than the tests install (Blender, an installation). Each section has a fresh directory with a copy of data/, in
+which its blocks run in order.
 """
 
 import os
@@ -38,7 +39,7 @@ class Documents(unittest.TestCase):
 
     def run_blocks(self, blocks):
         """How many blocks of each language there were."""
-        counts = {"sh": 0, "make": 0, "text": 0, "console": 0}
+        counts = {"sh": 0, "make": 0, "text": 0, "console": 0, "cmake": 0}
         printed = None
         for prose, block in blocks:
             language, _, code = block.partition("\n")
@@ -75,9 +76,13 @@ class Documents(unittest.TestCase):
         self.assertEqual([language for language in languages if language != "text"], ["sh"] * 9 + ["console"])
         self.run_section("Tutorial", blocks, {"text": 4})
 
+    def test_commands_of_the_formats_print_what_they_say(self):
+        output = dict(sections("docs/formats.md"))["Output"]
+        self.run_section("Output", output, {"sh": 5, "text": 5})
+
     def test_commands_of_the_readme_work(self):
         readme = dict(sections("README.md"))
-        self.run_section("Five commands", readme["Five commands to copy"], {"sh": 4, "make": 1})
+        self.run_section("Commands", readme["Commands to copy"], {"sh": 6, "make": 1})
         self.run_section("How accurate", readme["How accurate"], {"sh": 1})
 
 

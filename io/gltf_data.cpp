@@ -88,14 +88,16 @@ double number_at(const char* bytes, int type) {
   }
 }
 
-}  // namespace
-
-double gltf_real(double number, int type, bool normalized) {
+// The real that a number stands for: normalized integers are divided by the largest one, and the lowest of a signed
+// type is -1 as well (glTF 2.0, section 3.11).
+double real_of(double number, int type, bool normalized) {
   if (!normalized || type == TINYGLTF_COMPONENT_TYPE_FLOAT) return number;
   const bool is_signed = type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_SHORT;
   const double largest = (1U << (8 * size_of(type) - is_signed)) - 1;
   return std::max(number / largest, -1.0);
 }
+
+}  // namespace
 
 std::uint32_t restart_value(const tinygltf::Accessor& indices) {
   return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * size_of(indices.componentType));
@@ -171,7 +173,7 @@ struct GltfData::Elements {
 
   [[nodiscard]] Vec3 point(std::size_t element) const {
     const auto real = [&](std::size_t i) {
-      return gltf_real(number_at(first + element * stride + i * size, type), type, normalized);
+      return real_of(number_at(first + element * stride + i * size, type), type, normalized);
     };
     return {real(0), real(1), real(2)};
   }
@@ -260,6 +262,52 @@ GltfData::Elements GltfData::elements(std::size_t accessor, int view_index, std:
   }
   return {count == 0 ? nullptr : bytes.data() + offset, static_cast<std::size_t>(stride), size_of(type), type,
           model_->accessors[accessor].normalized};
+}
+
+// Not where the accessors, too, hold the geometry, as they do where the extension is not required: those are exact.
+bool GltfData::is_compressed(const tinygltf::Primitive& primitive, const std::string& place) const {
+  const auto extension = primitive.extensions.find(kGltfDraco);
+  if (extension == primitive.extensions.end()) return false;
+  const auto& required = model_->extensionsRequired;
+  const bool is_required = std::find(required.begin(), required.end(), kGltfDraco) != required.end();
+  const bool has_data = std::all_of(primitive.attributes.begin(), primitive.attributes.end(), [&](const auto& item) {
+    return model_->accessors[to_size(item.second)].bufferView >= 0;
+  });
+  if (!is_required && has_data) return false;
+  const tinygltf::Value& draco = extension->second;
+  if (!draco.Has("bufferView") || !draco.Get("attributes").Has("POSITION")) {
+    throw InputError(place + "has no data but those of the extension " + kGltfDraco +
+                     ", which lacks a bufferView or the attribute POSITION");
+  }
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) return true;
+  throw InputError(place + "mode " + std::to_string(primitive.mode) + " with " + kGltfDraco + ", expected 4");
+}
+
+std::optional<DracoMesh> GltfData::decompressed(const tinygltf::Primitive& primitive, const std::string& place) {
+  if (!is_compressed(primitive, place)) return std::nullopt;
+  const std::size_t positions = to_size(primitive.attributes.at("POSITION"));
+  check_positions(positions);
+  const tinygltf::Accessor& accessor = model_->accessors[positions];
+  const tinygltf::Value& draco = primitive.extensions.at(kGltfDraco);
+  const std::string_view bytes = view(to_size(draco.Get("bufferView").GetNumberAsInt()));
+  const int attribute = draco.Get("attributes").Get("POSITION").GetNumberAsInt();
+  DracoMesh mesh = decode_draco(bytes, attribute, accessor.componentType, place);
+  const auto check = [&](const char* what, std::size_t count, std::size_t expected) {
+    if (count == expected) return;
+    throw InputError(place + "Draco data of " + std::to_string(count) + " " + what + ", but the accessor has " +
+                     std::to_string(expected));
+  };
+  check("vertices", mesh.vertices.size(), accessor.count);
+  const auto indices = primitive.attributes.find(kGltfIndices);
+  if (indices != primitive.attributes.end()) {
+    check_indices(to_size(indices->second));
+    check("corners", mesh.corners.size(), model_->accessors[to_size(indices->second)].count);
+  }
+  spend(mesh.vertices.size());
+  for (Vec3& v : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) v[axis] = real_of(v[axis], accessor.componentType, accessor.normalized);
+  }
+  return mesh;
 }
 
 }  // namespace raycone

@@ -13,11 +13,13 @@
 
 #include "core/vec3.h"
 #include "io/gltf_document.h"
+#include "io/gltf_draco.h"
 #include "io/read_mesh.h"
 
 namespace tinygltf {
 class Model;
 struct Accessor;
+struct Primitive;
 }  // namespace tinygltf
 
 namespace raycone {
@@ -33,12 +35,9 @@ class GltfData {
   // Those of an accessor; quantized positions are returned as the reals that they stand for. Throw InputError.
   [[nodiscard]] std::vector<Vec3> positions(std::size_t accessor);
   [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t accessor);
-  // What an accessor says of itself. Throw InputError.
-  void check_positions(std::size_t accessor) const;
-  void check_indices(std::size_t accessor) const;
-  // All bytes of a buffer view, whose buffer is loaded when first asked for: broken ones that no triangle needs do no
-  // harm. Throws InputError.
-  [[nodiscard]] std::string_view view(std::size_t index);
+  // What KHR_draco_mesh_compression holds of a primitive that has it, else nothing; quantized positions as above.
+  // Throws InputError "PLACE...", LimitError.
+  [[nodiscard]] std::optional<DracoMesh> decompressed(const tinygltf::Primitive& primitive, const std::string& place);
 
   // Announces the making of `count` times `factor` vertices, corners or triangles: bounds the work and memory that a
   // small file may ask for by naming the same data many times. Throws LimitError.
@@ -47,7 +46,13 @@ class GltfData {
  private:
   struct Elements;
 
+  // All bytes of a buffer view, whose buffer is loaded when first asked for: broken ones that no triangle needs do no
+  // harm.
+  [[nodiscard]] std::string_view view(std::size_t index);
   [[nodiscard]] std::string_view load(std::size_t buffer);
+  void check_positions(std::size_t accessor) const;
+  void check_indices(std::size_t accessor) const;
+  [[nodiscard]] bool is_compressed(const tinygltf::Primitive& primitive, const std::string& place) const;
   template <class Element>
   std::vector<Element> read(std::size_t accessor, std::size_t components, Element (Elements::*get)(std::size_t) const);
   // `count` elements from byte `offset` of view number `view` on.
@@ -66,10 +71,6 @@ class GltfData {
   std::uint64_t bytes_ = 0;                              // of the buffers loaded
   std::uint64_t spent_ = 0;
 };
-
-// The real that a number of an accessor stands for: normalized integers are divided by the largest one, and the lowest
-// of a signed type is -1 as well (glTF 2.0, section 3.11).
-[[nodiscard]] double gltf_real(double number, int type, bool normalized);
 
 // The largest number of the accessor's index type, which asks graphics hardware to restart the primitive.
 [[nodiscard]] std::uint32_t restart_value(const tinygltf::Accessor& indices);

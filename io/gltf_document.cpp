@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "io/bounded_json.h"
@@ -27,107 +28,118 @@ constexpr const char* kRootPlace = "document";
 // --- The table ------------------------------------------------------------------------------------------------------
 
 enum Kind {
+  kObject,    // its members have rows of their own
   kCount,     // a non-negative integer up to `limit`
   kIndex,     // an index into the root's array of things called `name`
-  kIndices,   // an array of those
-  kNumbers,   // an array of numbers, of `limit` of them where one is set
+  kNumber,    // any; an array holds `limit` of them where one is set
   kText,      // a string
-  kTexts,     // an array of strings
   kFlag,      // true or false
   kPresence,  // anything
-  kObject,    // an object of `members`
-  kObjects,   // an array of those, each called `name` in messages
-  kParts,     // the same; kMaxParts counts them
 };
+enum Presence { kOptional, kRequired };
 
 constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kInt = std::numeric_limits<int>::max();  // tinygltf's type
 
-struct Member {
-  const char* key;
+struct Row {
+  const char* path;  // "[]": the member is an array, the row is about its elements
   Kind kind;
-  const char* name = "";
+  const char* name = "";  // in messages
+  Presence presence = kOptional;
   std::uint64_t limit = kAny;
-  std::vector<Member> members = {};
-  bool required = false;
 };
-using Members = std::vector<Member>;
 
-Member object(const char* key, Members members) { return {key, kObject, "", kAny, std::move(members)}; }
-Member required(Member member) {
-  member.required = true;
-  return member;
+constexpr Row kRows[]{
+    {"asset", kObject},
+    {"asset.version", kText},
+    {"asset.minVersion", kText},
+    {"extensionsUsed[]", kText},
+    {"extensionsRequired[]", kText},
+    {"buffers[]", kObject, "buffer"},
+    {"buffers[].uri", kText},
+    {"buffers[].byteLength", kCount, "", kRequired},
+    {"buffers[].extensions.EXT_meshopt_compression.fallback", kFlag},
+    {"buffers[].extensions.KHR_meshopt_compression.fallback", kFlag},
+    {"bufferViews[]", kObject, "bufferView"},
+    {"bufferViews[].buffer", kIndex, "buffer", kRequired},
+    {"bufferViews[].byteOffset", kCount},
+    {"bufferViews[].byteLength", kCount, "", kRequired},
+    {"bufferViews[].byteStride", kCount},
+    {"accessors[]", kObject, "accessor"},
+    {"accessors[].bufferView", kIndex, "bufferView"},
+    {"accessors[].byteOffset", kCount},
+    {"accessors[].componentType", kCount, "", kRequired},
+    {"accessors[].normalized", kFlag},
+    {"accessors[].count", kCount, "", kRequired},
+    {"accessors[].type", kText},
+    {"accessors[].sparse.count", kCount, "", kRequired, kInt},
+    {"accessors[].sparse.indices", kObject, "", kRequired},
+    {"accessors[].sparse.indices.bufferView", kIndex, "bufferView", kRequired},
+    {"accessors[].sparse.indices.byteOffset", kCount, "", kOptional, kInt},
+    {"accessors[].sparse.indices.componentType", kCount, "", kRequired, kInt},
+    {"accessors[].sparse.values", kObject, "", kRequired},
+    {"accessors[].sparse.values.bufferView", kIndex, "bufferView", kRequired},
+    {"accessors[].sparse.values.byteOffset", kCount, "", kOptional, kInt},
+    {"meshes[]", kObject, "mesh"},
+    {"meshes[].weights[]", kNumber},
+    {"meshes[].primitives[]", kObject, "primitive"},
+    {"meshes[].primitives[].attributes", kObject, "", kRequired},
+    {"meshes[].primitives[].attributes.POSITION", kIndex, "accessor"},
+    {"meshes[].primitives[].indices", kIndex, "accessor"},
+    {"meshes[].primitives[].mode", kCount, "", kOptional, 6},
+    {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.bufferView", kIndex, "bufferView"},
+    {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.attributes.POSITION", kCount, "", kOptional, kInt},
+    {"nodes[]", kObject, "node"},
+    {"nodes[].matrix[]", kNumber, "", kOptional, 16},
+    {"nodes[].translation[]", kNumber, "", kOptional, 3},
+    {"nodes[].rotation[]", kNumber, "", kOptional, 4},
+    {"nodes[].scale[]", kNumber, "", kOptional, 3},
+    {"nodes[].children[]", kIndex, "node"},
+    {"nodes[].mesh", kIndex, "mesh"},
+    {"nodes[].skin", kPresence},
+    {"nodes[].weights[]", kNumber},
+    {"nodes[].extensions.KHR_node_visibility.visible", kFlag},
+    {"nodes[].extensions.EXT_mesh_gpu_instancing", kObject},
+    {"scenes[]", kObject, "scene"},
+    {"scenes[].nodes[]", kIndex, "node"},
+    {"scene", kIndex, "scene"},
+};
+
+// The rows as a tree. Objects that no row is about are optional ones.
+struct Member {
+  std::string key;
+  bool is_array = false;
+  Row row{"", kObject};
+  std::vector<Member> members = {};
+};
+
+Member& member_of(Member& parent, std::string key) {
+  const bool is_array = key.ends_with("[]");
+  if (is_array) key.resize(key.size() - 2);
+  const auto known = std::find_if(parent.members.begin(), parent.members.end(),
+                                  [&](const Member& member) { return member.key == key; });
+  return known != parent.members.end() ? *known : parent.members.emplace_back(Member{key, is_array});
 }
 
-Members buffer_members() {
-  const Members fallback{{"fallback", kFlag}};
-  return {
-      {"uri", kText},
-      required({"byteLength", kCount}),
-      object("extensions", {object("EXT_meshopt_compression", fallback), object("KHR_meshopt_compression", fallback)})};
-}
-
-Members accessor_members() {
-  const Member view{"bufferView", kIndex, "bufferView"};
-  const Member offset{"byteOffset", kCount, "", kInt};
-  const Members indices{required(view), offset, required({"componentType", kCount, "", kInt})};
-  return {view,
-          {"byteOffset", kCount},
-          required({"componentType", kCount}),
-          {"normalized", kFlag},
-          required({"count", kCount}),
-          {"type", kText},
-          object("sparse", {required({"count", kCount, "", kInt}), required(object("indices", indices)),
-                            required(object("values", {required(view), offset}))})};
-}
-
-Members mesh_members() {
-  const Members draco{{"bufferView", kIndex, "bufferView"}, object("attributes", {{"POSITION", kCount, "", kInt}})};
-  const Members primitive{required(object("attributes", {{"POSITION", kIndex, "accessor"}})),
-                          {kGltfIndices, kIndex, "accessor"},
-                          {"mode", kCount, "", 6},
-                          object("extensions", {object(kGltfDraco, draco)})};
-  return {{"weights", kNumbers}, {"primitives", kParts, "primitive", kAny, primitive}};
-}
-
-Members node_members() {
-  return {{"matrix", kNumbers, "", 16},
-          {"translation", kNumbers, "", 3},
-          {"rotation", kNumbers, "", 4},
-          {"scale", kNumbers, "", 3},
-          {"children", kIndices, "node"},
-          {"mesh", kIndex, "mesh"},
-          {"skin", kPresence},
-          {"weights", kNumbers},
-          object("extensions", {object(kGltfVisibility, {{"visible", kFlag}}), object(kGltfInstancing, {})})};
-}
-
-const Members& root_members() {
-  static const Members members{object("asset", {{"version", kText}, {"minVersion", kText}}),
-                               {"extensionsUsed", kTexts},
-                               {"extensionsRequired", kTexts},
-                               {"buffers", kObjects, "buffer", kAny, buffer_members()},
-                               {"bufferViews",
-                                kObjects,
-                                "bufferView",
-                                kAny,
-                                {required({"buffer", kIndex, "buffer"}),
-                                 {"byteOffset", kCount},
-                                 required({"byteLength", kCount}),
-                                 {"byteStride", kCount}}},
-                               {"accessors", kObjects, "accessor", kAny, accessor_members()},
-                               {"meshes", kParts, "mesh", kAny, mesh_members()},
-                               {"nodes", kParts, "node", kAny, node_members()},
-                               {"scenes", kParts, "scene", kAny, {{"nodes", kIndices, "node"}}},
-                               {"scene", kIndex, "scene"}};
-  return members;
+const Member& root_member() {
+  static const Member root = [] {
+    Member tree;
+    for (const Row& row : kRows) {
+      Member* at = &tree;
+      std::istringstream path(row.path);
+      for (std::string key; std::getline(path, key, '.');) at = &member_of(*at, key);
+      at->row = row;
+    }
+    return tree;
+  }();
+  return root;
 }
 
 // What else a document holds (images, materials, animations, application data) is not even kept.
 bool is_wanted(std::size_t depth, std::string_view key) {
   if (depth > 1) return key != "extras";
-  const Members& root = root_members();
-  return std::any_of(root.begin(), root.end(), [&](const Member& member) { return member.key == key; });
+  const std::vector<Member>& members = root_member().members;
+  return std::any_of(members.begin(), members.end(), [&](const Member& member) { return member.key == key; });
 }
 
 // --- Checks ---------------------------------------------------------------------------------------------------------
@@ -136,22 +148,22 @@ bool is_wanted(std::size_t depth, std::string_view key) {
 class Checker {
  public:
   Checker(const std::string& file, const Json& root) : file_(file) {
-    for (const Member& member : root_members()) {
-      if (!member.members.empty() && root.contains(member.key)) counts_[member.name] = root[member.key].size();
+    for (const Member& member : root_member().members) {
+      if (member.is_array && root.contains(member.key)) counts_[member.row.name] = root[member.key].size();
     }
   }
 
-  void check_object(Json& json, const Members& members, const std::string& place) {
+  void check_object(Json& json, const Member& object, const std::string& place) {
     if (!json.is_object()) throw InputError(file_ + ": " + place + " is not an object");
     Json kept = Json::object();
-    for (const Member& member : members) {
+    for (const Member& member : object.members) {
       const auto found = json.find(member.key);
       if (found != json.end()) {
         check(*found, member, place);
         kept[member.key] = std::move(*found);
-      } else if (member.required) {
-        const bool is_object = member.kind == kObject;
-        fail(place, member, is_object ? " is missing" : " is missing, expected a non-negative integer");
+      } else if (member.row.presence == kRequired) {
+        fail(place, member,
+             member.row.kind == kObject ? " is missing" : " is missing, expected a non-negative integer");
       }
     }
     json = std::move(kept);
@@ -163,35 +175,36 @@ class Checker {
   }
 
   void check(Json& value, const Member& member, const std::string& place) {
-    const bool is_array = member.kind == kIndices || member.kind == kNumbers || member.kind == kTexts ||
-                          member.kind == kObjects || member.kind == kParts;
-    if (is_array && !value.is_array()) fail(place, member, " is not an array");
-    if (member.kind == kCount || member.kind == kIndex) check_integer(value, member, place);
-    if (member.kind == kText && !value.is_string()) fail(place, member, " is not a string");
-    if (member.kind == kFlag && !value.is_boolean()) fail(place, member, " is not true or false");
-    if (member.kind == kPresence) value = 0;
-    if (member.kind == kObject) check_object(value, member.members, place + ", " + member.key);
-    if (is_array) check_elements(value, member, place);
+    if (!member.is_array && member.row.kind == kObject) return check_object(value, member, place + ", " + member.key);
+    if (!member.is_array) return check_scalar(value, member, place);
+    if (!value.is_array()) fail(place, member, " is not an array");
+    if (member.row.kind == kObject) return check_objects(value, member, place);
+    for (Json& element : value) check_scalar(element, member, place);
+    if (member.row.kind == kNumber && member.row.limit != kAny && value.size() != member.row.limit) {
+      fail(place, member,
+           " has " + std::to_string(value.size()) + " numbers, expected " + std::to_string(member.row.limit));
+    }
   }
 
-  void check_elements(Json& value, const Member& member, const std::string& place) {
-    if (member.kind == kParts && (parts_ += value.size()) > kMaxParts) {
+  void check_objects(Json& value, const Member& member, const std::string& place) {
+    const bool is_part =
+        member.key == "nodes" || member.key == "scenes" || member.key == "meshes" || member.key == "primitives";
+    if (is_part && (parts_ += value.size()) > kMaxParts) {
       throw LimitError(file_ + ": more than " + std::to_string(kMaxParts) + " nodes, scenes, meshes and primitives");
     }
-    const std::string prefix = (place == kRootPlace ? "" : place + ", ") + member.name + " ";
+    const std::string prefix = (place == kRootPlace ? "" : place + ", ") + member.row.name + " ";
     std::size_t i = 0;
-    for (Json& element : value) {
-      if (member.kind == kIndices) check_integer(element, member, place);
-      if (member.kind == kNumbers && !element.is_number()) {
-        fail(place, member, " holds something that is not a number");
-      }
-      if (member.kind == kTexts && !element.is_string()) fail(place, member, " holds something that is not a string");
-      if (!member.members.empty()) check_object(element, member.members, prefix + std::to_string(i++));
-    }
-    if (member.kind == kNumbers && member.limit != kAny && value.size() != member.limit) {
-      fail(place, member,
-           " has " + std::to_string(value.size()) + " numbers, expected " + std::to_string(member.limit));
-    }
+    for (Json& element : value) check_object(element, member, prefix + std::to_string(i++));
+  }
+
+  void check_scalar(Json& value, const Member& member, const std::string& place) const {
+    const Kind kind = member.row.kind;
+    const char* is_not = member.is_array ? " holds something that is not " : " is not ";
+    if (kind == kCount || kind == kIndex) return check_integer(value, member, place);
+    if (kind == kNumber && !value.is_number()) fail(place, member, std::string(is_not) + "a number");
+    if (kind == kText && !value.is_string()) fail(place, member, std::string(is_not) + "a string");
+    if (kind == kFlag && !value.is_boolean()) fail(place, member, std::string(is_not) + "true or false");
+    if (kind == kPresence) value = 0;
   }
 
   // Leaves an unsigned integer.
@@ -204,15 +217,16 @@ class Checker {
     const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuoted);
     if (!value.is_number_unsigned()) fail(place, member, " is " + text + ", expected a non-negative integer");
     const auto number = value.get<std::uint64_t>();
-    if (member.kind == kCount) {
-      if (number <= member.limit) return;
-      fail(place, member, " " + std::to_string(number) + ", expected 0 to " + std::to_string(member.limit));
+    const auto& [path, kind, name, presence, limit] = member.row;
+    if (kind == kCount && number > limit) {
+      fail(place, member, " " + std::to_string(number) + ", expected 0 to " + std::to_string(limit));
     }
-    const std::size_t count = counts_.contains(member.name) ? counts_.at(member.name) : 0;
-    if (number < count) return;
-    fail(place, member,
-         std::string(" refers to ") + member.name + " " + std::to_string(number) + ", but there are only " +
-             std::to_string(count));
+    const std::size_t count = counts_.contains(name) ? counts_.at(name) : 0;
+    if (kind == kIndex && number >= count) {
+      fail(place, member,
+           std::string(" refers to ") + name + " " + std::to_string(number) + ", but there are only " +
+               std::to_string(count));
+    }
   }
 
   const std::string& file_;
@@ -293,9 +307,9 @@ GltfDocument parse_gltf_document(const JsonText& text) {
   if (!root.is_object()) throw InputError(text.file + ": " + kRootPlace + " is not an object");
   Checker checker(text.file, root);
   Json asset = root.value("asset", Json::object());
-  checker.check_object(asset, root_members().front().members, "document, asset");
+  checker.check_object(asset, root_member().members.front(), "document, asset");
   check_version(asset, text.file);
-  checker.check_object(root, root_members(), kRootPlace);
+  checker.check_object(root, root_member(), kRootPlace);
   return adapted(std::move(root));
 }
 

@@ -123,7 +123,7 @@ std::vector<Vec3> values_of(const draco::Mesh& mesh, const draco::PointAttribute
 
 }  // namespace
 
-TriangleMesh decode_draco(std::string_view bytes, const DracoPositions& positions, const std::string& place) {
+DracoMesh decode_draco(std::string_view bytes, int positions, int component_type, const std::string& place) {
   Allowance allowance(bytes.size());
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
@@ -134,19 +134,17 @@ TriangleMesh decode_draco(std::string_view bytes, const DracoPositions& position
   }
   if (!status.ok()) fail(place, "cannot be decoded");
 
-  const int id = mesh.GetAttributeIdByUniqueId(static_cast<std::uint32_t>(positions.attribute));
-  if (id < 0) fail(place, "have no attribute " + std::to_string(positions.attribute) + " for the positions");
+  const int id = mesh.GetAttributeIdByUniqueId(static_cast<std::uint32_t>(positions));
+  if (id < 0) fail(place, "have no attribute " + std::to_string(positions) + " for the positions");
   draco::PointAttribute* attribute = mesh.attribute(id);
   attribute->set_normalized(false);  // that is for the accessor to say
-  if (attribute->num_components() != 3 || component_type_of(attribute->data_type()) != positions.component_type) {
+  if (attribute->num_components() != 3 || component_type_of(attribute->data_type()) != component_type) {
     fail(place, "hold other positions than their accessor, expected the same type");
   }
-  TriangleMesh result;
-  result.vertices = values_of(mesh, *attribute, place);
-  result.triangles.reserve(mesh.num_faces());
+  DracoMesh result{values_of(mesh, *attribute, place), {}};
+  result.corners.reserve(3 * std::size_t{mesh.num_faces()});
   for (std::uint32_t i = 0; i < mesh.num_faces(); ++i) {
-    const draco::Mesh::Face& face = mesh.face(draco::FaceIndex(i));
-    result.triangles.push_back({face[0].value(), face[1].value(), face[2].value()});
+    for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(i))) result.corners.push_back(corner.value());
   }
   return result;
 }

@@ -6,18 +6,18 @@
 #include <string_view>
 #include <vector>
 
-#include "core/triangle_mesh.h"
+#include "core/vec3.h"
 
 namespace raycone {
 
-struct DracoPositions {
-  int attribute = 0;       // its unique id
-  int component_type = 0;  // glTF's 5120 ... 5126, which that of the data must equal
+struct DracoMesh {
+  std::vector<Vec3> vertices;          // the numbers as they are stored
+  std::vector<std::uint32_t> corners;  // three of each face, not checked
 };
 
-// The faces of all points, and the numbers of one attribute as they are stored, of three components. Indices of faces
-// are not checked. Memory is bounded by the number of bytes. Throws InputError "PLACE...", LimitError.
-[[nodiscard]] TriangleMesh decode_draco(std::string_view bytes, const DracoPositions& positions,
-                                        const std::string& place);
+// The faces, and of all points the attribute of unique id `positions`, whose numbers must be of glTF's type 5120 ...
+// 5126. Memory is bounded by the number of bytes. Throws InputError "PLACE...", LimitError.
+[[nodiscard]] DracoMesh decode_draco(std::string_view bytes, int positions, int component_type,
+                                     const std::string& place);
 
 }  // namespace raycone

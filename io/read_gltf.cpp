@@ -16,7 +16,6 @@
 #include "io/affine_map.h"
 #include "io/file_error.h"
 #include "io/gltf_data.h"
-#include "io/gltf_draco.h"
 #include "io/gltf_document.h"
 #include "io/gltf_resources.h"
 #include "io/mesh_builder.h"
@@ -88,63 +87,17 @@ class MeshAssembler {
       ++omissions_.points_or_lines;
     } else if (positions == primitive.attributes.end()) {
       ++omissions_.without_positions;
-    } else if (is_compressed(primitive, positions->second, indexed ? indices->second : positions->second)) {
-      add_compressed(primitive, to_size(positions->second),
-                     indexed ? &model_.accessors[to_size(indices->second)] : nullptr);
+    } else if (auto draco = data_.decompressed(primitive, place_)) {
+      add_indexed(primitive.mode, append_vertices(std::move(draco->vertices)), draco->corners, kMaxVertices);
     } else if (indexed) {
       const Range vertices = add_vertices(to_size(positions->second));
-      const std::vector<std::uint32_t> corners = data_.indices(to_size(indices->second));
-      check_indices(corners, restart_value(model_.accessors[to_size(indices->second)]), vertices.count);
-      add_faces(primitive.mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });
+      const std::size_t accessor = to_size(indices->second);
+      add_indexed(primitive.mode, vertices, data_.indices(accessor), restart_value(model_.accessors[accessor]));
     } else {
       const Range vertices = add_vertices(to_size(positions->second));
       add_faces(primitive.mode, vertices.count, vertices,
                 [](std::size_t corner) { return static_cast<std::uint32_t>(corner); });
     }
-  }
-
-  // Whether Draco's data are to be decoded: not where the accessors, too, hold the geometry, as they do where the
-  // extension is not required. Those are exact.
-  bool is_compressed(const tinygltf::Primitive& primitive, int positions, int indices) const {
-    const auto extension = primitive.extensions.find(kGltfDraco);
-    if (extension == primitive.extensions.end()) return false;
-    const auto& required = model_.extensionsRequired;
-    const bool is_required = std::find(required.begin(), required.end(), kGltfDraco) != required.end();
-    const auto has_data = [&](int accessor) { return model_.accessors[to_size(accessor)].bufferView >= 0; };
-    if (!is_required && has_data(positions) && has_data(indices)) return false;
-    if (!extension->second.Has("bufferView") || !extension->second.Get("attributes").Has("POSITION")) {
-      throw InputError(place_ + "has no data but those of the extension " + kGltfDraco +
-                       ", which lacks a bufferView or the attribute POSITION");
-    }
-    if (primitive.mode != TINYGLTF_MODE_TRIANGLES) {
-      throw InputError(place_ + "mode " + std::to_string(primitive.mode) + " with " + kGltfDraco + ", expected 4");
-    }
-    return true;
-  }
-
-  void add_compressed(const tinygltf::Primitive& primitive, std::size_t positions, const tinygltf::Accessor* indices) {
-    data_.check_positions(positions);
-    const tinygltf::Value& draco = primitive.extensions.at(kGltfDraco);
-    const tinygltf::Accessor& accessor = model_.accessors[positions];
-    const int attribute = draco.Get("attributes").Get("POSITION").GetNumberAsInt();
-    TriangleMesh mesh = decode_draco(data_.view(to_size(draco.Get("bufferView").GetNumberAsInt())),
-                                     {attribute, accessor.componentType}, place_);
-    check_count("vertices", mesh.vertices.size(), accessor.count);
-    if (indices) check_count("corners", 3 * mesh.triangles.size(), indices->count);
-    for (Vec3& v : mesh.vertices) {
-      for (int axis = 0; axis < 3; ++axis) v[axis] = gltf_real(v[axis], accessor.componentType, accessor.normalized);
-    }
-    data_.spend(mesh.vertices.size());
-    const std::span<const std::uint32_t> corners(mesh.triangles.data()->data(), 3 * mesh.triangles.size());
-    check_indices(corners, kMaxVertices, mesh.vertices.size());
-    const Range vertices = append_vertices(std::move(mesh.vertices));
-    add_faces(primitive.mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });
-  }
-
-  void check_count(const char* what, std::size_t count, std::size_t expected) const {
-    if (count == expected) return;
-    throw InputError(place_ + "Draco data of " + std::to_string(count) + " " + what + ", but the accessor has " +
-                     std::to_string(expected));
   }
 
   // Primitives often share one accessor: its vertices are added once.
@@ -167,16 +120,17 @@ class MeshAssembler {
     return range;
   }
 
-  void check_indices(std::span<const std::uint32_t> indices, std::uint32_t restart, std::size_t count) const {
-    for (const std::uint32_t index : indices) {
+  void add_indexed(int mode, const Range& vertices, const std::vector<std::uint32_t>& corners, std::uint32_t restart) {
+    for (const std::uint32_t index : corners) {
       if (index == restart) {
         throw InputError(place_ + "index " + std::to_string(index) + " is the restart value, expected a vertex");
       }
-      if (index >= count) {
-        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(count) +
+      if (index >= vertices.count) {
+        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(vertices.count) +
                          " vertices");
       }
     }
+    add_faces(mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });
   }
 
   // corner(i): the vertex of the primitive's i-th corner.

@@ -3,9 +3,9 @@
 #include "io/mesh/gltf_resources.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
+#include "io/files/base64.h"
 #include "io/files/byte_order.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
@@ -65,38 +65,6 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-constexpr std::array<signed char, 256> make_base64_values() {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::array<signed char, 256> values{};
-  values.fill(-1);
-  for (std::size_t i = 0; i < kDigits.size(); ++i) {
-    values[static_cast<unsigned char>(kDigits[i])] = static_cast<signed char>(i);
-  }
-  return values;
-}
-
-// RFC 4648, section 4, padding optional; nothing for text that is not base64.
-std::optional<std::string> base64_decoded(std::string_view text) {
-  static constexpr auto kValues = make_base64_values();
-  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
-  if (text.size() % 4 == 1) return std::nullopt;
-  std::string decoded;
-  decoded.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    const signed char value = kValues[static_cast<unsigned char>(c)];
-    if (value < 0) return std::nullopt;
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      decoded += static_cast<char>(bits >> count & 0xFF);
-    }
-  }
-  return decoded;
-}
-
 // Scheme names are ASCII and case-insensitive (RFC 3986, section 3.1).
 bool is_data_uri(std::string_view uri) {
   constexpr std::string_view kData = "data:";
@@ -112,15 +80,8 @@ bool has_scheme(std::string_view uri) {
 
 // Whether the path climbs out of the directory at which it starts.
 bool leaves_directory(const std::filesystem::path& path) {
-  int depth = 0;
-  for (const auto& part : path) {
-    if (part == "..") {
-      if (--depth < 0) return true;
-    } else if (part != "." && !part.empty()) {
-      ++depth;
-    }
-  }
-  return false;
+  const std::filesystem::path normal = path.lexically_normal();
+  return !normal.empty() && *normal.begin() == "..";
 }
 
 [[noreturn]] void refuse(const MeshSource& source, std::size_t buffer, std::string_view uri, const std::string& why) {
@@ -135,8 +96,7 @@ std::string decode_data_uri(const MeshSource& source, std::size_t buffer, std::s
   if (comma == std::string_view::npos) refuse(source, buffer, uri, "has no comma, expected a data URI");
   const std::string_view data = uri.substr(comma + 1);
   if (!uri.substr(0, comma).ends_with(";base64")) return percent_decoded(data);
-  auto decoded =
-      data.find('%') == std::string_view::npos ? base64_decoded(data) : base64_decoded(percent_decoded(data));
+  auto decoded = data.find('%') == std::string_view::npos ? from_base64(data) : from_base64(percent_decoded(data));
   if (!decoded) refuse(source, buffer, uri.substr(0, comma), "is not followed by valid base64");
   return *std::move(decoded);
 }

@@ -3,15 +3,19 @@
 //
 // Hostile input: every accessor is checked against its view, buffer and bytes before it is read; nothing recurses; what
 // sharing and instancing may multiply is bounded by a GltfBudget.
+#include <tiny_gltf.h>
+
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
 #include "io/files/file_error.h"
-#include "io/mesh/gltf_accessors.h"
+#include "io/mesh/affine_map.h"
+#include "io/mesh/gltf_data.h"
 #include "io/mesh/gltf_document.h"
 #include "io/mesh/gltf_resources.h"
 #include "io/mesh/mesh_builder.h"
@@ -19,9 +23,6 @@
 
 namespace raycone {
 namespace {
-
-constexpr std::uint64_t kTriangles = 4;
-constexpr std::uint64_t kTriangleStrip = 5;
 
 constexpr std::uint64_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
@@ -34,31 +35,6 @@ template <class Element>
 void make_room(std::vector<Element>& elements, std::size_t count) {
   if (count > elements.capacity() - elements.size()) {
     elements.reserve(std::max(elements.size() + count, 2 * elements.capacity()));
-  }
-}
-
-// --- Extensions -----------------------------------------------------------------------------------------------------
-
-// Extensions that change what triangles look like or tell about them, never where they are.
-bool leaves_geometry_alone(const std::string& extension) {
-  static constexpr std::array kKinds{"_materials_", "_texture_",   "_lights_", "_camera",      "_image_",
-                                     "_packing_",   "_animation_", "_xmp",     "_techniques_", "_ngon_encoding"};
-  return std::any_of(kKinds.begin(), kKinds.end(),
-                     [&](const char* kind) { return extension.find(kind) != std::string::npos; });
-}
-
-void check_extensions(const GltfDocument& document, const std::string& file) {
-  static const std::string kInstancing = "EXT_mesh_gpu_instancing";
-  const auto& used = document.extensions_used;
-  // It has no fallback: without it all instances but one would be missing.
-  if (document.gpu_instancing || std::find(used.begin(), used.end(), kInstancing) != used.end()) {
-    throw InputError(file + ": uses the extension " + kInstancing + ", which is not supported");
-  }
-  for (const std::string& extension : document.extensions_required) {
-    const bool is_read = extension == "KHR_mesh_quantization" || extension == "KHR_node_visibility";
-    if (!is_read && !leaves_geometry_alone(extension)) {
-      throw InputError(file + ": requires the extension " + extension + ", which is not supported");
-    }
   }
 }
 
@@ -78,17 +54,18 @@ struct Omissions {
   std::uint64_t without_nodes = 0;
 };
 
+std::size_t to_size(int index) { return static_cast<std::size_t>(index); }
+
 // Assembles one mesh of the document in its own coordinates.
 class MeshAssembler {
  public:
-  MeshAssembler(const std::string& file, const GltfDocument& document, GltfAccessors& accessors, GltfBudget& budget,
-                Omissions& omissions)
-      : file_(file), document_(document), accessors_(accessors), budget_(budget), omissions_(omissions) {}
+  MeshAssembler(const std::string& file, GltfData& data, Omissions& omissions)
+      : file_(file), data_(data), model_(data.model()), omissions_(omissions) {}
 
   TriangleMesh assemble(std::size_t mesh) {
     result_ = {};
     first_vertex_.clear();
-    const auto& primitives = document_.meshes[mesh].primitives;
+    const auto& primitives = model_.meshes[mesh].primitives;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       place_ = file_ + ": mesh " + std::to_string(mesh) + ", primitive " + std::to_string(i) + ": ";
       add(primitives[i]);
@@ -102,32 +79,24 @@ class MeshAssembler {
     std::size_t count = 0;
   };
 
-  void add(const GltfPrimitive& primitive) {
-    if (primitive.mode < kTriangles) {
+  void add(const tinygltf::Primitive& primitive) {
+    const auto positions = primitive.attributes.find("POSITION");
+    const auto indices = primitive.attributes.find(kGltfIndices);
+    const bool indexed = indices != primitive.attributes.end();
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
       ++omissions_.points_or_lines;
-    } else if (!primitive.positions) {
+    } else if (positions == primitive.attributes.end()) {
       ++omissions_.without_positions;
+    } else if (auto draco = data_.decompressed(primitive, place_)) {
+      add_indexed(primitive.mode, append_vertices(std::move(draco->vertices)), draco->corners, kMaxVertices);
+    } else if (indexed) {
+      const Range vertices = add_vertices(to_size(positions->second));
+      const std::size_t accessor = to_size(indices->second);
+      add_indexed(primitive.mode, vertices, data_.indices(accessor), restart_value(model_.accessors[accessor]));
     } else {
-      refuse_draco_only(primitive);
-      const Range vertices = add_vertices(*primitive.positions);
-      if (primitive.indices) {
-        const std::vector<std::uint32_t> indices = accessors_.indices(*primitive.indices);
-        check_indices(indices, restart_value(document_.accessors[*primitive.indices]), vertices.count);
-        add_faces(primitive.mode, indices.size(), vertices, [&](std::size_t corner) { return indices[corner]; });
-      } else {
-        add_faces(primitive.mode, vertices.count, vertices,
-                  [](std::size_t corner) { return static_cast<std::uint32_t>(corner); });
-      }
-    }
-  }
-
-  // Where Draco is not required, the accessors must hold the same geometry uncompressed.
-  void refuse_draco_only(const GltfPrimitive& primitive) const {
-    const auto has_data = [&](std::size_t accessor) { return document_.accessors[accessor].view.has_value(); };
-    const bool complete = has_data(*primitive.positions) && (!primitive.indices || has_data(*primitive.indices));
-    if (primitive.draco && !complete) {
-      throw InputError(place_ +
-                       "has no data but those of the extension KHR_draco_mesh_compression, which is not supported");
+      const Range vertices = add_vertices(to_size(positions->second));
+      add_faces(primitive.mode, vertices.count, vertices,
+                [](std::size_t corner) { return static_cast<std::uint32_t>(corner); });
     }
   }
 
@@ -135,7 +104,10 @@ class MeshAssembler {
   Range add_vertices(std::size_t accessor) {
     const auto known = first_vertex_.find(accessor);
     if (known != first_vertex_.end()) return known->second;
-    std::vector<Vec3> positions = accessors_.positions(accessor);
+    return first_vertex_[accessor] = append_vertices(data_.positions(accessor));
+  }
+
+  Range append_vertices(std::vector<Vec3> positions) {
     const Range range{result_.vertices.size(), positions.size()};
     if (positions.size() > kMaxVertices - range.first) {
       throw LimitError(place_ + "more than " + std::to_string(kMaxVertices) + " vertices");
@@ -145,34 +117,34 @@ class MeshAssembler {
     } else {
       result_.vertices.insert(result_.vertices.end(), positions.begin(), positions.end());
     }
-    first_vertex_.emplace(accessor, range);
     return range;
   }
 
-  void check_indices(const std::vector<std::uint32_t>& indices, std::uint32_t restart, std::size_t count) const {
-    for (const std::uint32_t index : indices) {
+  void add_indexed(int mode, const Range& vertices, const std::vector<std::uint32_t>& corners, std::uint32_t restart) {
+    for (const std::uint32_t index : corners) {
       if (index == restart) {
         throw InputError(place_ + "index " + std::to_string(index) + " is the restart value, expected a vertex");
       }
-      if (index >= count) {
-        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(count) +
+      if (index >= vertices.count) {
+        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(vertices.count) +
                          " vertices");
       }
     }
+    add_faces(mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });
   }
 
   // corner(i): the vertex of the primitive's i-th corner.
   template <class Corner>
-  void add_faces(std::uint64_t mode, std::size_t corners, const Range& vertices, Corner corner) {
-    const std::size_t faces = mode == kTriangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
-    const std::size_t used = mode == kTriangles ? 3 * faces : faces == 0 ? 0 : corners;
+  void add_faces(int mode, std::size_t corners, const Range& vertices, Corner corner) {
+    const std::size_t faces = mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners < 3 ? 0 : corners - 2;
+    const std::size_t used = mode == TINYGLTF_MODE_TRIANGLES ? 3 * faces : faces == 0 ? 0 : corners;
     omissions_.incomplete_faces += used < corners;
-    budget_.spend(faces);
+    data_.spend(faces);
     make_room(result_.triangles, faces);
     for (std::size_t i = 0; i < faces; ++i) {
-      if (mode == kTriangles) {
+      if (mode == TINYGLTF_MODE_TRIANGLES) {
         add_face(vertices, corner(3 * i), corner(3 * i + 1), corner(3 * i + 2));
-      } else if (mode == kTriangleStrip) {
+      } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
         // Every other triangle of a strip is listed backwards.
         add_face(vertices, corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2));
       } else {
@@ -194,9 +166,8 @@ class MeshAssembler {
   }
 
   const std::string& file_;
-  const GltfDocument& document_;
-  GltfAccessors& accessors_;
-  GltfBudget& budget_;
+  GltfData& data_;
+  const tinygltf::Model& model_;
   Omissions& omissions_;
   std::string place_;  // of the primitive at hand, for messages
   TriangleMesh result_;
@@ -205,91 +176,95 @@ class MeshAssembler {
 
 // --- Nodes ----------------------------------------------------------------------------------------------------------
 
-GltfTransform composed(const GltfTransform& outer, const GltfTransform& inner) {
-  GltfTransform result;
-  for (std::size_t row = 0; row < 3; ++row) {
-    const auto& o = outer.rows[row];
-    for (std::size_t column = 0; column < 4; ++column) {
-      result.rows[row][column] =
-          o[0] * inner.rows[0][column] + o[1] * inner.rows[1][column] + o[2] * inner.rows[2][column];
+// Throws InputError where it is none.
+AffineMap transform_of(const tinygltf::Node& node, const std::string& place) {
+  const std::vector<double>& m = node.matrix;
+  if (!m.empty()) {
+    // Rounding of exporters is tolerated in the last row; a projection is not an affine map.
+    constexpr double kTolerance = 1e-5;
+    if (std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1.0)}) > kTolerance) {
+      throw InputError(place + "matrix is not affine, expected 0 0 0 1 in its last row");
     }
-    result.rows[row][3] += o[3];
+    return affine_map_of_matrix(m);
   }
-  result.mirrored = outer.mirrored != inner.mirrored;
-  return result;
-}
-
-Vec3 transformed(const GltfTransform& transform, const Vec3& v) {
-  const auto coordinate = [&](const std::array<double, 4>& row) {
-    return row[0] * v.x + row[1] * v.y + row[2] * v.z + row[3];
+  const auto vector_or = [](const std::vector<double>& v, const Vec3& otherwise) {
+    return v.empty() ? otherwise : Vec3{v[0], v[1], v[2]};
   };
-  return {coordinate(transform.rows[0]), coordinate(transform.rows[1]), coordinate(transform.rows[2])};
+  const std::vector<double> rotation = node.rotation.empty() ? std::vector<double>{0, 0, 0, 1} : node.rotation;
+  const double norm = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
+  if (!(norm > 0.0) || !std::isfinite(norm)) throw InputError(place + "rotation is not a unit quaternion");
+  return affine_map_of_parts(vector_or(node.translation, {}), rotation, vector_or(node.scale, {1, 1, 1}));
 }
 
-// How many nodes each node is a child of. The specification allows one, but files that share children exist and mean
-// what they seem to: each parent shows its own copy.
-std::vector<std::size_t> parent_counts(const GltfDocument& document) {
-  std::vector<std::size_t> counts(document.nodes.size(), 0);
-  for (const GltfNode& node : document.nodes) {
-    for (const std::size_t child : node.children) ++counts[child];
+bool has_transform(const tinygltf::Node& node) {
+  return !node.matrix.empty() || !node.translation.empty() || !node.rotation.empty() || !node.scale.empty();
+}
+
+bool is_visible(const tinygltf::Node& node) {
+  const auto visibility = node.extensions.find(kGltfVisibility);
+  return visibility == node.extensions.end() || !visibility->second.Has("visible") ||
+         visibility->second.Get("visible").Get<bool>();
+}
+
+// Checks all nodes, and returns how many nodes each is a child of. The specification allows one, but files that share
+// children exist and mean what they seem to: each parent shows its own copy.
+std::vector<std::size_t> parent_counts(const tinygltf::Model& model, const std::string& file) {
+  std::vector<std::size_t> counts(model.nodes.size(), 0);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const tinygltf::Node& node = model.nodes[i];
+    if (has_transform(node)) static_cast<void>(transform_of(node, file + ": node " + std::to_string(i) + ": "));
+    for (const int child : node.children) ++counts[to_size(child)];
   }
   return counts;
 }
 
 // Removes nodes without parents until none is left (A. B. Kahn, "Topological Sorting of Large Networks", 1962).
-void check_acyclic(const GltfDocument& document, std::vector<std::size_t> parents, const std::string& file) {
+void check_acyclic(const tinygltf::Model& model, std::vector<std::size_t> parents, const std::string& file) {
   std::vector<std::size_t> free;
   for (std::size_t node = 0; node < parents.size(); ++node) {
     if (parents[node] == 0) free.push_back(node);
   }
   for (std::size_t i = 0; i < free.size(); ++i) {
-    for (const std::size_t child : document.nodes[free[i]].children) {
-      if (--parents[child] == 0) free.push_back(child);
+    for (const int child : model.nodes[free[i]].children) {
+      if (--parents[to_size(child)] == 0) free.push_back(to_size(child));
     }
   }
   if (free.size() < parents.size()) throw InputError(file + ": some nodes are their own ancestors, expected a tree");
 }
 
 // The roots of the scene shown: the default one, else the first, else all roots.
-std::vector<std::size_t> shown_roots(const GltfDocument& document, const std::vector<std::size_t>& parents,
-                                     const std::string& file) {
-  std::vector<std::size_t> roots;
-  if (document.scenes.empty()) {
+std::vector<int> shown_roots(const tinygltf::Model& model, const std::vector<std::size_t>& parents,
+                             const std::string& file) {
+  if (model.scenes.empty()) {
+    std::vector<int> roots;
     for (std::size_t node = 0; node < parents.size(); ++node) {
-      if (parents[node] == 0) roots.push_back(node);
+      if (parents[node] == 0) roots.push_back(static_cast<int>(node));
     }
     return roots;
   }
-  const std::size_t scene = document.scene.value_or(0);
-  roots = document.scenes[scene];
-  for (const std::size_t node : roots) {
-    if (parents[node] != 0) {
+  const int scene = std::max(model.defaultScene, 0);
+  for (const int node : model.scenes[to_size(scene)].nodes) {
+    if (parents[to_size(node)] != 0) {
       throw InputError(file + ": scene " + std::to_string(scene) + " names node " + std::to_string(node) +
                        ", which is a child of another, expected a root node");
     }
   }
-  return roots;
+  return model.scenes[to_size(scene)].nodes;
 }
-
-// A mesh and where it stands in the world.
-struct Instance {
-  std::size_t mesh = 0;
-  GltfTransform placement;
-};
 
 // Calls visit(node, placement) for the scene's visible nodes, parents before children.
 template <class Visit>
-void visit_scene(const GltfDocument& document, const std::string& file, Visit visit) {
-  const std::vector<std::size_t> parents = parent_counts(document);
-  check_acyclic(document, parents, file);
-  const std::vector<std::size_t> roots = shown_roots(document, parents, file);
+void visit_scene(const tinygltf::Model& model, const std::string& file, Visit visit) {
+  const std::vector<std::size_t> parents = parent_counts(model, file);
+  check_acyclic(model, parents, file);
+  const std::vector<int> roots = shown_roots(model, parents, file);
   struct Level {
-    std::span<const std::size_t> nodes;  // siblings still to be visited
-    GltfTransform outer;
+    std::span<const int> nodes;  // siblings still to be visited
+    AffineMap outer;
   };
   std::vector<Level> levels{{roots, {}}};
   // Shared children of shared children may multiply without bound.
-  const std::size_t max_visits = (std::size_t{1} << 20) + 4 * document.nodes.size();
+  const std::size_t max_visits = (std::size_t{1} << 20) + 4 * model.nodes.size();
   for (std::size_t visits = 0; !levels.empty();) {
     Level& level = levels.back();
     if (level.nodes.empty()) {
@@ -297,31 +272,41 @@ void visit_scene(const GltfDocument& document, const std::string& file, Visit vi
       continue;
     }
     if (++visits > max_visits) throw LimitError(file + ": nodes with several parents make too many copies");
-    const GltfNode& node = document.nodes[level.nodes.front()];
+    const tinygltf::Node& node = model.nodes[to_size(level.nodes.front())];
     level.nodes = level.nodes.subspan(1);
-    if (!node.visible) continue;
-    const GltfTransform placement =
-        node.transform ? composed(level.outer, document.transforms[*node.transform]) : level.outer;
+    if (!is_visible(node)) continue;
+    const AffineMap placement = has_transform(node) ? composed(level.outer, transform_of(node, "")) : level.outer;
     visit(node, placement);
     if (!node.children.empty()) levels.push_back({node.children, placement});
   }
 }
 
+// A mesh and where it stands in the world.
+struct Instance {
+  std::size_t mesh = 0;
+  AffineMap placement;
+};
+
+bool has_weights(const std::vector<double>& weights) {
+  return std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
+}
+
 // All instances of the scene shown, those of one mesh together.
-std::vector<Instance> instances_of(const GltfDocument& document, const std::string& file, Omissions& omissions) {
+std::vector<Instance> instances_of(const tinygltf::Model& model, const std::string& file, Omissions& omissions) {
   std::vector<Instance> instances;
   // "A glTF asset that does not contain any scenes should be treated as a library": without nodes, all of it is meant.
-  if (document.nodes.empty() && document.scenes.empty()) {
-    for (std::size_t mesh = 0; mesh < document.meshes.size(); ++mesh) instances.push_back({mesh, {}});
+  if (model.nodes.empty() && model.scenes.empty()) {
+    for (std::size_t mesh = 0; mesh < model.meshes.size(); ++mesh) instances.push_back({mesh, {}});
     omissions.without_nodes = instances.size();
     return instances;
   }
-  visit_scene(document, file, [&](const GltfNode& node, const GltfTransform& placement) {
-    if (!node.mesh) return;
-    omissions.skinned += node.skinned;
-    omissions.morphed += node.morphed || document.meshes[*node.mesh].morphed;
+  visit_scene(model, file, [&](const tinygltf::Node& node, const AffineMap& placement) {
+    if (node.mesh < 0) return;
+    const bool skinned = node.skin >= 0;
+    omissions.skinned += skinned;
+    omissions.morphed += has_weights(node.weights) || has_weights(model.meshes[to_size(node.mesh)].weights);
     // The joints alone place a skinned mesh, never its node (section 3.7.3.3); at rest they leave it as it is.
-    instances.push_back({*node.mesh, node.skinned ? GltfTransform{} : placement});
+    instances.push_back({to_size(node.mesh), skinned ? AffineMap{} : placement});
   });
   std::stable_sort(instances.begin(), instances.end(),
                    [](const Instance& a, const Instance& b) { return a.mesh < b.mesh; });
@@ -372,21 +357,18 @@ ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions
   GlbChunks chunks{source.bytes, 0, std::nullopt};
   const bool glb = is_glb(source.bytes);
   if (glb) chunks = split_glb(source);
-  const GltfDocument document = parse_gltf_document(
-      {source.name, chunks.json, glb ? std::optional<std::size_t>(chunks.json_offset) : std::nullopt});
-  check_extensions(document, source.name);
-
-  GltfBudget budget(source.name);
-  GltfAccessors accessors(source, document, chunks.binary, budget, companions);
+  const auto offset = glb ? std::optional<std::size_t>(chunks.json_offset) : std::nullopt;
+  GltfData data(source, parse_gltf_document({source.name, chunks.json, offset, "a glTF document"}), chunks.binary,
+                companions);
   Omissions omissions;
-  MeshAssembler assembler(source.name, document, accessors, budget, omissions);
+  MeshAssembler assembler(source.name, data, omissions);
 
   ParsedMesh parsed;
-  const std::vector<Instance> instances = instances_of(document, source.name, omissions);
+  const std::vector<Instance> instances = instances_of(data.model(), source.name, omissions);
   for (auto group = instances.begin(); group != instances.end();) {
     const auto end = std::find_if(group, instances.end(), [&](const Instance& i) { return i.mesh != group->mesh; });
     const TriangleMesh mesh = assembler.assemble(group->mesh);
-    budget.spend(mesh.vertices.size() + mesh.triangles.size(), static_cast<std::uint64_t>(end - group));
+    data.spend(mesh.vertices.size() + mesh.triangles.size(), static_cast<std::uint64_t>(end - group));
     for (; group != end; ++group) append(mesh, *group, source.name, parsed.mesh);
   }
   parsed.skipped_faces = omissions.incomplete_faces;

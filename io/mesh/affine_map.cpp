@@ -1,0 +1,50 @@
+#include "io/mesh/affine_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycone {
+namespace {
+
+Vec3 turned(const AffineMap& map, const Vec3& v) { return v.x * map.x + v.y * map.y + v.z * map.z; }
+
+// Scaled to entries of at most 1, so that the product of three tiny ones keeps its sign.
+bool has_negative_determinant(const AffineMap& map) {
+  double largest = 0.0;
+  for (const Vec3& column : {map.x, map.y, map.z}) {
+    largest = std::max({largest, std::abs(column.x), std::abs(column.y), std::abs(column.z)});
+  }
+  if (largest == 0.0) return false;
+  const auto row = [&](int i) { return Vec3{map.x[i] / largest, map.y[i] / largest, map.z[i] / largest}; };
+  return dot(row(0), cross(row(1), row(2))) < 0.0;
+}
+
+}  // namespace
+
+Vec3 transformed(const AffineMap& map, const Vec3& v) { return turned(map, v) + map.origin; }
+
+AffineMap composed(const AffineMap& outer, const AffineMap& inner) {
+  return {turned(outer, inner.x), turned(outer, inner.y), turned(outer, inner.z), transformed(outer, inner.origin),
+          outer.mirrored != inner.mirrored};
+}
+
+AffineMap affine_map_of_matrix(std::span<const double> m) {
+  AffineMap map{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+  map.mirrored = has_negative_determinant(map);
+  return map;
+}
+
+AffineMap affine_map_of_parts(const Vec3& translation, std::span<const double> rotation, const Vec3& scale) {
+  const double x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
+  // Written in decimals, the quaternion is a unit one up to rounding only: dividing by its squared norm normalizes it.
+  const double f = 2.0 / (x * x + y * y + z * z + w * w);
+  AffineMap map;
+  map.x = scale.x * Vec3{1.0 - f * (y * y + z * z), f * (x * y + z * w), f * (x * z - y * w)};
+  map.y = scale.y * Vec3{f * (x * y - z * w), 1.0 - f * (x * x + z * z), f * (y * z + x * w)};
+  map.z = scale.z * Vec3{f * (x * z + y * w), f * (y * z - x * w), 1.0 - f * (x * x + y * y)};
+  map.origin = translation;
+  map.mirrored = (scale.x < 0.0) != ((scale.y < 0.0) != (scale.z < 0.0));
+  return map;
+}
+
+}  // namespace raycone

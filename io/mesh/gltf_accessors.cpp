@@ -53,7 +53,7 @@ void GltfBudget::spend(std::uint64_t count, std::uint64_t factor) {
   spent_ += count * factor;
 }
 
-GltfBuffers::GltfBuffers(const MeshSource& source, const GltfDocument& document,
+GltfBuffers::GltfBuffers(const NamedBytes& source, const GltfDocument& document,
                          std::optional<std::string_view> binary_chunk, GltfBudget& budget,
                          std::vector<FileRead>* companions)
     : source_(source),

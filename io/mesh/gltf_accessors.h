@@ -36,7 +36,7 @@ class GltfBudget {
 class GltfBuffers {
  public:
   // What is passed by reference or pointer must outlive this.
-  GltfBuffers(const MeshSource& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
+  GltfBuffers(const NamedBytes& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
               GltfBudget& budget, std::vector<FileRead>* companions);
 
   // All bytes of a buffer view. Throws InputError.
@@ -46,7 +46,7 @@ class GltfBuffers {
   std::string_view load(std::size_t index);
   [[noreturn]] void fail(std::size_t index, const std::string& what) const;
 
-  const MeshSource& source_;
+  const NamedBytes& source_;
   const GltfDocument& document_;
   std::optional<std::string_view> binary_chunk_;
   GltfBudget& budget_;
@@ -58,7 +58,7 @@ class GltfBuffers {
 // Reads whole accessors. What is passed by reference or pointer must outlive this.
 class GltfAccessors {
  public:
-  GltfAccessors(const MeshSource& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
+  GltfAccessors(const NamedBytes& source, const GltfDocument& document, std::optional<std::string_view> binary_chunk,
                 GltfBudget& budget, std::vector<FileRead>* companions)
       : file_(source.name),
         document_(document),

@@ -715,7 +715,7 @@ TEST(ReadGltf, SharedMeshesHaveTheirFacesOrAreRefused) {
     if (path.extension() != ".glb" && path.extension() != ".gltf") continue;
     SCOPED_TRACE(row["file"]);
     const std::string bytes = read_file(path.string());
-    const MeshSource source{path.filename().string(), path.parent_path().string(), bytes};
+    const NamedBytes source{path.filename().string(), path.parent_path().string(), bytes};
     if (row["expect"].starts_with("refuse")) {
       EXPECT_THROW(static_cast<void>(read_gltf(source, nullptr)), InputError);
       continue;

@@ -123,7 +123,7 @@ const char* parse_number(const char* first, const char* last, double& value) {
   return after;
 }
 
-TextScanner::TextScanner(const MeshSource& source)
+TextScanner::TextScanner(const NamedBytes& source)
     : name_(source.name),
       begin_(source.bytes.data()),
       end_(source.bytes.data() + source.bytes.size()),

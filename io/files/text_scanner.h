@@ -12,7 +12,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/files/mesh_source.h"
+#include "io/files/named_bytes.h"
 
 namespace raycone {
 
@@ -33,7 +33,7 @@ const char* parse_number(const char* first, const char* last, double& value);
 class TextScanner {
  public:
   // Starts behind a UTF-8 byte order mark; throws InputError where there is one of UTF-16. `source` must outlive this.
-  explicit TextScanner(const MeshSource& source);
+  explicit TextScanner(const NamedBytes& source);
 
   [[nodiscard]] bool at_end() const { return position_ == end_; }
   // At the end of a line or of the text, or at a comment ('#').

@@ -103,7 +103,7 @@ std::uint32_t restart_value(const tinygltf::Accessor& indices) {
   return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * size_of(indices.componentType));
 }
 
-GltfData::GltfData(const MeshSource& source, GltfDocument document, std::optional<std::string_view> binary_chunk,
+GltfData::GltfData(const NamedBytes& source, GltfDocument document, std::optional<std::string_view> binary_chunk,
                    std::vector<FileRead>* companions)
     : source_(source),
       model_(load_model(document.json, source.name)),

@@ -27,7 +27,7 @@ namespace raycone {
 class GltfData {
  public:
   // What is passed by reference or pointer must outlive this. Throws InputError, LimitError.
-  GltfData(const MeshSource& source, GltfDocument document, std::optional<std::string_view> binary_chunk,
+  GltfData(const NamedBytes& source, GltfDocument document, std::optional<std::string_view> binary_chunk,
            std::vector<FileRead>* companions);
 
   [[nodiscard]] const tinygltf::Model& model() const { return *model_; }
@@ -60,7 +60,7 @@ class GltfData {
                     std::uint64_t count);
   [[noreturn]] void fail(const char* part, std::size_t index, const std::string& what) const;
 
-  const MeshSource& source_;
+  const NamedBytes& source_;
   std::shared_ptr<const tinygltf::Model> model_;
   std::vector<GltfBuffer> buffers_;
   std::vector<std::uint64_t> strides_;  // of the buffer views

@@ -27,7 +27,7 @@ struct Chunk {
   std::string_view data;
 };
 
-Chunk next_chunk(const MeshSource& source, std::string_view glb, std::size_t& offset) {
+Chunk next_chunk(const NamedBytes& source, std::string_view glb, std::size_t& offset) {
   if (glb.size() - offset < kChunkHeaderSize) fail_at_byte(source, offset, "GLB ends within a chunk header");
   const std::uint32_t length = load_little_endian<std::uint32_t>(glb.data() + offset);
   const std::uint32_t type = load_little_endian<std::uint32_t>(glb.data() + offset + 4);
@@ -84,14 +84,14 @@ bool leaves_directory(const std::filesystem::path& path) {
   return !normal.empty() && *normal.begin() == "..";
 }
 
-[[noreturn]] void refuse(const MeshSource& source, std::size_t buffer, std::string_view uri, const std::string& why) {
+[[noreturn]] void refuse(const NamedBytes& source, std::size_t buffer, std::string_view uri, const std::string& why) {
   std::string quoted(uri.substr(0, kMaxQuoted));
   std::replace_if(
       quoted.begin(), quoted.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, '?');
   throw InputError(source.name + ": buffer " + std::to_string(buffer) + ": \"" + quoted + "\" " + why);
 }
 
-std::string decode_data_uri(const MeshSource& source, std::size_t buffer, std::string_view uri) {
+std::string decode_data_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) refuse(source, buffer, uri, "has no comma, expected a data URI");
   const std::string_view data = uri.substr(comma + 1);
@@ -101,7 +101,7 @@ std::string decode_data_uri(const MeshSource& source, std::size_t buffer, std::s
   return *std::move(decoded);
 }
 
-std::string read_beside(const MeshSource& source, std::size_t buffer, std::string_view uri,
+std::string read_beside(const NamedBytes& source, std::size_t buffer, std::string_view uri,
                         std::vector<FileRead>* companions) {
   const std::filesystem::path relative = percent_decoded(uri);
   if (relative.native().find('\0') != std::string::npos) refuse(source, buffer, uri, "is not a file name");
@@ -124,7 +124,7 @@ std::string read_beside(const MeshSource& source, std::size_t buffer, std::strin
 
 bool is_glb(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
-GlbChunks split_glb(const MeshSource& source) {
+GlbChunks split_glb(const NamedBytes& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.size() < kGlbHeaderSize) fail_at_byte(source, bytes.size(), "GLB ends within its header");
   const std::uint32_t version = load_little_endian<std::uint32_t>(bytes.data() + 4);
@@ -147,7 +147,7 @@ GlbChunks split_glb(const MeshSource& source) {
   return chunks;
 }
 
-std::string load_gltf_uri(const MeshSource& source, std::size_t buffer, std::string_view uri,
+std::string load_gltf_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri,
                           std::vector<FileRead>* companions) {
   if (is_data_uri(uri)) return decode_data_uri(source, buffer, uri);
   return read_beside(source, buffer, uri, companions);

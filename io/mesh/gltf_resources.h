@@ -22,11 +22,11 @@ struct GlbChunks {
 [[nodiscard]] bool is_glb(std::string_view bytes);
 
 // The chunks of a GLB. Throws InputError where it is cut short or is not version 2.
-[[nodiscard]] GlbChunks split_glb(const MeshSource& source);
+[[nodiscard]] GlbChunks split_glb(const NamedBytes& source);
 
 // The bytes that buffer number `buffer` of the asset refers to by `uri`: decoded, if a data URI, else of a regular file
 // in or below source.directory, whose path is appended to *companions. Throws InputError.
-[[nodiscard]] std::string load_gltf_uri(const MeshSource& source, std::size_t buffer, std::string_view uri,
+[[nodiscard]] std::string load_gltf_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri,
                                         std::vector<FileRead>* companions);
 
 }  // namespace raycone

@@ -29,7 +29,7 @@ class MeshBuilder {
   };
 
   // `source` must outlive this.
-  explicit MeshBuilder(const MeshSource& source) : name_(source.name) {}
+  explicit MeshBuilder(const NamedBytes& source) : name_(source.name) {}
 
   void reserve_vertices(std::size_t count) { parsed_.mesh.vertices.reserve(count); }
   void reserve_triangles(std::size_t count) { parsed_.mesh.triangles.reserve(count); }

@@ -19,7 +19,7 @@ inline constexpr const char* kNonFiniteCorner =
 }
 
 // Throws InputError "FILE:byte N: what", bytes counted from 0.
-[[noreturn]] inline void fail_at_byte(const MeshSource& source, std::size_t offset, const std::string& what) {
+[[noreturn]] inline void fail_at_byte(const NamedBytes& source, std::size_t offset, const std::string& what) {
   throw InputError(source.name + ":byte " + std::to_string(offset) + ": " + what);
 }
 

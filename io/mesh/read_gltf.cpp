@@ -353,7 +353,7 @@ std::vector<std::string> warnings_of(const Omissions& omissions) {
 
 }  // namespace
 
-ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions) {
+ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions) {
   GlbChunks chunks{source.bytes, 0, std::nullopt};
   const bool glb = is_glb(source.bytes);
   if (glb) chunks = split_glb(source);

@@ -32,7 +32,7 @@ std::optional<MeshFormat> format_from_extension(const std::string& path) {
   return extension.empty() ? std::nullopt : mesh_format_from_name(std::string_view(extension).substr(1));
 }
 
-MeshFormat format_of(const MeshSource& source, const ReadMeshOptions& options) {
+MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = recognise_mesh(source.bytes)) return *format;
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
@@ -47,7 +47,7 @@ std::string directory_of(const std::string& path) {
   return directory.empty() ? "." : directory;
 }
 
-ParsedMesh parse(const MeshSource& source, MeshFormat format, std::vector<FileRead>* companions) {
+ParsedMesh parse(const NamedBytes& source, MeshFormat format, std::vector<FileRead>* companions) {
   switch (format) {
     case MeshFormat::kObj:
       return read_obj(source);
@@ -91,7 +91,7 @@ std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
 MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   const std::string bytes = read_file(path);
   if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
-  const MeshSource source{path, directory_of(path), bytes};
+  const NamedBytes source{path, directory_of(path), bytes};
   MeshFile file;
   const MeshFormat format = format_of(source, options);
   // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.

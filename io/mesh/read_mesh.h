@@ -9,7 +9,7 @@
 
 #include "core/data/polygon_fan.h"
 #include "core/data/triangle_mesh.h"
-#include "io/files/mesh_source.h"
+#include "io/files/named_bytes.h"
 
 namespace raycone {
 
@@ -48,11 +48,11 @@ struct MeshFile {
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options = {});
 
 // The readers behind it, one per format: same guarantees but for "at least one triangle" and sha256.
-[[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
-[[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
-[[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
-[[nodiscard]] ParsedMesh read_off(const MeshSource& source);
+[[nodiscard]] ParsedMesh read_obj(const NamedBytes& source);
+[[nodiscard]] ParsedMesh read_ply(const NamedBytes& source);
+[[nodiscard]] ParsedMesh read_stl(const NamedBytes& source);
+[[nodiscard]] ParsedMesh read_off(const NamedBytes& source);
 // glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
-[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, std::vector<FileRead>* companions);
+[[nodiscard]] ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions);
 
 }  // namespace raycone

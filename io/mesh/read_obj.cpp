@@ -12,7 +12,7 @@ namespace {
 
 class ObjReader {
  public:
-  explicit ObjReader(const MeshSource& source) : text_(source), builder_(source) {}
+  explicit ObjReader(const NamedBytes& source) : text_(source), builder_(source) {}
 
   ParsedMesh read() {
     while (!text_.at_end()) {
@@ -118,6 +118,6 @@ class ObjReader {
 
 }  // namespace
 
-ParsedMesh read_obj(const MeshSource& source) { return ObjReader(source).read(); }
+ParsedMesh read_obj(const NamedBytes& source) { return ObjReader(source).read(); }
 
 }  // namespace raycone

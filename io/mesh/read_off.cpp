@@ -11,7 +11,7 @@ namespace {
 
 class OffReader {
  public:
-  explicit OffReader(const MeshSource& source) : text_(source), builder_(source) {}
+  explicit OffReader(const NamedBytes& source) : text_(source), builder_(source) {}
 
   ParsedMesh read() {
     read_keyword();
@@ -111,6 +111,6 @@ class OffReader {
 
 }  // namespace
 
-ParsedMesh read_off(const MeshSource& source) { return OffReader(source).read(); }
+ParsedMesh read_off(const NamedBytes& source) { return OffReader(source).read(); }
 
 }  // namespace raycone

@@ -116,7 +116,7 @@ class AsciiBody {
 
 class BinaryBody {
  public:
-  BinaryBody(const MeshSource& source, std::size_t offset, std::endian order)
+  BinaryBody(const NamedBytes& source, std::size_t offset, std::endian order)
       : source_(source), offset_(offset), order_(order) {}
 
   [[nodiscard]] std::size_t remaining() const { return source_.bytes.size() - offset_; }
@@ -169,7 +169,7 @@ class BinaryBody {
     return load<Number>(source_.bytes.data() + offset, order_);
   }
 
-  const MeshSource& source_;
+  const NamedBytes& source_;
   std::size_t offset_;
   std::endian order_;
 };
@@ -177,7 +177,7 @@ class BinaryBody {
 template <class Body>
 class PlyReader {
  public:
-  PlyReader(const MeshSource& source, const PlyHeader& header, const Body& body)
+  PlyReader(const NamedBytes& source, const PlyHeader& header, const Body& body)
       : header_(header), vertices_(header.elements[header.vertex_element]), body_(body), builder_(source) {}
 
   ParsedMesh read_mesh() {
@@ -351,7 +351,7 @@ class PlyReader {
 
 // Calls read(reader) with the reader for the file's encoding.
 template <class Read>
-auto with_reader(const MeshSource& source, Read read) {
+auto with_reader(const NamedBytes& source, Read read) {
   TextScanner text(source);
   const PlyHeader header = read_ply_header(text);
   if (header.encoding == PlyEncoding::kAscii) return read(PlyReader(source, header, AsciiBody(text)));
@@ -361,11 +361,11 @@ auto with_reader(const MeshSource& source, Read read) {
 
 }  // namespace
 
-ParsedMesh read_ply(const MeshSource& source) {
+ParsedMesh read_ply(const NamedBytes& source) {
   return with_reader(source, [](auto reader) { return reader.read_mesh(); });
 }
 
-std::vector<Vec3> read_ply_vertices(const MeshSource& source) {
+std::vector<Vec3> read_ply_vertices(const NamedBytes& source) {
   return with_reader(source, [](auto reader) { return reader.read_points(); });
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 class AsciiStlReader {
  public:
-  explicit AsciiStlReader(const MeshSource& source) : text_(source), builder_(source) {}
+  explicit AsciiStlReader(const NamedBytes& source) : text_(source), builder_(source) {}
 
   // Solids follow each other; a missing last "endsolid" does no harm.
   ParsedMesh read() {
@@ -114,7 +114,7 @@ Vec3 load_vertex(const char* bytes) {
 }
 
 // The number of triangles, which the bytes are enough for.
-std::uint32_t checked_triangle_count(const MeshSource& source) {
+std::uint32_t checked_triangle_count(const NamedBytes& source) {
   const std::optional<std::uint32_t> count = announced_stl_triangles(source.bytes);
   if (!count) {
     throw InputError(source.name + ":1: expected 'solid' or the " + std::to_string(kStlHeaderSize) +
@@ -132,7 +132,7 @@ std::uint32_t checked_triangle_count(const MeshSource& source) {
   return *count;
 }
 
-ParsedMesh read_binary_stl(const MeshSource& source) {
+ParsedMesh read_binary_stl(const NamedBytes& source) {
   constexpr std::size_t kNormalSize = 12;
   constexpr std::size_t kVertexSize = 12;
   const std::uint32_t count = checked_triangle_count(source);
@@ -159,7 +159,7 @@ ParsedMesh read_binary_stl(const MeshSource& source) {
 
 }  // namespace
 
-ParsedMesh read_stl(const MeshSource& source) {
+ParsedMesh read_stl(const NamedBytes& source) {
   // Text in UTF-16 is refused by the text scanner, more clearly than as a binary STL of a wrong size.
   const bool is_text =
       is_ascii_stl(source.bytes) || (is_utf16(source.bytes) && recognise_mesh(source.bytes) != MeshFormat::kStl);

@@ -1,6 +1,5 @@
 // `--diagnostics` and `--verify` from mesh to files. Black box: the real executable.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone::test {
 namespace {
@@ -118,28 +118,25 @@ Compared compare_grids_with_csv(const std::string& mesh, const std::string& path
   to_csv.insert(to_csv.end(), more.begin(), more.end());
   EXPECT_EQ(run_raycone(to_vdb).status, 0);
   std::istringstream csv(run_raycone(to_csv).out);
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open();
-  const auto crossings = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("crossings"));
-  const auto degenerate = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("degenerate"));
-  const auto on_surface = openvdb::gridPtrCast<openvdb::BoolGrid>(file.readGrid("on_surface"));
-  const auto error_bound = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("error_bound"));
+  const VdbGridPtr crossings = read_vdb_grid(path, "crossings");
+  const VdbGridPtr degenerate = read_vdb_grid(path, "degenerate");
+  const VdbGridPtr on_surface = read_vdb_grid(path, "on_surface", VdbType::kBool);
+  const VdbGridPtr error_bound = read_vdb_grid(path, "error_bound");
   Compared compared;
   std::string line;
   std::getline(csv, line);
   for (; std::getline(csv, line); ++compared.rows) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream row(line);
-    openvdb::Coord at;
+    VoxelIndex at;
     double x, y, z, w, crossings_in_csv, degenerate_in_csv, on_surface_in_csv, bound;
-    row >> at[0] >> at[1] >> at[2] >> x >> y >> z >> w >> crossings_in_csv >> degenerate_in_csv >> on_surface_in_csv >>
+    row >> at.x >> at.y >> at.z >> x >> y >> z >> w >> crossings_in_csv >> degenerate_in_csv >> on_surface_in_csv >>
         bound;
     EXPECT_FALSE(row.fail()) << line;
-    EXPECT_EQ(static_cast<double>(crossings->tree().getValue(at)), crossings_in_csv);
-    EXPECT_EQ(static_cast<double>(degenerate->tree().getValue(at)), degenerate_in_csv);
-    EXPECT_EQ(on_surface->tree().getValue(at), on_surface_in_csv != 0);
-    const double stored = error_bound->tree().getValue(at);
+    EXPECT_EQ(crossings->value(at), crossings_in_csv);
+    EXPECT_EQ(degenerate->value(at), degenerate_in_csv);
+    EXPECT_EQ(on_surface->value(at), on_surface_in_csv != 0 ? 1 : 0);
+    const double stored = error_bound->value(at);
     EXPECT_TRUE(stored >= bound && stored <= bound * (1 + 0x1p-22)) << stored << " for " << bound;  // rounded up
     EXPECT_LT(bound, 1e-12);
     compared.crossed += crossings_in_csv != 0;
@@ -171,12 +168,9 @@ TEST_F(DiagnosticsOption, NpyOfALatticeIsAUsageErrorThatNamesTheFormats) {
 TEST_F(DiagnosticsOption, DoubleWidensTheValuesOnly) {
   const std::string path = dir_ / "out.vdb";
   ASSERT_EQ(run_raycone({"lattice", soup_, "-o", path, "--resolution", "8", "--double", "--diagnostics"}).status, 0);
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open();
-  EXPECT_TRUE(file.readGrid("winding")->isType<openvdb::DoubleGrid>());
-  EXPECT_TRUE(file.readGrid("error_bound")->isType<openvdb::FloatGrid>());
-  EXPECT_TRUE(file.readGrid("on_surface")->isType<openvdb::BoolGrid>());
+  EXPECT_TRUE(read_vdb_grid(path, "winding", VdbType::kDouble));
+  EXPECT_TRUE(read_vdb_grid(path, "error_bound", VdbType::kFloat));
+  EXPECT_TRUE(read_vdb_grid(path, "on_surface", VdbType::kBool));
 }
 
 TEST_F(VerifyOption, IsInSummaryAndReport) {

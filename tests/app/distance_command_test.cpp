@@ -1,7 +1,5 @@
 // `--field sdf` from mesh to files. Black box: the real executable.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/Diagnostics.h>
 
 #include <cmath>
 #include <filesystem>
@@ -17,6 +15,7 @@
 #include "tests/support/run_command.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone::test {
 namespace {
@@ -29,15 +28,10 @@ std::string obj_of(const TriangleMesh& mesh) {
   return obj.str();
 }
 
-openvdb::FloatGrid::Ptr surface_of(const std::string& path) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open();
-  return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("surface"));
-}
+VdbGridPtr surface_of(const std::string& path) { return read_vdb_grid(path, "surface"); }
 
 struct Sample {
-  openvdb::Coord index;
+  VoxelIndex index;
   Vec3 position;
   double w, distance;
 };
@@ -52,7 +46,7 @@ std::vector<Sample> samples_of(const std::string& csv) {
     std::ranges::replace(line, ',', ' ');
     std::istringstream row(line);
     Sample s;
-    row >> s.index[0] >> s.index[1] >> s.index[2] >> s.position.x >> s.position.y >> s.position.z >> s.w >> s.distance;
+    row >> s.index.x >> s.index.y >> s.index.z >> s.position.x >> s.position.y >> s.position.z >> s.w >> s.distance;
     EXPECT_FALSE(row.fail()) << line;
     samples.push_back(s);
   }
@@ -103,14 +97,14 @@ TEST_F(SdfField, GridHoldsTheSamples) {
     const std::vector<std::string> options{"--field", "winding,sdf", "--resolution", "20"};
     ASSERT_EQ(lattice(path, dir_ / "out.vdb", options).status, 0);
     const auto grid = surface_of(dir_ / "out.vdb");
-    const double voxel = grid->voxelSize()[0];
+    const double voxel = grid->voxel_size().x;
     std::uint64_t active = 0;
     for (const Sample& s : samples_of(lattice(path, "-", options).out)) {
-      ASSERT_NEAR(grid->tree().getValue(s.index), s.distance, 1e-5 * voxel);
-      ASSERT_EQ(grid->tree().isValueOn(s.index), std::abs(s.distance) < 3 * voxel);
-      active += grid->tree().isValueOn(s.index);
+      ASSERT_NEAR(grid->value(s.index), s.distance, 1e-5 * voxel);
+      ASSERT_EQ(grid->is_active(s.index), std::abs(s.distance) < 3 * voxel);
+      active += grid->is_active(s.index);
     }
-    EXPECT_EQ(grid->activeVoxelCount(), active);
+    EXPECT_EQ(grid->active_voxel_count(), active);
   }
 }
 
@@ -129,7 +123,7 @@ TEST_F(SdfField, IsALevelSetWhateverTheMesh) {
     const CommandResult result = lattice(mesh, dir_ / "out.vdb", {"--field", "sdf", "--resolution", "14"});
     if (result.status == 2) continue;  // broken on purpose
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(openvdb::tools::checkLevelSet(*surface_of(dir_ / "out.vdb"), 8), "") << mesh;
+    EXPECT_EQ(surface_of(dir_ / "out.vdb")->level_set_faults(8), "") << mesh;
     ++checked;
   }
   EXPECT_GE(checked, 6);
@@ -138,7 +132,7 @@ TEST_F(SdfField, IsALevelSetWhateverTheMesh) {
 TEST_F(SdfField, HasUnitGradientOnSmoothClosedMeshes) {
   write_text(dir_ / "sphere.obj", obj_of(sphere(60)));
   ASSERT_EQ(lattice(dir_ / "sphere.obj", dir_ / "out.vdb", {"--field", "sdf", "--resolution", "40"}).status, 0);
-  EXPECT_EQ(openvdb::tools::checkLevelSet(*surface_of(dir_ / "out.vdb"), 9), "");
+  EXPECT_EQ(surface_of(dir_ / "out.vdb")->level_set_faults(9), "");
 }
 
 TEST_F(SdfField, PadsTheBoxByTheBandAndOneVoxel) {

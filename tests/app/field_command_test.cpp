@@ -1,6 +1,5 @@
 // `--field` and `--rule` from mesh to files. Black box: the real executable.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone::test {
 namespace {
@@ -102,25 +102,22 @@ TEST_F(FieldOption, VdbHoldsAGridPerField) {
   const std::vector<std::string> options{"--field", "inside,winding,density", "--rule", "abs=.3", "--diagnostics"};
   ASSERT_EQ(run(soup_, dir_ / "out.vdb", options).status, 0);
   const auto columns = columns_of(run(soup_, "-", options).out);
-  openvdb::initialize();
-  openvdb::io::File file(dir_ / "out.vdb");
-  file.open();
-  ASSERT_EQ(file.getGrids()->size(), 7U);
-  const auto inside = openvdb::gridPtrCast<openvdb::BoolGrid>(file.readGrid("inside"));
-  const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("density"));
-  const auto winding = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("winding"));
+  ASSERT_EQ(read_vdb_grids(dir_ / "out.vdb").size(), 7U);
+  const VdbGridPtr inside = read_vdb_grid(dir_ / "out.vdb", "inside", VdbType::kBool);
+  const VdbGridPtr density = read_vdb_grid(dir_ / "out.vdb", "density");
+  const VdbGridPtr winding = read_vdb_grid(dir_ / "out.vdb", "winding");
   ASSERT_TRUE(inside && density && winding);
-  EXPECT_EQ(inside->metaValue<std::string>("raycone_rule"), "abs=0.3");
-  EXPECT_FALSE(winding->getMetadata<openvdb::StringMetadata>("raycone_rule"));
-  EXPECT_EQ(density->getGridClass(), openvdb::GRID_FOG_VOLUME);
-  EXPECT_EQ(winding->getGridClass(), openvdb::GRID_UNKNOWN);
+  EXPECT_EQ(inside->text("raycone_rule"), "abs=0.3");
+  EXPECT_FALSE(winding->has_metadata("raycone_rule"));
+  EXPECT_EQ(density->grid_class(), VdbClass::kFogVolume);
+  EXPECT_EQ(winding->grid_class(), VdbClass::kUnknown);
   for (std::size_t n = 0; n < columns.at("w").size(); ++n) {
-    const openvdb::Coord at(static_cast<int>(columns.at("i")[n]), static_cast<int>(columns.at("j")[n]),
-                            static_cast<int>(columns.at("k")[n]));
-    ASSERT_EQ(inside->tree().getValue(at), columns.at("inside")[n] == 1);
-    ASSERT_EQ(inside->tree().isValueOn(at), columns.at("inside")[n] == 1);
-    ASSERT_EQ(density->tree().getValue(at), static_cast<float>(columns.at("density")[n]));
-    ASSERT_EQ(winding->tree().getValue(at), static_cast<float>(columns.at("w")[n]));
+    const VoxelIndex at{static_cast<int>(columns.at("i")[n]), static_cast<int>(columns.at("j")[n]),
+                        static_cast<int>(columns.at("k")[n])};
+    ASSERT_EQ(inside->value(at), columns.at("inside")[n] == 1 ? 1 : 0);
+    ASSERT_EQ(inside->is_active(at), columns.at("inside")[n] == 1);
+    ASSERT_EQ(density->value(at), static_cast<float>(columns.at("density")[n]));
+    ASSERT_EQ(winding->value(at), static_cast<float>(columns.at("w")[n]));
   }
 }
 

@@ -1,23 +1,24 @@
 // The whole pipeline, twice: every voxel of the OpenVDB file equals the value in the CSV, at the world position in the
 // CSV.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <charconv>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone::test {
 namespace {
 
 struct Sample {
-  openvdb::Coord index;
-  openvdb::Vec3d position;
+  VoxelIndex index;
+  Vec3 position;
   double value;
 };
 
@@ -31,19 +32,12 @@ std::vector<Sample> read_csv(const std::string& path) {
     std::istringstream row(line);
     Sample s;
     char comma = 0;
-    row >> s.index[0] >> comma >> s.index[1] >> comma >> s.index[2];
+    row >> s.index.x >> comma >> s.index.y >> comma >> s.index.z;
     row >> comma >> s.position[0] >> comma >> s.position[1] >> comma >> s.position[2] >> comma >> s.value;
     EXPECT_FALSE(row.fail()) << line;
     samples.push_back(s);
   }
   return samples;
-}
-
-openvdb::FloatGrid::Ptr read_grid(const std::string& path) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open();
-  return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("winding"));
 }
 
 void compare(const std::string& mesh, const std::vector<std::string>& options) {
@@ -56,19 +50,19 @@ void compare(const std::string& mesh, const std::vector<std::string>& options) {
     ASSERT_EQ(run_raycone(arguments).status, 0);
   }
   const std::vector<Sample> samples = read_csv(dir / "out.csv");
-  const openvdb::FloatGrid::Ptr grid = read_grid(dir / "out.vdb");
+  const VdbGridPtr grid = read_vdb_grid(dir / "out.vdb", "winding");
   ASSERT_TRUE(grid);
   ASSERT_GT(samples.size(), 100U);
   std::uint64_t active = 0;
   for (const Sample& s : samples) {
-    EXPECT_EQ(grid->tree().getValue(s.index), static_cast<float>(s.value));
-    EXPECT_EQ(grid->tree().isValueOn(s.index), static_cast<float>(s.value) != grid->background());
-    active += grid->tree().isValueOn(s.index);
-    const openvdb::Vec3d world = grid->indexToWorld(s.index);
+    EXPECT_EQ(grid->value(s.index), static_cast<float>(s.value));
+    EXPECT_EQ(grid->is_active(s.index), static_cast<float>(s.value) != grid->background());
+    active += grid->is_active(s.index);
+    const Vec3 world = grid->position(s.index);
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(world[axis], s.position[axis], 1e-12);  // some roundings of values below 10
   }
-  EXPECT_EQ(grid->activeVoxelCount(), active);  // nothing beside the samples
+  EXPECT_EQ(grid->active_voxel_count(), active);  // nothing beside the samples
 }
 
 TEST(VdbAgainstCsv, ClosedMesh) { compare(kCube, {"--resolution", "20", "--padding", "3v"}); }

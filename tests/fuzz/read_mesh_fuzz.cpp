@@ -1,6 +1,6 @@
 // libFuzzer target of one mesh reader, RAYCONE_READER (tests/fuzz/CMakeLists.txt): whatever the bytes, it returns a
-// mesh that keeps the promises of io/mesh/read_mesh.h or throws InputError or LimitError. Cutting its polygons leaves their
-// boundaries as they were.
+// mesh that keeps the promises of io/mesh/read_mesh.h or throws InputError or LimitError. Cutting its polygons leaves
+// their boundaries as they were.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,11 +19,11 @@
 namespace raycone {
 namespace {
 
-using Reader = ParsedMesh(const MeshSource&);
-using ReaderOfSeveralFiles = ParsedMesh(const MeshSource&, std::vector<FileRead>*);
+using Reader = ParsedMesh(const NamedBytes&);
+using ReaderOfSeveralFiles = ParsedMesh(const NamedBytes&, std::vector<FileRead>*);
 
-[[maybe_unused]] ParsedMesh read(Reader* reader, const MeshSource& source) { return reader(source); }
-[[maybe_unused]] ParsedMesh read(ReaderOfSeveralFiles* reader, const MeshSource& source) {
+[[maybe_unused]] ParsedMesh read(Reader* reader, const NamedBytes& source) { return reader(source); }
+[[maybe_unused]] ParsedMesh read(ReaderOfSeveralFiles* reader, const NamedBytes& source) {
   std::vector<FileRead> companions;
   return reader(source, &companions);
 }

@@ -715,7 +715,7 @@ TEST(ReadGltf, SharedMeshesHaveTheirFacesOrAreRefused) {
     if (path.extension() != ".glb" && path.extension() != ".gltf") continue;
     SCOPED_TRACE(row["file"]);
     const std::string bytes = read_file(path.string());
-    const MeshSource source{path.filename().string(), path.parent_path().string(), bytes};
+    const NamedBytes source{path.filename().string(), path.parent_path().string(), bytes};
     if (row["file"] == "draco__Box_Draco.glb") {  // which the manifest takes to be refused
       EXPECT_EQ(read_gltf(source, nullptr).mesh.triangles.size(), 12U);
       continue;

@@ -1,8 +1,8 @@
 // The grids of diagnostics beside that of the field.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -13,11 +13,13 @@
 #include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
 using test::contents;
+using test::read_vdb_grids, test::VdbGrid, test::VdbGridPtr, test::VdbType;
 using test::TemporaryDirectory;
 
 struct DiagnosedField {
@@ -65,22 +67,15 @@ void write_vdb(const std::string& path, const DiagnosedField& field, std::int64_
   writer->finish({7, 9});
 }
 
-openvdb::GridPtrVecPtr read_grids(const std::string& path) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open(false);
-  return file.getGrids();
-}
-
-template <typename Grid>
-typename Grid::Ptr grid_named(const openvdb::GridPtrVec& grids, const std::string& name) {
-  return openvdb::gridPtrCast<Grid>(openvdb::findGridByName(grids, name));
+// Null where it is not of that type.
+VdbGridPtr grid_named(const std::vector<VdbGridPtr>& grids, const std::string& name, VdbType type = VdbType::kFloat) {
+  const auto found = std::ranges::find_if(grids, [&](const VdbGridPtr& grid) { return grid->name() == name; });
+  return found != grids.end() && (*found)->type() == type ? *found : nullptr;
 }
 
 // Every voxel of the lattice, and one layer around it, is check(number, value) and active where it is not 0.
-template <typename Grid, typename Number, typename Check>
-void expect_holds(const Grid& grid, const Lattice& lattice, const std::vector<Number>& numbers, const Check& check) {
-  auto accessor = grid.getConstAccessor();
+template <typename Number, typename Check>
+void expect_holds(const VdbGrid& grid, const Lattice& lattice, const std::vector<Number>& numbers, const Check& check) {
   std::size_t active = 0;
   const auto inside = [&](std::int64_t n, std::size_t axis) { return 0 <= n && n < lattice.counts[axis]; };
   for (std::int64_t z = -1; z <= lattice.counts[2]; ++z) {
@@ -89,15 +84,16 @@ void expect_holds(const Grid& grid, const Lattice& lattice, const std::vector<Nu
         const bool sample = inside(x, 0) && inside(y, 1) && inside(z, 2);
         const auto n = static_cast<std::size_t>((z * lattice.counts[1] + y) * lattice.counts[0] + x);
         const Number number = sample ? numbers[n] : Number{0};
-        const openvdb::Coord at(static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),
-                                static_cast<int>(lattice.index_min[2] + z));
-        ASSERT_TRUE(check(number, accessor.getValue(at))) << at << ": " << +number << ' ' << accessor.getValue(at);
-        ASSERT_EQ(accessor.isValueOn(at), number != 0) << at;
+        const test::VoxelIndex at{static_cast<int>(lattice.index_min[0] + x),
+                                  static_cast<int>(lattice.index_min[1] + y),
+                                  static_cast<int>(lattice.index_min[2] + z)};
+        ASSERT_TRUE(check(number, grid.value(at))) << at << ": " << +number << ' ' << grid.value(at);
+        ASSERT_EQ(grid.is_active(at), number != 0) << at;
         active += number != 0 ? 1 : 0;
       }
     }
   }
-  EXPECT_EQ(grid.activeVoxelCount(), active);
+  EXPECT_EQ(grid.active_voxel_count(), active);
   EXPECT_GT(active, 0U);
 }
 
@@ -105,32 +101,31 @@ TEST(WriteVdbDiagnostics, EveryVoxelOfEveryGridIsTheSamples) {
   const TemporaryDirectory directory;
   const DiagnosedField field = diagnosed_field();
   write_vdb(directory / "out.vdb", field);
-  const auto grids = read_grids(directory / "out.vdb");
-  ASSERT_EQ(grids->size(), 5U);
-  const auto equal = [](auto number, auto value) { return static_cast<decltype(value)>(number) == value; };
-  using openvdb::BoolGrid, openvdb::FloatGrid;
-  expect_holds(*grid_named<FloatGrid>(*grids, "winding"), field.lattice, field.values, equal);
-  expect_holds(*grid_named<FloatGrid>(*grids, "crossings"), field.lattice, field.crossings, equal);
-  expect_holds(*grid_named<FloatGrid>(*grids, "degenerate"), field.lattice, field.degenerate, equal);
-  expect_holds(*grid_named<BoolGrid>(*grids, "on_surface"), field.lattice, field.on_surface, equal);
-  expect_holds(*grid_named<FloatGrid>(*grids, "error_bound"), field.lattice, field.error_bound,
-               [](double bound, float value) {
-                 const float below = std::nextafter(value, -1.0F);
-                 return static_cast<double>(value) >= bound && (bound == 0 ? value == 0 : double{below} < bound);
-               });
+  const auto grids = read_vdb_grids(directory / "out.vdb");
+  ASSERT_EQ(grids.size(), 5U);
+  const auto equal = [](auto number, double value) { return static_cast<float>(number) == value; };
+  const auto grid = [&](const std::string& name) { return grid_named(grids, name); };
+  expect_holds(*grid("winding"), field.lattice, field.values, equal);
+  expect_holds(*grid("crossings"), field.lattice, field.crossings, equal);
+  expect_holds(*grid("degenerate"), field.lattice, field.degenerate, equal);
+  expect_holds(*grid_named(grids, "on_surface", VdbType::kBool), field.lattice, field.on_surface, equal);
+  expect_holds(*grid("error_bound"), field.lattice, field.error_bound, [](double bound, double value) {
+    const double below = std::nextafter(static_cast<float>(value), -1.0F);
+    return value >= bound && (bound == 0 ? value == 0 : below < bound);
+  });
 }
 
 TEST(WriteVdbDiagnostics, GridsShareTransformAndDescription) {
   const TemporaryDirectory directory;
   const DiagnosedField field = diagnosed_field();
   write_vdb(directory / "out.vdb", field);
-  const auto grids = read_grids(directory / "out.vdb");
-  for (const openvdb::GridBase::Ptr& grid : *grids) {
-    EXPECT_EQ(grid->transform(), grids->front()->transform());
-    EXPECT_EQ(grid->metaValue<std::string>("raycone_field"), grid->getName());
-    EXPECT_EQ(grid->metaValue<std::string>("raycone_mesh"), "bunny.obj");
-    EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_degenerate"), 7);
-    const Lattice lattice = read_vdb_lattice(directory / "out.vdb", grid->getName());
+  const auto grids = read_vdb_grids(directory / "out.vdb");
+  for (const VdbGridPtr& grid : grids) {
+    EXPECT_TRUE(grid->has_transform_of(*grids.front()));
+    EXPECT_EQ(grid->text("raycone_field"), grid->name());
+    EXPECT_EQ(grid->text("raycone_mesh"), "bunny.obj");
+    EXPECT_EQ(grid->integer("raycone_degenerate"), 7);
+    const Lattice lattice = read_vdb_lattice(directory / "out.vdb", grid->name());
     EXPECT_EQ(lattice.origin, field.lattice.origin);
     EXPECT_EQ(lattice.spacing, field.lattice.spacing);
     EXPECT_EQ(lattice.index_min, field.lattice.index_min);
@@ -149,14 +144,14 @@ TEST(WriteVdbDiagnostics, ConstantBlocksAreTiles) {
   field.on_surface.assign(4096, 1);
   field.error_bound.assign(4096, 0.0);
   write_vdb(directory / "out.vdb", field);
-  const auto grids = read_grids(directory / "out.vdb");
-  const auto crossings = grid_named<openvdb::FloatGrid>(*grids, "crossings");
-  const auto on_surface = grid_named<openvdb::BoolGrid>(*grids, "on_surface");
-  EXPECT_EQ(crossings->tree().leafCount() + on_surface->tree().leafCount(), 0U);
-  EXPECT_EQ(crossings->tree().activeTileCount(), 8U);
-  EXPECT_EQ(on_surface->tree().activeTileCount(), 8U);
-  EXPECT_TRUE(grid_named<openvdb::FloatGrid>(*grids, "degenerate")->tree().empty());
-  EXPECT_TRUE(grid_named<openvdb::FloatGrid>(*grids, "error_bound")->tree().empty());
+  const auto grids = read_vdb_grids(directory / "out.vdb");
+  const auto crossings = grid_named(grids, "crossings");
+  const auto on_surface = grid_named(grids, "on_surface", VdbType::kBool);
+  EXPECT_EQ(crossings->leaf_count() + on_surface->leaf_count(), 0U);
+  EXPECT_EQ(crossings->active_tile_count(), 8U);
+  EXPECT_EQ(on_surface->active_tile_count(), 8U);
+  EXPECT_TRUE(grid_named(grids, "degenerate")->is_empty());
+  EXPECT_TRUE(grid_named(grids, "error_bound")->is_empty());
 }
 
 TEST(WriteVdbDiagnostics, DependNotOnTheSlabs) {

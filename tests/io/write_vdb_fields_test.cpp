@@ -1,7 +1,5 @@
 // Grids of the several kinds of fields, and several of them in one file.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/Diagnostics.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +11,13 @@
 #include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
 using test::contents;
+using test::read_vdb_grid, test::VdbClass, test::VdbGridPtr, test::VdbType, test::VoxelIndex;
 using test::TemporaryDirectory;
 
 constexpr double kVoxel = 0.1;
@@ -28,20 +28,18 @@ const FieldDescription kDistance{"sdf", "sdf", "surface", FieldKind::kDistance, 
 
 Lattice lattice_around_zero() { return {{0, 0, 0}, {kVoxel, kVoxel, kVoxel}, {-30, -30, -30}, {61, 61, 61}}; }
 
-double radius_of(const openvdb::Coord& at) {
-  return kVoxel * std::sqrt(at.x() * at.x() + at.y() * at.y() + at.z() * at.z());
-}
+double radius_of(const VoxelIndex& at) { return kVoxel * std::sqrt(at.x * at.x + at.y * at.y + at.z * at.z); }
 
 // A ball of radius 2: its signed distance clamped to three voxels.
-double distance_at(const openvdb::Coord& at) { return std::clamp(radius_of(at) - 2.0, -3 * kVoxel, 3 * kVoxel); }
+double distance_at(const VoxelIndex& at) { return std::clamp(radius_of(at) - 2.0, -3 * kVoxel, 3 * kVoxel); }
 
 template <typename Function>
 auto samples_of(const Lattice& lattice, const Function& function) {
-  std::vector<decltype(function(openvdb::Coord()))> numbers;
+  std::vector<decltype(function(VoxelIndex()))> numbers;
   for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
     for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
       for (std::int64_t i = lattice.index_min[0]; i <= lattice.index_max(0); ++i) {
-        numbers.push_back(function(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k))));
+        numbers.push_back(function(VoxelIndex{static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)}));
       }
     }
   }
@@ -55,20 +53,11 @@ void write_vdb(const std::string& path, const OutputDescription& description, co
   writer->finish({});
 }
 
-template <typename Grid>
-typename Grid::Ptr read_grid(const std::string& path, const std::string& name) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open(false);
-  return openvdb::gridPtrCast<Grid>(file.readGrid(name));
-}
-
-template <typename Grid = openvdb::FloatGrid>
-typename Grid::Ptr written_ball(const OutputDescription& description) {
+VdbGridPtr written_ball(const OutputDescription& description, VdbType type = VdbType::kFloat) {
   const TemporaryDirectory directory;
   const auto distances = samples_of(lattice_around_zero(), distance_at);
   write_vdb(directory / "out.vdb", description, {std::span(distances)});
-  return read_grid<Grid>(directory / "out.vdb", "surface");
+  return read_vdb_grid(directory / "out.vdb", "surface", type);
 }
 
 OutputDescription described(const std::vector<FieldDescription>& fields) {
@@ -85,21 +74,21 @@ TEST(WriteVdbFields, HoldsEveryFieldUnderItsName) {
   const auto distances = samples_of(lattice, distance_at);
   write_vdb(directory / "out.vdb", described({kInside, kDensity, kDistance}),
             {std::span(inside), std::span(density), std::span(distances)});
-  const auto bools = read_grid<openvdb::BoolGrid>(directory / "out.vdb", "inside");
-  const auto fog = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "density");
-  const auto surface = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface");
+  const auto bools = read_vdb_grid(directory / "out.vdb", "inside", VdbType::kBool);
+  const auto fog = read_vdb_grid(directory / "out.vdb", "density");
+  const auto surface = read_vdb_grid(directory / "out.vdb", "surface");
   ASSERT_TRUE(bools && fog && surface);
-  EXPECT_EQ(bools->getGridClass(), openvdb::GRID_UNKNOWN);
-  EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
-  EXPECT_EQ(surface->getGridClass(), openvdb::GRID_LEVEL_SET);
-  EXPECT_EQ(bools->metaValue<std::string>("raycone_rule"), "threshold=0.5");
-  EXPECT_EQ(surface->metaValue<std::string>("raycone_field"), "sdf");
-  EXPECT_FALSE(fog->getMetadata<openvdb::StringMetadata>("raycone_rule"));
+  EXPECT_EQ(bools->grid_class(), VdbClass::kUnknown);
+  EXPECT_EQ(fog->grid_class(), VdbClass::kFogVolume);
+  EXPECT_EQ(surface->grid_class(), VdbClass::kLevelSet);
+  EXPECT_EQ(bools->text("raycone_rule"), "threshold=0.5");
+  EXPECT_EQ(surface->text("raycone_field"), "sdf");
+  EXPECT_FALSE(fog->has_metadata("raycone_rule"));
   std::size_t n = 0;
-  samples_of(lattice, [&](const openvdb::Coord& at) {
-    EXPECT_EQ(bools->tree().getValue(at), inside[n] != 0) << at;
-    EXPECT_EQ(bools->tree().isValueOn(at), inside[n] != 0) << at;
-    EXPECT_EQ(fog->tree().getValue(at), static_cast<float>(density[n])) << at;
+  samples_of(lattice, [&](const VoxelIndex& at) {
+    EXPECT_EQ(bools->value(at), inside[n] != 0 ? 1 : 0) << at;
+    EXPECT_EQ(bools->is_active(at), inside[n] != 0) << at;
+    EXPECT_EQ(fog->value(at), static_cast<float>(density[n])) << at;
     return n++;
   });
 }
@@ -112,29 +101,29 @@ TEST(WriteVdbFields, FlagsThatHoldFarAwayAreTheBackground) {
   FieldDescription field = kInside;
   field.background = 1.0;
   write_vdb(directory / "out.vdb", described({field}), {std::span(inside)});
-  const auto grid = read_grid<openvdb::BoolGrid>(directory / "out.vdb", "inside");
-  EXPECT_TRUE(grid->background());
-  EXPECT_TRUE(grid->tree().getValue({1000, 0, 0}));
+  const auto grid = read_vdb_grid(directory / "out.vdb", "inside", VdbType::kBool);
+  EXPECT_EQ(grid->background(), 1);
+  EXPECT_EQ(grid->value({1000, 0, 0}), 1);
   std::size_t n = 0;
-  samples_of(lattice_around_zero(), [&](const openvdb::Coord& at) {
-    EXPECT_EQ(grid->tree().getValue(at), inside[n] != 0) << at;
-    EXPECT_EQ(grid->tree().isValueOn(at), inside[n] == 0) << at;
+  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+    EXPECT_EQ(grid->value(at), inside[n] != 0 ? 1 : 0) << at;
+    EXPECT_EQ(grid->is_active(at), inside[n] == 0) << at;
     return n++;
   });
 }
 
 TEST(WriteVdbFields, LevelSetsAreActiveExactlyInTheBand) {
   const auto grid = written_ball(described({kDistance}));
-  samples_of(lattice_around_zero(), [&](const openvdb::Coord& at) {
+  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
     const double distance = distance_at(at);
     const bool active = std::abs(distance) < 3 * kVoxel;
-    const float value = grid->tree().getValue(at);
-    EXPECT_EQ(grid->tree().isValueOn(at), active) << at;
+    const double value = grid->value(at);
+    EXPECT_EQ(grid->is_active(at), active) << at;
     EXPECT_NEAR(value, distance, 3e-8) << at;  // half a unit in the last place of 0.3, and that of the background
     EXPECT_EQ(std::abs(value) == grid->background(), !active) << at;
     return 0;
   });
-  EXPECT_EQ(grid->tree().getValue({1000, 0, 0}), grid->background());
+  EXPECT_EQ(grid->value({1000, 0, 0}), grid->background());
 }
 
 TEST(WriteVdbFields, LevelSetsPassOpenvdbsChecks) {
@@ -153,39 +142,38 @@ TEST(WriteVdbFields, LevelSetsPassOpenvdbsChecks) {
       writer->write(whole(lattice), {&values, 1});
       writer->finish({});
     }
-    EXPECT_EQ(openvdb::tools::checkLevelSet(*read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface"), 9), "")
-        << voxel;
+    EXPECT_EQ(read_vdb_grid(directory / "out.vdb", "surface")->level_set_faults(9), "") << voxel;
   }
 }
 
 TEST(WriteVdbFields, InteriorsOfLevelSetsAreInactiveTiles) {
   const auto grid = written_ball(described({kDistance}));
-  EXPECT_FALSE(grid->tree().hasActiveTiles());
-  EXPECT_FALSE(grid->tree().probeConstLeaf({0, 0, 0}));
-  EXPECT_EQ(grid->tree().getValue({0, 0, 0}), -grid->background());
-  EXPECT_EQ(grid->tree().getValueDepth({0, 0, 0}), 2) << "a tile of 8^3 voxels";
+  EXPECT_EQ(grid->active_tile_count(), 0U);
+  EXPECT_FALSE(grid->has_leaf({0, 0, 0}));
+  EXPECT_EQ(grid->value({0, 0, 0}), -grid->background());
+  EXPECT_EQ(grid->value_depth({0, 0, 0}), 2) << "a tile of 8^3 voxels";
 }
 
 // The largest double below the band is the band as a float: still not the background.
 TEST(WriteVdbFields, DistancesThatRoundToTheBandStayActive) {
   const TemporaryDirectory directory;
-  const auto distances = samples_of(lattice_around_zero(), [](const openvdb::Coord& at) {
+  const auto distances = samples_of(lattice_around_zero(), [](const VoxelIndex& at) {
     const double below = std::nextafter(3 * kVoxel, 0.0);
-    return at.x() == 5 ? below : at.x() == 6 ? -below : 3 * kVoxel;
+    return at.x == 5 ? below : at.x == 6 ? -below : 3 * kVoxel;
   });
   write_vdb(directory / "out.vdb", described({kDistance}), {std::span(distances)});
-  const auto grid = read_grid<openvdb::FloatGrid>(directory / "out.vdb", "surface");
-  EXPECT_EQ(grid->activeVoxelCount(), 2U * 61 * 61);
-  EXPECT_EQ(openvdb::tools::checkLevelSet(*grid, 8), "");
+  const auto grid = read_vdb_grid(directory / "out.vdb", "surface");
+  EXPECT_EQ(grid->active_voxel_count(), 2U * 61 * 61);
+  EXPECT_EQ(grid->level_set_faults(8), "");
 }
 
 TEST(WriteVdbFields, DoublesOnRequest) {
   OutputDescription description = described({kDistance});
   description.double_precision = true;
-  const auto grid = written_ball<openvdb::DoubleGrid>(description);
+  const auto grid = written_ball(description, VdbType::kDouble);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->background(), 3 * kVoxel);
-  EXPECT_EQ(grid->tree().getValue({19, 0, 0}), distance_at({19, 0, 0}));
+  EXPECT_EQ(grid->value({19, 0, 0}), distance_at({19, 0, 0}));
 }
 
 TEST(WriteVdbFields, PyopenvdbReadsThem) {

@@ -1,6 +1,4 @@
 #include <gtest/gtest.h>
-#include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -12,7 +10,6 @@
 #include <fstream>
 #include <functional>
 #include <random>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,12 +20,15 @@
 #include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
 using test::contents;
 using test::TemporaryDirectory;
+using test::VdbClass, test::VdbGrid, test::VdbGridPtr, test::VdbGridToWrite, test::VdbTransform, test::VdbType;
+using test::VoxelIndex, test::read_vdb_grid, test::write_vdb_grids;
 
 struct Field {
   Lattice lattice;
@@ -78,46 +78,37 @@ void write_vdb(const std::string& path, const Field& field, const OutputDescript
   test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9});
 }
 
-template <typename Grid = openvdb::FloatGrid>
-typename Grid::Ptr read_grid(const std::string& path, const std::string& name = "winding") {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open(false);
-  return openvdb::gridPtrCast<Grid>(file.readGrid(name));
-}
-
-template <typename Grid = openvdb::FloatGrid>
-typename Grid::Ptr written_grid(const Field& field, const OutputDescription& description = described()) {
+VdbGridPtr written_grid(const Field& field, const OutputDescription& description = described(),
+                        VdbType type = VdbType::kFloat) {
   const TemporaryDirectory directory;
   write_vdb(directory / "out.vdb", field, description);
-  return read_grid<Grid>(directory / "out.vdb");
+  return read_vdb_grid(directory / "out.vdb", "winding", type);
 }
 
 // Every voxel of the lattice, and one layer around it, has the value and activity that the field asks for.
-template <typename Grid>
-void expect_holds(const Grid& grid, const Field& field) {
-  using Value = typename Grid::ValueType;
+void expect_holds(const VdbGrid& grid, const Field& field) {
   const Lattice& lattice = field.lattice;
-  auto accessor = grid.getConstAccessor();
+  const bool wide = grid.type() == VdbType::kDouble;
   const auto inside = [&](std::int64_t n, std::size_t axis) { return 0 <= n && n < lattice.counts[axis]; };
   std::size_t active = 0;
   for (std::int64_t z = -1; z <= lattice.counts[2]; ++z) {
     for (std::int64_t y = -1; y <= lattice.counts[1]; ++y) {
       for (std::int64_t x = -1; x <= lattice.counts[0]; ++x) {
-        Value expected = 0;
+        double expected = 0;
         if (inside(x, 0) && inside(y, 1) && inside(z, 2)) {
           const std::int64_t n = (z * lattice.counts[1] + y) * lattice.counts[0] + x;
-          expected = static_cast<Value>(field.values[static_cast<std::size_t>(n)]);
+          const double value = field.values[static_cast<std::size_t>(n)];
+          expected = wide ? value : static_cast<float>(value);
         }
-        const openvdb::Coord at(static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),
-                                static_cast<int>(lattice.index_min[2] + z));
-        ASSERT_EQ(accessor.getValue(at), expected) << at;
-        ASSERT_EQ(accessor.isValueOn(at), expected != 0) << at;
+        const VoxelIndex at{static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),
+                            static_cast<int>(lattice.index_min[2] + z)};
+        ASSERT_EQ(grid.value(at), expected) << at;
+        ASSERT_EQ(grid.is_active(at), expected != 0) << at;
         active += expected != 0 ? 1 : 0;
       }
     }
   }
-  EXPECT_EQ(grid.activeVoxelCount(), active);
+  EXPECT_EQ(grid.active_voxel_count(), active);
 }
 
 template <typename Action>
@@ -138,7 +129,7 @@ TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_fie
 TEST(WriteVdb, HoldsDoublesOnRequest) {
   OutputDescription description = described();
   description.double_precision = true;
-  expect_holds(*written_grid<openvdb::DoubleGrid>(random_field(), description), random_field());
+  expect_holds(*written_grid(random_field(), description, VdbType::kDouble), random_field());
 }
 
 TEST(WriteVdb, HoldsASingleSample) {
@@ -157,45 +148,44 @@ TEST(WriteVdb, DoesNotDependOnTheSlabs) {
 
 TEST(WriteVdb, StoresNothingForZeros) {
   const auto grid = written_grid(field_of({40, 40, 40}, [](auto, auto, auto) { return -0.0; }));
-  EXPECT_TRUE(grid->tree().empty());
+  EXPECT_TRUE(grid->is_empty());
 }
 
 // What is 0 in single precision is background, however it was computed.
 TEST(WriteVdb, StoredValuesDecideActivity) {
   const auto grid = written_grid(field_of({9, 9, 9}, [](auto x, auto, auto) { return x == 4 ? 1e-300 : -0.0; }));
-  EXPECT_TRUE(grid->tree().empty());
+  EXPECT_TRUE(grid->is_empty());
 }
 
 TEST(WriteVdb, NegativeZeroIsStoredAsZero) {
   const auto grid = written_grid(field_of({9, 9, 9}, [](auto x, auto, auto) { return x == 4 ? 1.0 : -0.0; }));
-  auto accessor = grid->getConstAccessor();
-  EXPECT_EQ(accessor.getValue({-9, 0, -20}), 1.0F);
-  EXPECT_FALSE(std::signbit(accessor.getValue({-8, 0, -20})));
+  EXPECT_EQ(grid->value({-9, 0, -20}), 1.0);
+  EXPECT_FALSE(std::signbit(grid->value({-8, 0, -20})));
 }
 
 TEST(WriteVdb, ConstantBlocksAreTiles) {
   Field field = field_of({64, 64, 64}, [](auto, auto, auto) { return 1.0; });
   field.lattice.index_min = {-32, 0, 64};
   const auto grid = written_grid(field);
-  EXPECT_EQ(grid->tree().leafCount(), 0U);
-  EXPECT_EQ(grid->tree().activeTileCount(), 512U);
+  EXPECT_EQ(grid->leaf_count(), 0U);
+  EXPECT_EQ(grid->active_tile_count(), 512U);
   expect_holds(*grid, field);
 }
 
 TEST(WriteVdb, LargeConstantBlocksAreLargeTiles) {
   Field field = field_of({128, 128, 128}, [](auto, auto, auto) { return 1.0; });
   field.lattice.index_min = {-128, 0, 128};
-  EXPECT_EQ(written_grid(field)->tree().activeTileCount(), 1U);
+  EXPECT_EQ(written_grid(field)->active_tile_count(), 1U);
 }
 
 TEST(WriteVdb, TransformPlacesSamplesWhereTheyWereTaken) {
   const Field field = random_field();
   const auto grid = written_grid(field);
-  const openvdb::Vec3d world = grid->transform().indexToWorld(openvdb::Coord(-13, 5, 2));
-  EXPECT_EQ(world.x(), field.lattice.coordinate(0, -13));
-  EXPECT_EQ(world.y(), field.lattice.coordinate(1, 5));
-  EXPECT_EQ(world.z(), field.lattice.coordinate(2, 2));
-  EXPECT_FALSE(grid->transform().hasUniformScale());
+  const Vec3 world = grid->position({-13, 5, 2});
+  EXPECT_EQ(world.x, field.lattice.coordinate(0, -13));
+  EXPECT_EQ(world.y, field.lattice.coordinate(1, 5));
+  EXPECT_EQ(world.z, field.lattice.coordinate(2, 2));
+  EXPECT_FALSE(grid->has_uniform_scale());
 }
 
 // OpenVDB's constructors of transforms would round these spacings to one.
@@ -214,33 +204,33 @@ TEST(WriteVdb, CubicVoxelsHaveUniformScale) {
   Field field = random_field();
   field.lattice.spacing = {0.1, 0.1, 0.1};
   const auto grid = written_grid(field);
-  EXPECT_TRUE(grid->transform().hasUniformScale());
-  EXPECT_EQ(grid->transform().indexToWorld(openvdb::Coord(-13, 5, 2)).x(), field.lattice.coordinate(0, -13));
+  EXPECT_TRUE(grid->has_uniform_scale());
+  EXPECT_EQ(grid->position({-13, 5, 2}).x, field.lattice.coordinate(0, -13));
 }
 
 TEST(WriteVdb, DescribesItself) {
   OutputDescription description = described();
   description.fields.front().rule = "threshold=0.5";
   const auto grid = written_grid(random_field(), description);
-  EXPECT_EQ(grid->getName(), "winding");
-  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_UNKNOWN);
-  EXPECT_EQ(grid->background(), 0.0F);
-  EXPECT_FALSE(grid->metaValue<std::string>("raycone_version").empty());
-  EXPECT_EQ(grid->metaValue<std::string>("raycone_field"), "winding");
-  EXPECT_EQ(grid->metaValue<std::string>("raycone_rule"), "threshold=0.5");
-  EXPECT_EQ(grid->metaValue<std::string>("raycone_mesh"), "bunny.obj");
-  EXPECT_EQ(grid->metaValue<std::string>("raycone_sha256"), "0123456789abcdef");
-  EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("raycone_index_min"), openvdb::Vec3i(-13, -3, -21));
-  EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("raycone_index_max"), openvdb::Vec3i(15, 14, 15));
-  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_faces"), 5'000'000'000);
-  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_exterior_edges"), 42);
-  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_degenerate"), 7);
-  EXPECT_EQ(grid->metaValue<openvdb::Int64>("raycone_on_surface"), 9);
+  EXPECT_EQ(grid->name(), "winding");
+  EXPECT_EQ(grid->grid_class(), VdbClass::kUnknown);
+  EXPECT_EQ(grid->background(), 0.0);
+  EXPECT_FALSE(grid->text("raycone_version").empty());
+  EXPECT_EQ(grid->text("raycone_field"), "winding");
+  EXPECT_EQ(grid->text("raycone_rule"), "threshold=0.5");
+  EXPECT_EQ(grid->text("raycone_mesh"), "bunny.obj");
+  EXPECT_EQ(grid->text("raycone_sha256"), "0123456789abcdef");
+  EXPECT_EQ(grid->index("raycone_index_min"), (std::array<int, 3>{-13, -3, -21}));
+  EXPECT_EQ(grid->index("raycone_index_max"), (std::array<int, 3>{15, 14, 15}));
+  EXPECT_EQ(grid->integer("raycone_faces"), 5'000'000'000);
+  EXPECT_EQ(grid->integer("raycone_exterior_edges"), 42);
+  EXPECT_EQ(grid->integer("raycone_degenerate"), 7);
+  EXPECT_EQ(grid->integer("raycone_on_surface"), 9);
 }
 
 TEST(WriteVdb, HasNoRuleWhereTheFieldHasNone) {
   const auto grid = written_grid(random_field());
-  EXPECT_EQ((*grid)["raycone_rule"], nullptr);
+  EXPECT_FALSE(grid->has_metadata("raycone_rule"));
 }
 
 // Neither the clock, nor the directory, nor OpenVDB's random identifier show.
@@ -362,7 +352,7 @@ TEST(WriteVdb, RefusesIndicesBeyond32Bits) {
   Field field = field_of({2, 1, 1}, [](auto, auto, auto) { return 1.0; });
   field.lattice.index_min[0] = 2147483646;
   write_vdb(directory / "out.vdb", field);
-  EXPECT_EQ(read_grid(directory / "out.vdb")->tree().getValue({2147483647, -3, -21}), 1.0F);
+  EXPECT_EQ(read_vdb_grid(directory / "out.vdb", "winding")->value({2147483647, -3, -21}), 1.0);
   field.lattice.index_min[0] = 2147483647;
   EXPECT_EQ(output_error_of([&] { write_vdb(directory / "out.vdb", field); }),
             directory / "out.vdb" + ": lattice indices 2147483647 to 2147483648 do not fit in the 32 bits of OpenVDB");
@@ -393,20 +383,10 @@ TEST(WriteVdb, PyopenvdbReadsIt) {
 
 // --- read_vdb_lattice
 
-// Writes grids as another program would.
-void write_grids(const std::string& path, const openvdb::GridCPtrVec& grids) { openvdb::io::File(path).write(grids); }
-
-openvdb::FloatGrid::Ptr named_grid(const std::string& name, const openvdb::math::Transform::Ptr& transform) {
-  openvdb::initialize();
-  auto grid = openvdb::FloatGrid::create();
-  grid->setName(name);
-  grid->setTransform(transform);
-  grid->tree().setValue({-5, 2, 30}, 1.0F);
-  grid->tree().setValue({4, 2, 100}, 1.0F);
-  return grid;
+// As another program would write it.
+VdbGridToWrite named_grid(const std::string& name, const VdbTransform& transform) {
+  return {name, transform, {{-5, 2, 30}, {4, 2, 100}}};
 }
-
-openvdb::math::Transform::Ptr cubic(double size) { return openvdb::math::Transform::createLinearTransform(size); }
 
 std::string input_error_of(const std::string& path, const std::string& name) {
   try {
@@ -442,54 +422,32 @@ TEST(ReadVdbLattice, ReturnsTheRecordedLatticeOfAnEmptyGrid) {
 
 TEST(ReadVdbLattice, ReturnsTheBoxOfActiveVoxelsOfOtherPrograms) {
   const TemporaryDirectory directory;
-  const auto transform = cubic(0.5);
-  transform->postTranslate(openvdb::Vec3d(1, 2, 3));
-  write_grids(directory / "in.vdb", {named_grid("density", transform)});
+  write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform(0.5).translate({1, 2, 3}))});
   expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{1, 2, 3}, {0.5, 0.5, 0.5}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, ReadsTheTreeWhereTheFileHasNoStatistics) {
   const TemporaryDirectory directory;
-  const auto grid = named_grid("density", cubic(2));
-  openvdb::io::File file(directory / "in.vdb");
-  file.setGridStatsMetadataEnabled(false);
-  file.write(openvdb::GridCPtrVec{grid});
+  write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform(2))}, test::VdbStatistics::kWithout);
   expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, ReadsStreamsWithoutTableOfContents) {
   const TemporaryDirectory directory;
-  {
-    const openvdb::GridCPtrVec grids{named_grid("a", cubic(1)), named_grid("b", cubic(2))};
-    std::ofstream file(directory / "in.vdb", std::ios::binary);
-    openvdb::io::Stream(file).write(grids);
-  }
+  test::write_vdb_stream(directory / "in.vdb", {named_grid("a", VdbTransform(1)), named_grid("b", VdbTransform(2))});
   expect_same(read_vdb_lattice(directory / "in.vdb", "b"), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
-}
-
-// As other programs store it: OpenVDB's own constructors would turn it into a map of scale and translation.
-openvdb::math::Transform::Ptr affine_transform(const openvdb::Mat4d& matrix) {
-  openvdb::initialize();
-  const openvdb::math::AffineMap map(matrix);
-  std::stringstream bytes;
-  openvdb::writeString(bytes, map.type());
-  map.write(bytes);
-  openvdb::io::setCurrentVersion(bytes);
-  auto transform = std::make_shared<openvdb::math::Transform>();
-  transform->read(bytes);
-  return transform;
 }
 
 TEST(ReadVdbLattice, AcceptsAnAffineMapThatScalesOnly) {
   const TemporaryDirectory directory;
-  const openvdb::Mat4d matrix(0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0);
-  write_grids(directory / "in.vdb", {named_grid("density", affine_transform(matrix))});
+  const std::array<double, 16> matrix{0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0};
+  write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform::affine(matrix))});
   expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{7, 8, 9}, {0.1, 0.2, 0.3}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, FindsGridsByName) {
   const TemporaryDirectory directory;
-  write_grids(directory / "in.vdb", {named_grid("b", cubic(2)), named_grid("a", cubic(1))});
+  write_vdb_grids(directory / "in.vdb", {named_grid("b", VdbTransform(2)), named_grid("a", VdbTransform(1))});
   EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "a").spacing.x, 1.0);
   EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "").spacing.x, 2.0);
   EXPECT_EQ(input_error_of(directory / "in.vdb", "c"),
@@ -498,32 +456,23 @@ TEST(ReadVdbLattice, FindsGridsByName) {
 
 TEST(ReadVdbLattice, RefusesOtherTransforms) {
   const TemporaryDirectory directory;
-  const auto message = [&](const openvdb::math::Transform::Ptr& transform) {
-    write_grids(directory / "in.vdb", {named_grid("g", transform)});
+  const auto message = [&](const VdbTransform& transform) {
+    write_vdb_grids(directory / "in.vdb", {named_grid("g", transform)});
     const std::string text = input_error_of(directory / "in.vdb", "");
     return text.substr((directory / "in.vdb").size());
   };
   const std::string expected = ", expected scale and translation only";
-  const auto rotated = cubic(1);
-  rotated->postRotate(0.5, openvdb::math::X_AXIS);
-  EXPECT_EQ(message(rotated), ": grid 'g' has a transform with rotation or shear" + expected);
-  const auto sheared = cubic(1);
-  sheared->postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
-  EXPECT_EQ(message(sheared), ": grid 'g' has a transform with rotation or shear" + expected);
-  const auto mirrored = cubic(1);
-  mirrored->postScale(openvdb::Vec3d(1, -1, 1));
-  EXPECT_EQ(message(mirrored), ": grid 'g' has a transform with negative scale" + expected);
-  const openvdb::BBoxd box(openvdb::Vec3d(0), openvdb::Vec3d(10));
-  EXPECT_EQ(message(openvdb::math::Transform::createFrustumTransform(box, 0.5, 10)),
-            ": grid 'g' has a frustum transform" + expected);
+  EXPECT_EQ(message(VdbTransform(1).rotate_about_x(0.5)),
+            ": grid 'g' has a transform with rotation or shear" + expected);
+  EXPECT_EQ(message(VdbTransform(1).shear_x_along_y(0.5)),
+            ": grid 'g' has a transform with rotation or shear" + expected);
+  EXPECT_EQ(message(VdbTransform(1).scale({1, -1, 1})), ": grid 'g' has a transform with negative scale" + expected);
+  EXPECT_EQ(message(VdbTransform::frustum()), ": grid 'g' has a frustum transform" + expected);
 }
 
 TEST(ReadVdbLattice, RefusesAnEmptyGridWithoutRecordedLattice) {
   const TemporaryDirectory directory;
-  openvdb::initialize();
-  const auto grid = openvdb::FloatGrid::create();
-  grid->setName("g");
-  write_grids(directory / "in.vdb", {grid});
+  write_vdb_grids(directory / "in.vdb", {{"g", VdbTransform(), {}}});
   EXPECT_EQ(input_error_of(directory / "in.vdb", ""),
             directory / "in.vdb" + ": grid 'g' has no active voxels, expected some, or a lattice recorded by raycone");
 }

@@ -15,7 +15,7 @@
 
 namespace raycone::test {
 
-using MeshReader = ParsedMesh (*)(const MeshSource&);
+using MeshReader = ParsedMesh (*)(const NamedBytes&);
 
 // Messages name the file "f".
 inline ParsedMesh parse(MeshReader reader, std::string_view bytes) { return reader({"f", "", bytes}); }

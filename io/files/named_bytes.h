@@ -6,7 +6,7 @@
 
 namespace raycone {
 
-struct MeshSource {
+struct NamedBytes {
   std::string name;       // as given on the command line
   std::string directory;  // where relative URIs of glTF start; empty: they are refused (standard input)
   std::string_view bytes;

@@ -1,0 +1,80 @@
+#include "io/vdb/check_lattice.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+
+#include "io/files/file_error.h"
+
+namespace raycone::vdb {
+namespace {
+
+void check_indices(const Lattice& lattice, const std::string& name) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)];
+    const std::int64_t last = lattice.index_max(axis);
+    if (first < std::numeric_limits<std::int32_t>::min() || last > std::numeric_limits<std::int32_t>::max()) {
+      throw OutputError(name + ": lattice indices " + std::to_string(first) + " to " + std::to_string(last) +
+                        " do not fit in the 32 bits of OpenVDB");
+    }
+  }
+}
+
+// The voxel that OpenVDB gives to copies of a grid, also while it writes one: the difference of two positions.
+Vec3 copied_spacing(const Lattice& lattice) {
+  Vec3 result{};
+  for (int axis = 0; axis < 3; ++axis) {
+    result[axis] = (lattice.origin[axis] + lattice.spacing[axis]) - lattice.origin[axis];
+  }
+  return result;
+}
+
+// OpenVDB takes a transform whose determinant is below 3e-15 for singular, however well scaled it is.
+void check_voxels(const Lattice& lattice, const std::string& name) {
+  constexpr double kLeastVolume = 3e-15;
+  const auto volume_of = [](const Vec3& spacing) { return spacing.x * spacing.y * spacing.z; };
+  const Vec3& spacing = lattice.spacing;
+  const double volume = volume_of(spacing);
+  char message[200];
+  if (volume < kLeastVolume) {
+    const double mean_exponent = (std::log10(spacing.x) + std::log10(spacing.y) + std::log10(spacing.z)) / 3;
+    std::snprintf(message, sizeof message,
+                  ": voxel volume %.2g is below 3e-15, which OpenVDB cannot represent; scale the mesh (--scale 1e%.0f)",
+                  volume, -std::floor(mean_exponent));
+    throw OutputError(name + message);
+  }
+  if (!(volume_of(copied_spacing(lattice)) >= kLeastVolume)) {  // infinity times 0 is refused, too
+    std::snprintf(message, sizeof message,
+                  ": voxels of %.2g x %.2g x %.2g at (%.2g, %.2g, %.2g) are too small beside their coordinates, which "
+                  "OpenVDB cannot represent; expected larger ones, or bounds nearer to 0",
+                  spacing.x, spacing.y, spacing.z, lattice.origin.x, lattice.origin.y, lattice.origin.z);
+    throw OutputError(name + message);
+  }
+}
+
+// Halves range from 2^-14, below which they lose digits, to 65504.
+void check_half(const OutputDescription& description, const Lattice& lattice, const std::string& name) {
+  if (!description.half_precision) return;
+  for (const FieldDescription& field : description.fields) {
+    if (field.kind != FieldKind::kDistance) continue;
+    if (lattice.spacing.x >= 0x1p-14 && field.background <= 65504) continue;
+    char message[160];
+    std::snprintf(
+        message, sizeof message,
+        ": distances from one voxel, %.2g, to the band's %.2g are not in the range 6.2e-5 to 65504 of --half; "
+        "scale the mesh (--scale)",
+        lattice.spacing.x, field.background);
+    throw OutputError(name + message);
+  }
+}
+
+}  // namespace
+
+void check_lattice(const Lattice& lattice, const OutputDescription& description, const std::string& name) {
+  check_indices(lattice, name);
+  check_voxels(lattice, name);
+  check_half(description, lattice, name);
+}
+
+}  // namespace raycone::vdb

@@ -1,0 +1,75 @@
+// What grids keep of the numbers of a field. Each type here turns a field's Number into a grid's Stored value.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "io/fields/field_writer.h"
+#include "io/fields/narrowing.h"
+
+namespace raycone::vdb {
+
+// Whether the user chooses the precision of fields of this kind: of all but diagnostics.
+[[nodiscard]] bool has_chosen_precision(FieldKind kind);
+
+// Rounds to floats, with `half` to those that fit in 16 bits.
+[[nodiscard]] Narrowing narrowing_of(const FieldDescription& field, bool half);
+
+// A bound as a float that still is one.
+[[nodiscard]] float rounded_up(double bound);
+
+// The least value that is no narrower than the band, also as OpenVDB's checkLevelSet measures it: in voxels. With
+// `half`, of those that fit in 16 bits. Value: float or double.
+template <typename Value>
+[[nodiscard]] Value level_set_background(double band_width, double voxel, bool half);
+
+// A byte, as several threads cannot write to the bits of one.
+struct StoreFlag {
+  using Number = std::uint8_t;
+  using Stored = std::uint8_t;
+  Stored operator()(Number flag) const { return flag; }
+};
+
+// Floats: pyopenvdb reads no file that holds a grid of integers.
+struct StoreCount {
+  using Number = std::int64_t;
+  using Stored = float;
+  Stored operator()(Number count) const { return static_cast<float>(static_cast<double>(count)); }
+};
+
+struct StoreBound {
+  using Number = double;
+  using Stored = float;
+  Stored operator()(Number bound) const { return rounded_up(bound); }
+};
+
+// Adding 0 turns -0 into 0, here and below.
+struct StoreFloat {
+  using Number = double;
+  using Stored = float;
+  Stored operator()(Number number) const { return narrowing(number) + 0.0F; }
+  Narrowing narrowing;
+};
+
+struct StoreDouble {
+  using Number = double;
+  using Stored = double;
+  Stored operator()(Number number) const { return number + 0.0; }
+};
+
+// A distance of `band_width` or more is stored as the background, a lesser one as a value of lesser magnitude.
+template <typename Value>
+struct StoreDistance {
+  using Number = double;
+  using Stored = Value;
+  Stored operator()(Number distance) const {
+    if (std::abs(distance) >= band_width) return distance < 0 ? -background : background;
+    const Value most = std::nextafter(background, Value{0});
+    return std::clamp(static_cast<Value>(distance), -most, most) + Value{0};
+  }
+  double band_width;
+  Value background;
+};
+
+}  // namespace raycone::vdb

@@ -224,7 +224,7 @@ MUTANTS = [
     Mutant("cut_turned_over", "no triangle is turned over", [
         ("core/mesh/polygon_cut.cpp",
          "if (turn(links_[low].point, p, links_[high].point) <= 0) return false;",
-         "if (turn(links_[low].place, p, links_[high].place) == 0) return false;")]),
+         "if (turn(links_[low].point, p, links_[high].point) == 0) return false;")]),
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [

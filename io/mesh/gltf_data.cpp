@@ -109,6 +109,7 @@ GltfData::GltfData(const NamedBytes& source, GltfDocument document, std::optiona
       model_(load_model(document.json, source.name)),
       buffers_(std::move(document.buffers)),
       strides_(std::move(document.strides)),
+      sparse_(std::move(document.sparse)),
       binary_chunk_(binary_chunk),
       companions_(companions),
       loaded_(buffers_.size()) {
@@ -221,22 +222,22 @@ std::vector<Element> GltfData::read(std::size_t index, std::size_t components,
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = (dense.*get)(i);
   }
   if (!accessor.sparse.isSparse) return result;
-  const auto& [count, is_sparse, indices, values] = accessor.sparse;
+  const auto& [count, indices_offset, values_offset] = sparse_[index];
+  const auto& indices = accessor.sparse.indices;
   if (!is_index_type(indices.componentType)) {
     fail("accessor", index, "has sparse indices that are not unsigned integers");
   }
-  const auto targets =
-      elements(index, indices.bufferView, to_size(indices.byteOffset), indices.componentType, 1, to_size(count));
-  const auto sparse = elements(index, values.bufferView, to_size(values.byteOffset), accessor.componentType, components,
-                               to_size(count));
-  spend(to_size(count));
-  for (std::size_t i = 0; i < to_size(count); ++i) {
+  const Elements targets = elements(index, indices.bufferView, indices_offset, indices.componentType, 1, count);
+  const Elements values =
+      elements(index, accessor.sparse.values.bufferView, values_offset, accessor.componentType, components, count);
+  spend(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t target = targets.index(i);
     if (target >= result.size()) {
       fail("accessor", index,
            "has sparse index " + std::to_string(target) + ", but only " + std::to_string(result.size()) + " elements");
     }
-    result[target] = (sparse.*get)(i);
+    result[target] = (values.*get)(i);
   }
   return result;
 }

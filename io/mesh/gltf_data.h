@@ -64,6 +64,7 @@ class GltfData {
   std::shared_ptr<const tinygltf::Model> model_;
   std::vector<GltfBuffer> buffers_;
   std::vector<std::uint64_t> strides_;  // of the buffer views
+  std::vector<GltfSparse> sparse_;      // of the accessors
   std::optional<std::string_view> binary_chunk_;
   std::vector<FileRead>* companions_;
   std::vector<std::optional<std::string_view>> loaded_;  // buffers

@@ -72,14 +72,14 @@ constexpr Row kRows[]{
     {"accessors[].normalized", kFlag},
     {"accessors[].count", kCount, "", kRequired},
     {"accessors[].type", kText},
-    {"accessors[].sparse.count", kCount, "", kRequired, kInt},
+    {"accessors[].sparse.count", kCount, "", kRequired},
     {"accessors[].sparse.indices", kObject, "", kRequired},
     {"accessors[].sparse.indices.bufferView", kIndex, "bufferView", kRequired},
-    {"accessors[].sparse.indices.byteOffset", kCount, "", kOptional, kInt},
+    {"accessors[].sparse.indices.byteOffset", kCount},
     {"accessors[].sparse.indices.componentType", kCount, "", kRequired, kInt},
     {"accessors[].sparse.values", kObject, "", kRequired},
     {"accessors[].sparse.values.bufferView", kIndex, "bufferView", kRequired},
-    {"accessors[].sparse.values.byteOffset", kCount, "", kOptional, kInt},
+    {"accessors[].sparse.values.byteOffset", kCount},
     {"meshes[]", kObject, "mesh"},
     {"meshes[].weights[]", kNumber},
     {"meshes[].primitives[]", kObject, "primitive"},
@@ -279,6 +279,13 @@ void replace_unknown_types(Json& accessor) {
   if (type < kByte || type > kFloat) accessor["componentType"] = kDouble;
 }
 
+// Moves the numbers that tinygltf would cut to 32 bits.
+GltfSparse take_sparse(Json& sparse) {
+  const auto take = [](Json& object, const char* key) { return std::exchange(object[key], 0).get<std::uint64_t>(); };
+  const auto offset = [&](Json& object) { return object.contains("byteOffset") ? take(object, "byteOffset") : 0; };
+  return {take(sparse, "count"), offset(sparse["indices"]), offset(sparse["values"])};
+}
+
 // Takes out of a checked document what tinygltf refuses, or would load by its own rules.
 GltfDocument adapted(Json root) {
   GltfDocument document;
@@ -288,7 +295,10 @@ GltfDocument adapted(Json root) {
     document.strides.push_back(view.value("byteStride", std::uint64_t{0}));
     view.erase("byteStride");
   }
-  for (Json& accessor : root["accessors"]) replace_unknown_types(accessor);
+  for (Json& accessor : root["accessors"]) {
+    replace_unknown_types(accessor);
+    document.sparse.push_back(accessor.contains("sparse") ? take_sparse(accessor["sparse"]) : GltfSparse{});
+  }
   for (Json& mesh : root["meshes"]) {
     for (Json& primitive : mesh["primitives"]) {
       if (!primitive.contains(kGltfIndices)) continue;

@@ -18,10 +18,17 @@ struct GltfBuffer {
   std::string fallback_of;  // the compression extension that this buffer is the uncompressed fallback of, or empty
 };
 
+struct GltfSparse {
+  std::uint64_t count = 0;
+  std::uint64_t indices_offset = 0;
+  std::uint64_t values_offset = 0;
+};
+
 // Every reference from one array into another is in range.
 struct GltfDocument {
   std::vector<GltfBuffer> buffers;
   std::vector<std::uint64_t> strides;  // of the buffer views; 0: elements follow each other without gaps
+  std::vector<GltfSparse> sparse;      // of the accessors
   // All else, for tinygltf. The indices of a primitive stand beside its attributes, because tinygltf refuses some.
   std::string json;
 };

@@ -354,7 +354,31 @@ add("buffer_bad_base64.gltf", put("buffers", 0, "uri", "data:;base64,@@@@"), 2, 
 add("buffer_cut_base64.gltf", put("buffers", 0, "uri", data_uri(POSITIONS + INDICES)[:-3]), 2, "buffer 0: \"data:application/octet-stream;base64\" is not")
 add("buffer_nul_in_uri.gltf", put("buffers", 0, "uri", "a%00b"), 2, "buffer 0: \"a%00b\" is not a file name")
 add("data_uri_bomb.gltf", put("buffers", 0, {"byteLength": 4000000000000, "uri": data_uri(b"x")}), 2, "buffer 0 has 1 bytes, expected 4000000000000")
-add("draco_required.gltf", gltf(lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"])), 2, "KHR_draco_mesh_compression")
+add("draco_required.gltf", gltf(lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"])), 0)
+
+
+def draco(stream, vertices, corners):
+    extension = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+
+    def change(document):
+        document["extensionsRequired"] = list(extension)
+        document["meshes"][0]["primitives"][0]["extensions"] = extension
+        document["accessors"] = [{"componentType": 5126, "count": vertices, "type": "VEC3"},
+                                 {"componentType": 5125, "count": corners, "type": "SCALAR"}]
+        document["bufferViews"] = [{"buffer": 0, "byteLength": len(stream)}]
+        document["buffers"] = [{"byteLength": len(stream), "uri": data_uri(stream)}]
+
+    return gltf(change)
+
+
+# Header, no metadata, varints of faces and points, indices of 8 bits, one attribute of three floats, generic.
+DRACO_HEADER = b"DRACO\x02\x02\x01\x00\x00\x00"
+DRACO = (DRACO_HEADER + bytes([4, 4, 1]) + bytes(i for f in FACES for i in f) + bytes([1, 1, 0, 9, 3, 0, 0, 0]) + POSITIONS)
+add("draco.gltf", draco(DRACO, 4, 12), 0)
+add("draco_cut.gltf", draco(DRACO[:-1], 4, 12), 2, "mesh 0, primitive 0: Draco data cannot be decoded")
+add("draco_counts.gltf", draco(DRACO, 5, 12), 2, "Draco data of 4 vertices, but the accessor has 5")
+add("draco_index.gltf", draco(DRACO[:14] + b"\x07" + DRACO[15:], 4, 12), 2, "mesh 0, primitive 0: ")
+add("draco_billions.gltf", draco(DRACO_HEADER + b"\xff\xff\xff\xff\x0f\x03" + bytes(50), 4, 12), 4, "claim to hold far more")
 add("unknown_required.gltf", gltf(lambda d: d.update(extensionsRequired=["EXT_unheard_of"])), 2, "EXT_unheard_of")
 add("sparse_index_beyond.gltf", put("accessors", 0, "sparse", {"count": 1, "indices": {"bufferView": 1, "byteOffset": 22, "componentType": 5123}, "values": {"bufferView": 0}}).replace('"count": 4,', '"count": 3,'), 2, "accessor 0 has sparse index 3, but only 3 elements")
 add("sparse_count_billions.gltf", put("accessors", 0, "sparse", {"count": 4000000000, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}), 2, "accessor 0 has 4000000000 elements of 2 bytes at byte 0,")

@@ -25,6 +25,7 @@ function(raycone_folder folder)
   if(arg_SOURCES)
     add_library(${name} OBJECT ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE raycone_flags ${name}_headers ${arg_USES})
+    set_target_properties(${name} PROPERTIES UNITY_BUILD "${RAYCONE_UNITY}")
   endif()
 endfunction()
 

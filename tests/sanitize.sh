@@ -6,6 +6,7 @@
 # docs/developing.md.
 set -eu
 cd "$(dirname "$0")/.."
+. tests/phases.sh
 jobs=$(nproc)
 
 # Suites whose tests start the executable. BatchCost compares it with its own process.
@@ -16,13 +17,15 @@ suites=$(grep -lE 'run_raycone|raycone_command|batch_fixture' tests/app/*_test.c
 black_box() {
   preset=$1
   shift
-  RAYCONE_TEST_EXECUTABLE=$PWD/build/$preset/app/raycone \
+  export RAYCONE_TEST_EXECUTABLE="$PWD/build/$preset/app/raycone"
+  phase "test $preset: the tool" \
     ctest --preset dev --parallel "$jobs" --output-log "build/$preset/ctest.log" -R "^($suites)\." "$@"
   sh tests/check_skipped.sh "build/$preset/ctest.log" "build/$preset"
+  unset RAYCONE_TEST_EXECUTABLE
 }
 
 sh app/install_packages.sh --tests
-cmake --build --preset dev --parallel "$jobs" --target raycone_tests
+phase "build dev" cmake --build --preset dev --parallel "$jobs" --target raycone_tests
 
 # GCC 12's sanitizers take a loaded module's thread-local storage for that of an older C library where it happens to begin
 # 16 bytes behind a page's start, and die of the addresses that they read there: they need not look.
@@ -30,13 +33,14 @@ tls=intercept_tls_get_addr=0
 
 export ASAN_OPTIONS=$tls UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 cmake --preset asan-ubsan
-cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
+phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
 black_box asan-ubsan
-ctest --preset asan-ubsan --parallel "$jobs" --output-log build/asan-ubsan/ctest.log \
+phase 'test asan-ubsan: files and faults' \
+  ctest --preset asan-ubsan --parallel "$jobs" --output-log build/asan-ubsan/ctest-files.log \
   -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'
-sh tests/check_skipped.sh build/asan-ubsan/ctest.log build/asan-ubsan
+sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
 
 export TSAN_OPTIONS=$tls:suppressions=$PWD/tests/tsan.supp
 cmake --preset tsan
-cmake --build --preset tsan --parallel "$jobs" --target raycone
+phase "build tsan" cmake --build --preset tsan --parallel "$jobs" --target raycone
 black_box tsan -E NeverMoreThreadsAreBusyThanAllowed  # it counts those of core/machine/threads.cpp, which this build replaces

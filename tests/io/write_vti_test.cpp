@@ -39,6 +39,12 @@ for array in image[0][0]:
 assert data[end:] == b'\n  </AppendedData>\n</VTKFile>\n', data[end:end + 50]
 )";
 
+// A program that reads the file, and then holds `assertions`.
+std::string with_reader(const char* assertions) {
+  std::string program = kReader;
+  return program += assertions;
+}
+
 Lattice small_lattice() { return {{0.1, -2, 1e-3}, {0.5, 0.25, 3}, {-3, 5, 7}, {4, 3, 2}}; }
 
 OutputDescription described() {
@@ -73,7 +79,7 @@ TEST(WriteVti, HoldsEveryFieldWithXFastest) {
   if (!test::python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
   const TemporaryDirectory directory;
   write_vti(directory / "out.vti", described());
-  EXPECT_EQ(test::run_python(std::string(kReader) + R"(
+  EXPECT_EQ(test::run_python(with_reader(R"(
 assert extent == [-3, 0, 5, 7, 7, 8]
 assert image.attrib['Origin'] == '0.1 -2 0.001' and image.attrib['Spacing'] == '0.5 0.25 3'
 assert image[0].attrib['Extent'] == image.attrib['WholeExtent'] and image[0][0].attrib['Scalars'] == 'winding'
@@ -84,7 +90,7 @@ assert not numpy.signbit(w[0, 0, 0])
 assert arrays['inside'].dtype == 'u1' and arrays['inside'].nonzero()[2].tolist() == [3, 3]
 assert (arrays['crossings'] == 9007199254740993).all()
 assert arrays['error_bound'].dtype == 'f8' and (arrays['error_bound'] == 1e-300).all()
-)",
+)"),
                              {directory / "out.vti"}),
             "");
 }
@@ -95,8 +101,8 @@ TEST(WriteVti, DoublesOnRequest) {
   OutputDescription description = described();
   description.double_precision = true;
   write_vti(directory / "out.vti", description);
-  EXPECT_EQ(test::run_python(std::string(kReader) + "assert (arrays['winding'].ravel()[1:] == "
-                                                    "[0.1 * n for n in range(1, 24)]).all()\n",
+  EXPECT_EQ(test::run_python(with_reader("assert (arrays['winding'].ravel()[1:] == "
+                                                    "[0.1 * n for n in range(1, 24)]).all()\n"),
                              {directory / "out.vti"}),
             "");
 }

@@ -25,7 +25,11 @@ function(raycone_folder folder)
   if(arg_SOURCES)
     add_library(${name} OBJECT ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE raycone_flags ${name}_headers ${arg_USES})
-    set_target_properties(${name} PROPERTIES UNITY_BUILD "${RAYCONE_UNITY}")
+    if(RAYCONE_UNITY)
+      set_target_properties(${name} PROPERTIES UNITY_BUILD ON)
+      # To GCC a file's own types look like a header's then.
+      target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    endif()
   endif()
 endfunction()
 

@@ -59,9 +59,9 @@ std::vector<std::string> slowest_lines(const BatchRecords& records) {
   std::ranges::partial_sort(times, times.begin() + shown, std::greater<>());
   std::vector<std::string> lines;
   for (auto time = times.begin(); time != times.begin() + shown; ++time) {
-    char seconds[64];
-    std::snprintf(seconds, sizeof seconds, "slowest: %9.3f s  ", time->first);
-    lines.push_back(seconds + time->second);
+    char text[64];
+    std::snprintf(text, sizeof text, "slowest: %9.3f s  ", time->first);
+    lines.push_back(text + time->second);
   }
   return lines;
 }

@@ -15,6 +15,8 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
+inline constexpr Rgb kInk{24, 24, 28};  // of curves and numbers
+
 // In pixels: x to the right, y down, the top left corner of the picture is (0, 0), the centre of its first pixel
 // (0.5, 0.5).
 struct PicturePoint {

@@ -12,7 +12,6 @@
 namespace raycone {
 namespace {
 
-constexpr Rgb kInk{24, 24, 28};
 constexpr Rgb kPaper{255, 255, 255};
 constexpr double kPaperOpacity = 0.88;
 

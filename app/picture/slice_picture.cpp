@@ -10,8 +10,6 @@
 namespace raycone {
 namespace {
 
-constexpr Rgb kInk{24, 24, 28};
-
 // In pixels, of pictures of different sizes alike up to a lower limit.
 struct LineWidths {
   double section;

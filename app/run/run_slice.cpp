@@ -27,7 +27,7 @@ namespace raycone {
 namespace {
 
 // Points evaluated at a time.
-constexpr std::int64_t kPointBatch = std::int64_t{1} << 18;
+constexpr std::int64_t kPixelBatch = std::int64_t{1} << 18;
 
 // Refuses pictures that cannot fit, before any work on them.
 void check_slice_memory(const Slice& slice, const std::string& mesh, const RunLimits& limits) {
@@ -46,8 +46,8 @@ Tally evaluate_view(const WindingNumberEvaluator& evaluator, const PlaneView& vi
   Tally tally;
   std::vector<Vec3> points;
   const std::int64_t pixels = view.width * view.height;
-  for (std::int64_t first = 0; first < pixels; first += kPointBatch) {
-    const std::int64_t count = std::min(kPointBatch, pixels - first);
+  for (std::int64_t first = 0; first < pixels; first += kPixelBatch) {
+    const std::int64_t count = std::min(kPixelBatch, pixels - first);
     points.clear();
     for (std::int64_t n = first; n < first + count; ++n) points.push_back(view.centre(n % view.width, n / view.width));
     const auto part = values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));

@@ -29,7 +29,7 @@ constexpr double kLargest = std::numeric_limits<double>::max();  // of distances
 double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
 // From the origin. Its squares neither overflow nor vanish.
-double length(const Vec3& p) {
+double length_without_overflow(const Vec3& p) {
   int exponent = 0;
   std::frexp(largest_coordinate(p), &exponent);
   const Vec3 q = PowerOfTwo(-exponent)(p);
@@ -78,7 +78,7 @@ struct DistanceEvaluator::Implementation {
 
   [[nodiscard]] double distance_at(const Vec3& point) const {
     const Vec3 p = to_unit(point);
-    if (!(largest_coordinate(p) <= far_beyond)) return length(point);
+    if (!(largest_coordinate(p) <= far_beyond)) return length_without_overflow(point);
     return std::min(to_world(std::sqrt(nearest().squared_distance(p))), kLargest);
   }
 
@@ -157,7 +157,8 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
   const double* near_distance = near_distances.data();
   double* distance = distances.data();
   for_each_sample(block, [&](const LatticeIndex& sample) {
-    *distance++ = holds(near, sample) ? *near_distance++ : std::min(length(position(lattice, sample)), band);
+    *distance++ =
+        holds(near, sample) ? *near_distance++ : std::min(length_without_overflow(position(lattice, sample)), band);
   });
 }
 

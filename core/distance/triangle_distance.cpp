@@ -19,7 +19,6 @@ constexpr double u = 0x1p-53;
 constexpr double kProper = 0x1p-8;
 constexpr double kSlender = 4e-8;
 
-double square(const Vec3& v) { return dot(v, v); }
 double square(double x) { return x * x; }
 
 // 0 where the inverse could overflow: what is that short is taken for a point.

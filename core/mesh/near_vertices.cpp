@@ -10,7 +10,7 @@
 namespace raycone {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -67,7 +67,7 @@ class RepresentativeCells {
         runs_{Runs(vertices, 0, distance), Runs(vertices, 1, distance), Runs(vertices, 2, distance)} {
     cells_.reserve(vertices.size());
     for (const Vec3& p : vertices) {
-      if (is_finite(p)) cells_.push_back({index_of(p), kNone});
+      if (is_finite(p)) cells_.push_back({index_of(p), kNoVertex});
     }
     std::sort(cells_.begin(), cells_.end(),
               [](const OccupiedCell& a, const OccupiedCell& b) { return a.index < b.index; });
@@ -75,16 +75,16 @@ class RepresentativeCells {
     cells_.erase(std::unique(cells_.begin(), cells_.end(), same), cells_.end());
   }
 
-  // The first representative near p, or kNone. None is above p along x.
+  // The first representative near p, or kNoVertex. None is above p along x.
   [[nodiscard]] std::uint32_t find(const std::vector<Vec3>& representatives, const Vec3& p) const {
     const CellIndex at = index_of(p);
     const RunRange ys = runs_[1].near(p.y, at[1]), zs = runs_[2].near(p.z, at[2]);
-    std::uint32_t first = kNone;
+    std::uint32_t first = kNoVertex;
     for (std::uint32_t x = runs_[0].near(p.x, at[0]).first; x <= at[0]; ++x) {
       for (std::uint32_t y = ys.first; y <= ys.last; ++y) {
         for (auto cell = cell_from({x, y, zs.first}); cell != cells_.end() && cell->index <= CellIndex{x, y, zs.last};
              ++cell) {
-          for (std::uint32_t r = cell->newest; r != kNone; r = older_[r]) {
+          for (std::uint32_t r = cell->newest; r != kNoVertex; r = older_[r]) {
             if (is_near(representatives[r], p, distance_)) first = std::min(first, r);
           }
         }
@@ -95,7 +95,7 @@ class RepresentativeCells {
 
   // `index`: the number of representatives so far.
   void add(const Vec3& p, std::uint32_t index) {
-    older_.resize(index + std::size_t{1}, kNone);
+    older_.resize(index + std::size_t{1}, kNoVertex);
     if (is_finite(p)) older_[index] = std::exchange(cell_from(index_of(p))->newest, index);
   }
 
@@ -142,8 +142,8 @@ Representatives representatives_within(const std::vector<Vec3>& vertices, double
   Representatives result{{}, std::vector<std::uint32_t>(vertices.size())};
   for (const std::uint32_t i : order) {
     const Vec3& p = vertices[i];
-    std::uint32_t found = is_finite(p) ? cells.find(result.vertices, p) : kNone;
-    if (found == kNone) {
+    std::uint32_t found = is_finite(p) ? cells.find(result.vertices, p) : kNoVertex;
+    if (found == kNoVertex) {
       found = static_cast<std::uint32_t>(result.vertices.size());
       cells.add(p, found);
       result.vertices.push_back(p);

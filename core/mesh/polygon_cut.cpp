@@ -25,23 +25,23 @@ namespace raycone {
 namespace {
 
 using PointIndex = std::uint32_t;  // its number in the order of the sweep
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kNoCorner = 0xFFFFFFFF;
 
 // What of the polygon runs along a line, from a point that is known to `end`, further right.
 struct Run {
   PointIndex end;
-  PointIndex first;    // leftmost point of all runs that overlap on the line; kNone: an edge of the polygon, whole
+  PointIndex first;    // leftmost point of all runs that overlap on the line; kNoCorner: an edge of the polygon, whole
   std::int64_t count;  // how often to the right, less to the left
-  std::uint32_t next = kNone;  // in a list of runs that start at one point
+  std::uint32_t next = kNoCorner;  // in a list of runs that start at one point
 };
 
 struct Chain {
-  std::uint32_t bottom = kNone, top = kNone, latest = kNone;  // links
+  std::uint32_t bottom = kNoCorner, top = kNoCorner, latest = kNoCorner;  // links
 };
 
 struct Link {
   PointIndex point;
-  std::uint32_t below = kNone, above = kNone;
+  std::uint32_t below = kNoCorner, above = kNoCorner;
 };
 
 struct Gap {
@@ -96,7 +96,7 @@ class PolygonCut {
 
   // Of two runs from a point: 1 where the second is above the first. Those of one group need no exact number to tell.
   [[nodiscard]] int turn(PointIndex from, const Run& a, const Run& b) const {
-    return a.first == b.first && a.first != kNone ? 0 : turn(from, a.end, b.end);
+    return a.first == b.first && a.first != kNoCorner ? 0 : turn(from, a.end, b.end);
   }
 
   // 1 where the point is above the edge, 0 where it is on its line.
@@ -122,20 +122,20 @@ class PolygonCut {
       }
       point_of[corner] = static_cast<PointIndex>(corner_at_.size() - 1);
     }
-    starting_.assign(corner_at_.size(), kNone);
+    starting_.assign(corner_at_.size(), kNoCorner);
     ends_.assign(corner_at_.size(), 0);
     runs_.reserve(corners_.size());
     triangles_.reserve(corners_.size());
     for (std::size_t i = 0; i < point_of.size(); ++i) {
       const PointIndex a = point_of[i], b = point_of[i + 1 < point_of.size() ? i + 1 : 0];
-      if (a != b) add_run(std::min(a, b), {std::max(a, b), kNone, a < b ? 1 : -1});
+      if (a != b) add_run(std::min(a, b), {std::max(a, b), kNoCorner, a < b ? 1 : -1});
     }
     return true;
   }
 
   void add_run(PointIndex start, Run run) {
     run.next = starting_[start];
-    if (unused_ == kNone) {
+    if (unused_ == kNoCorner) {
       starting_[start] = static_cast<std::uint32_t>(runs_.size());
       runs_.push_back(run);
     } else {
@@ -147,7 +147,7 @@ class PolygonCut {
 
   // Moves the runs that start at a point to leaving_.
   void take_runs(PointIndex p) {
-    for (std::uint32_t i = starting_[p]; i != kNone;) {
+    for (std::uint32_t i = starting_[p]; i != kNoCorner;) {
       leaving_.push_back(runs_[i]);
       runs_[i].next = unused_;
       unused_ = i;
@@ -225,7 +225,7 @@ class PolygonCut {
     for (std::size_t i = end; i-- > begin;) {
       const Run& run = leaving_[i];
       count += run.count;
-      if (run.first == kNone) whole += run.count;
+      if (run.first == kNoCorner) whole += run.count;
       const PointIndex before = i > begin ? leaving_[i - 1].end : p;
       if (before == run.end) continue;
       add_flat(first, p, run.end, whole);
@@ -255,9 +255,9 @@ class PolygonCut {
   // Divides a chain, which both start with, at its latest point, which both keep.
   void split(Chain& low, Chain& high) {
     const std::uint32_t copy = link(links_[low.latest].point), above = links_[low.latest].above;
-    if (above != kNone) connect(copy, above);
-    high = {copy, above != kNone ? low.top : copy, copy};
-    links_[low.latest].above = kNone;
+    if (above != kNoCorner) connect(copy, above);
+    high = {copy, above != kNoCorner ? low.top : copy, copy};
+    links_[low.latest].above = kNoCorner;
     low.top = low.latest;
   }
 
@@ -269,7 +269,7 @@ class PolygonCut {
 
   // Cuts off what p sees, next to the edge above.
   void add_above(Chain& chain, PointIndex p) {
-    while (links_[chain.top].below != kNone && cut_off(links_[chain.top].below, p, chain.top))
+    while (links_[chain.top].below != kNoCorner && cut_off(links_[chain.top].below, p, chain.top))
       chain.top = links_[chain.top].below;
     chain.latest = link(p);
     connect(chain.top, chain.latest);
@@ -278,7 +278,7 @@ class PolygonCut {
 
   // Likewise, next to the edge below.
   void add_below(Chain& chain, PointIndex p) {
-    while (links_[chain.bottom].above != kNone && cut_off(chain.bottom, p, links_[chain.bottom].above))
+    while (links_[chain.bottom].above != kNoCorner && cut_off(chain.bottom, p, links_[chain.bottom].above))
       chain.bottom = links_[chain.bottom].above;
     chain.latest = link(p);
     connect(chain.latest, chain.bottom);
@@ -321,7 +321,7 @@ class PolygonCut {
   std::vector<std::uint32_t> starting_;   // of each point, the first in the list of its runs
   std::vector<std::uint32_t> ends_;       // of each point, how many of edges_ end there
   std::vector<Run> runs_;
-  std::uint32_t unused_ = kNone;  // likewise, of those that can be used again
+  std::uint32_t unused_ = kNoCorner;  // likewise, of those that can be used again
   std::vector<Run> leaving_;      // of the point that is visited
   std::vector<Link> links_;
   Edges edges_{Below{this}};

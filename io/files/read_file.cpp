@@ -17,7 +17,7 @@
 namespace raycone {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, int error) {
+[[noreturn]] void fail_to_read(const std::string& path, int error) {
   if (error == EISDIR) throw InputError(path + ": is a directory, expected a file");
   throw InputError(path + ": cannot be read: " + std::generic_category().message(error));
 }
@@ -30,7 +30,7 @@ class Descriptor {
     do {
       number_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     } while (number_ < 0 && errno == EINTR);
-    if (number_ < 0) fail(path, errno);
+    if (number_ < 0) fail_to_read(path, errno);
   }
   ~Descriptor() {
     if (owned_) close(number_);
@@ -88,7 +88,7 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
     if (size == bytes.size()) bytes.resize(2 * size);
     const ssize_t count = read(descriptor.number(), bytes.data() + size, bytes.size() - size);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, errno);
+    if (count < 0) fail_to_read(path, errno);
     if (count == 0) break;
     size += static_cast<std::size_t>(count);
     if (size > max_bytes) fail_too_large(path, max_bytes);
@@ -112,7 +112,7 @@ std::string sha256_of_file(const std::string& path) {
   for (;;) {
     const ssize_t count = read(descriptor.number(), block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, errno);
+    if (count < 0) fail_to_read(path, errno);
     if (count == 0) return digest(context);
     add(context, {block.data(), static_cast<std::size_t>(count)});
   }

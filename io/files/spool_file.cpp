@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kCopySize = std::size_t{1} << 20;
 
-[[noreturn]] void fail(const std::string& name, int error) {
+[[noreturn]] void fail_to_spool(const std::string& name, int error) {
   throw OutputError(name + ": cannot write: temporary file: " + std::generic_category().message(error));
 }
 
 std::FILE* open_unlinked(const std::string& name) {
   std::FILE* file = std::tmpfile();
-  if (file == nullptr) fail(name, errno);
+  if (file == nullptr) fail_to_spool(name, errno);
   return file;
 }
 
@@ -43,14 +43,14 @@ SpoolFile::~SpoolFile() = default;
 std::ostream& SpoolFile::stream() { return state_->stream; }
 
 void SpoolFile::copy_to(OutputFile& output) {
-  if (state_->buffer.pubsync() != 0) fail(state_->name, state_->buffer.error());
+  if (state_->buffer.pubsync() != 0) fail_to_spool(state_->name, state_->buffer.error());
   const int descriptor = fileno(state_->file.get());
-  if (lseek(descriptor, 0, SEEK_SET) < 0) fail(state_->name, errno);
+  if (lseek(descriptor, 0, SEEK_SET) < 0) fail_to_spool(state_->name, errno);
   std::vector<char> bytes(kCopySize);
   while (true) {
     const ssize_t count = read(descriptor, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(state_->name, errno);
+    if (count < 0) fail_to_spool(state_->name, errno);
     if (count == 0) return;
     output.write(bytes.data(), static_cast<std::size_t>(count));
   }

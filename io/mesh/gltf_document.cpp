@@ -20,9 +20,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Nodes, scenes, meshes and primitives: tinygltf takes up to 456 bytes for the text "{}".
-constexpr std::uint64_t kMaxParts = std::uint64_t{1} << 20;
-constexpr std::size_t kMaxQuoted = 120;
+// Nodes, meshes, primitives, accessors and so on: with tinygltf each takes up to a kilobyte, even one of the text "{}".
+constexpr std::uint64_t kMaxParts = std::uint64_t{1} << 21;
+constexpr std::size_t kMaxQuotedValue = 120;
 constexpr const char* kRootPlace = "document";
 
 // --- The table ------------------------------------------------------------------------------------------------------
@@ -187,10 +187,8 @@ class Checker {
   }
 
   void check_objects(Json& value, const Member& member, const std::string& place) {
-    const bool is_part =
-        member.key == "nodes" || member.key == "scenes" || member.key == "meshes" || member.key == "primitives";
-    if (is_part && (parts_ += value.size()) > kMaxParts) {
-      throw LimitError(file_ + ": more than " + std::to_string(kMaxParts) + " nodes, scenes, meshes and primitives");
+    if ((parts_ += value.size()) > kMaxParts) {
+      throw LimitError(file_ + ": more than " + std::to_string(kMaxParts) + " nodes, meshes and other parts");
     }
     const std::string prefix = (place == kRootPlace ? "" : place + ", ") + member.row.name + " ";
     std::size_t i = 0;
@@ -214,7 +212,7 @@ class Checker {
       const double number = value.get<double>();
       if (number >= 0.0 && number <= 0x1p53 && std::floor(number) == number) value = static_cast<std::uint64_t>(number);
     }
-    const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuoted);
+    const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuotedValue);
     if (!value.is_number_unsigned()) fail(place, member, " is " + text + ", expected a non-negative integer");
     const auto number = value.get<std::uint64_t>();
     const auto& [path, kind, name, presence, limit] = member.row;

@@ -1,4 +1,4 @@
-// What is known of a value besides itself.
+// What an evaluation can tell about each value.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 
 namespace raycone {
 
-// Of a block or batch of samples: every span has the values' size and order.
+// Of a block or batch of samples. Each span has the size and the order of the values.
 struct Diagnostics {
   std::span<std::int64_t> crossings;   // n(q)
-  std::span<std::int64_t> degenerate;  // edge sides that were ties, decided by the symbolic perturbation
-  std::span<std::uint8_t> on_surface;  // 1 on the surface, where the value is that of the perturbed query
-  std::span<double> error_bound;  // of |w - true w| in turns, rigorous (docs/method.md, "Error bound"); 0 if closed
+  std::span<std::int64_t> degenerate;  // how many edge sides were ties, which the symbolic perturbation decided
+  std::span<std::uint8_t> on_surface;  // 1 on the surface; the value is that of the perturbed query there
+  std::span<double> error_bound;       // rigorous, of |value - w|, turns (docs/method.md, "Error bound"); 0 if closed
 };
 
 }  // namespace raycone

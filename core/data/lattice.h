@@ -8,8 +8,9 @@
 
 namespace raycone {
 
-// The samples with indices index_min[a] <= index < index_min[a] + counts[a] along axis a. The coordinate of an index
-// is origin + index * spacing, product and sum each rounded to double: what is evaluated is exactly what is printed.
+// The samples with indices index_min[a] <= index < index_min[a] + counts[a] along each axis a. An index has the
+// coordinate origin + index * spacing. Product and sum are each rounded to double, so that samples lie exactly where
+// they are said to lie.
 struct Lattice {
   Vec3 origin;   // world position of index (0, 0, 0), which need not be a sample
   Vec3 spacing;  // world units per index step, positive
@@ -29,8 +30,8 @@ struct Lattice {
 // Evaluators count the samples along an axis of a block in 32 bits.
 inline constexpr std::int64_t kMaxBlockSide = 0xFFFFFFFF;
 
-// A box of samples: along axis a those with indices first[a] <= index < first[a] + counts[a] (first in the lattice's
-// own indices, so first >= index_min). Values of a block are stored x fastest, then y, then z.
+// A box of samples: along each axis a those with first[a] <= index < first[a] + counts[a]. These are indices of the
+// lattice, so first >= index_min. The values of a block are stored x fastest, then y, then z.
 struct LatticeBlock {
   std::array<std::int64_t, 3> first{0, 0, 0};
   std::array<std::int64_t, 3> counts{0, 0, 0};

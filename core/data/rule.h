@@ -8,9 +8,9 @@ namespace raycone {
 enum class RuleKind {
   kThreshold,  // w >= threshold
   kAbs,        // |w| >= threshold
-  kNonzero,    // of the integer nearest to w, floor(w + 1/2): is not 0
-  kPositive,   // likewise: is above 0
-  kOdd,        // likewise: is odd
+  kNonzero,    // floor(w + 1/2), the integer nearest to w, is not 0
+  kPositive,   // that integer is above 0
+  kOdd,        // that integer is odd
 };
 
 struct Rule {
@@ -18,12 +18,12 @@ struct Rule {
   double threshold = 0.5;  // finite
 };
 
-// Numbers of turns that differ by less count as equal where rules decide, so that no decision depends on how well 113
-// bits tell them apart: of meshes and samples that are not next to 0, values that differ at all differ by more.
+// Rules take numbers of turns that differ by less as equal. No decision then depends on how well 113 bits tell them
+// apart: values that differ at all differ by more, unless mesh and sample are next to 0.
 inline constexpr double kIndistinguishable = 1e-24;
 
-// Where the rule changes its mind, but for half-integers, which values are exactly where they are meant
-// (core/evaluation/winding_number.h): to be settled before holds() is asked.
+// The thresholds of the rule that are not half-integers. A value near one of them must be settled before holds() is
+// asked (core/evaluation/winding_number.h). Near half-integers, values need no settling.
 [[nodiscard]] std::vector<double> thresholds_to_settle(const Rule& rule);
 
 // Whether a point of winding number `w` (finite) is inside. Exact.

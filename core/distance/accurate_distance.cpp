@@ -13,7 +13,6 @@ namespace {
 
 constexpr DoubleDouble kZero{0.0}, kOne{1.0};
 
-
 // Edge i leads from corner i to the next; to_query[i] from corner i to the query.
 struct Differences {
   std::array<DoubleDoubleVec3, 3> edges, to_query;

@@ -1,5 +1,5 @@
-// Unsigned distances to the triangles of a mesh: off by less than 1e-12 of themselves, or by less than 4 * 2^-53 times
-// the largest coordinate of the mesh or the point (docs/method.md, "Distances").
+// Unsigned distances to the triangles of a mesh. A distance is off by less than 1e-12 of itself, or by less than 4 *
+// 2^-53 times the largest coordinate of the mesh or the point (docs/method.md, "Distances").
 #pragma once
 
 #include <memory>
@@ -12,23 +12,24 @@ namespace raycone {
 
 class DistanceEvaluator {
  public:
-  // Vertices used by triangles are finite. A mesh without triangles is infinitely far away. Throws std::length_error
-  // for more than kMaxTriangles.
+  // Precondition: the vertices that triangles use are finite. A mesh without triangles is infinitely far away. Throws
+  // std::length_error for more than kMaxTriangles.
   explicit DistanceEvaluator(const TriangleMesh& mesh);
   ~DistanceEvaluator();
   DistanceEvaluator(DistanceEvaluator&&) noexcept;
   DistanceEvaluator& operator=(DistanceEvaluator&&) noexcept;
 
-  // Distances (world units) of a block of `lattice`, x fastest: to the bit those of points, cut off at `band`;
-  // distances.size() == block.size(). Uses the threads that ThreadLimit allows; the distances depend on neither their
-  // number nor the block's extent. Const calls may run concurrently. Throws std::length_error for more than
-  // kMaxBlockSide samples along an axis.
+  // Sets the distances (world units) of a block of `lattice`, x fastest. They are cut off at `band`; below it they have
+  // the bits that points would have. Precondition: distances.size() == block.size(). Uses the threads that ThreadLimit
+  // allows; distances depend neither on their number nor on the block's extent. Const calls may run concurrently.
+  // Throws std::length_error for more than kMaxBlockSide samples along an axis.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
-  // Builds the search tree that points need and lattices do not; else the first evaluation of points does.
+  // Builds the search tree that points need and lattices do not. Without this call, the first evaluation of points
+  // builds it.
   void prepare_points() const;
 
-  // Distances (world units) at finite points, in their order: distances.size() == points.size().
+  // Sets the distances (world units) of finite points, in their order. Precondition: distances.size() == points.size().
   void evaluate(std::span<const Vec3> points, std::span<double> distances) const;
 
  private:

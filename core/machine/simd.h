@@ -4,7 +4,7 @@
 namespace raycone {
 
 enum class SimdLevel {
-  kBest,  // that this processor has
+  kBest,  // the best one that this processor has
   kSse4,
   kAvx2,
   kAvx512,
@@ -13,7 +13,7 @@ enum class SimdLevel {
 // Whether this processor has the level (and the compiler knew it).
 [[nodiscard]] bool is_available(SimdLevel level);
 
-// The level itself where it is available, else the best one; kBest on processors that have none of them.
+// `wanted` if it is available, else the best available level. kBest if the processor has none of them.
 [[nodiscard]] SimdLevel available_level(SimdLevel wanted);
 
 }  // namespace raycone

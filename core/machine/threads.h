@@ -1,4 +1,4 @@
-// Threads: the only header that evaluators and the application use for parallelism.
+// Threads. All parallelism goes through this header.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace raycone {
 
-// The system starts no thread, for want of memory for its stack or by a limit on processes.
+// The system cannot start a thread: there is no memory for its stack, or a limit on processes.
 class ThreadsUnavailable : public std::runtime_error {
  public:
   ThreadsUnavailable() : std::runtime_error("cannot start threads: too little memory, or a limit on processes") {}
 };
 
-// Caps the threads of this process (ours, Embree's, OpenVDB's: all of them run on TBB) while it lives. Create exactly
-// one, before the first evaluation. count >= 1.
+// Caps the number of threads of this process while it lives: ours, Embree's and OpenVDB's, which all run on TBB. Create
+// exactly one, before the first evaluation. Precondition: count >= 1.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int count);
@@ -31,19 +31,21 @@ class ThreadLimit {
 // Threads that parallel_for() may use, at least 1.
 [[nodiscard]] int thread_count();
 
-// Starts all of TBB's workers, in the floating-point environment of the caller. Call before Embree is first used:
-// workers inherit the environment of the thread that starts them, and Embree's is flush-to-zero; and before memory is
-// capped, so that none lacks a stack later. Throws ThreadsUnavailable.
+// Starts all of TBB's workers, in the floating-point environment of the caller. Call it before Embree is first used:
+// workers inherit the environment of the thread that starts them, and Embree flushes to zero. Call it before memory is
+// capped, too, so that no worker lacks a stack later. Throws ThreadsUnavailable.
 void prime_threads();
 
-// Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads, each with the default
-// floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items
-// where count allows. While the caller waits for other threads it takes no part in other loops: one within the body of
-// another may hold a lock. A lock for which bodies of one loop wait makes them wait in vain, so that what many need is
-// to be built before the loop. Exceptions of body propagate. Throws ThreadsUnavailable.
+// Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads. Each call has the default
+// floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items if
+// count allows. Exceptions of body propagate. Throws ThreadsUnavailable.
+//
+// A caller that waits for other threads takes no part in other loops. A loop within the body of another may therefore
+// hold a lock. Bodies of one loop must not wait for a lock that one of them holds while it runs a loop: build what many
+// need before the loop.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
-// Calls work(), which uses threads by other means than parallel_for(), likewise: it takes no part in loops outside.
+// Calls work(), which may use threads by other means than parallel_for(). It takes no part in loops outside either.
 void isolated(const std::function<void()>& work);
 
 }  // namespace raycone

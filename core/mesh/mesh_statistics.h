@@ -9,13 +9,13 @@
 namespace raycone {
 
 struct MeshStatistics {
-  std::uint64_t exterior_edges = 0;      // undirected edges of non-zero net count
-  std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that traverse them in the same direction
+  std::uint64_t exterior_edges = 0;      // undirected edges whose faces do not cancel
+  std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that run along them in the same direction
   std::uint64_t nonmanifold_edges = 0;   // edges of more than two faces
   std::uint64_t degenerate_faces = 0;    // zero area, decided exactly
   std::uint64_t duplicate_faces = 0;     // beyond the first of the same three vertices, in either orientation
-  std::uint64_t components = 0;          // sets of faces joined through vertices
-  std::optional<double> signed_volume;   // world units cubed, infinite beyond doubles; absent where the mesh is open
+  std::uint64_t components = 0;          // sets of faces that are joined through vertices
+  std::optional<double> signed_volume;   // world units cubed, infinite beyond doubles; absent if the mesh is open
 
   [[nodiscard]] bool closed() const { return exterior_edges == 0; }
 };

@@ -322,7 +322,7 @@ class PolygonCut {
   std::vector<std::uint32_t> ends_;       // of each point, how many of edges_ end there
   std::vector<Run> runs_;
   std::uint32_t unused_ = kNoCorner;  // likewise, of those that can be used again
-  std::vector<Run> leaving_;      // of the point that is visited
+  std::vector<Run> leaving_;          // of the point that is visited
   std::vector<Link> links_;
   Edges edges_{Below{this}};
   std::vector<std::array<std::uint32_t, 3>> triangles_;

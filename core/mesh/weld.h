@@ -1,4 +1,4 @@
-// Identification of vertices by position.
+// Merges vertices that have the same position.
 #pragma once
 
 #include "core/data/triangle_mesh.h"
@@ -12,12 +12,16 @@ struct Weld {
   double distance = 0.0;  // world units; only for kDistance, positive and finite
 };
 
-// The mesh with -0 stored as +0 and equal vertices merged: bitwise equal ones (kExact), or, for kDistance, greedily in
-// lexicographic order of (x, y, z): a vertex joins the first earlier representative within `distance`, or becomes one.
-// Triangles keep their number and order and refer to the representatives. The result does not depend on the order of
-// faces, for kDistance nor on that of vertices; with kNone only the zeros change. Distances are rounded to double;
-// vertices that are not finite are within none. For n vertices it takes a time of n, for kDistance n log n, however
-// they were chosen. Uses the threads that ThreadLimit allows.
+// The mesh with -0 stored as +0, and with equal vertices merged into representatives:
+//
+//   kNone      none are merged
+//   kExact     those of bitwise equal coordinates
+//   kDistance  in lexicographic order of (x, y, z), a vertex joins the first earlier representative within `distance`,
+//              or becomes one; distances are rounded to double, and vertices that are not finite join nobody
+//
+// Triangles keep their number and order. The result does not depend on the order of faces, with kDistance not on that
+// of vertices either. n vertices take time in proportion to n, with kDistance to n log n, wherever they lie. Uses the
+// threads that ThreadLimit allows.
 [[nodiscard]] TriangleMesh weld(TriangleMesh mesh, const Weld& how);
 
 }  // namespace raycone

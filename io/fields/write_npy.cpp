@@ -75,10 +75,7 @@ template <typename Element>
 class NpyLatticeWriter final : public LatticeWriter {
  public:
   NpyLatticeWriter(OutputFile& output, const Lattice& lattice, const FieldDescription& field)
-      : output_(output),
-        lattice_(lattice),
-        narrowing_(field),
-        slab_axis_(npy_slab_axis(lattice, output.seekable())) {
+      : output_(output), lattice_(lattice), narrowing_(field), slab_axis_(npy_slab_axis(lattice, output.seekable())) {
     const std::string shape = '(' + std::to_string(lattice.counts[0]) + ", " + std::to_string(lattice.counts[1]) +
                               ", " + std::to_string(lattice.counts[2]) + ')';
     const std::string header = npy_header(kDescriptor<Element>, shape);

@@ -8,6 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 . tests/phases.sh
 jobs=$(nproc)
+test_jobs=$((jobs + 1))  # tests wait for disks and for each other
 
 # Suites whose tests start the executable. BatchCost compares it with its own process.
 suites=$(grep -lE 'run_raycone|raycone_command|batch_fixture' tests/app/*_test.cpp tests/app/batch/*_test.cpp |
@@ -19,7 +20,7 @@ black_box() {
   shift
   export RAYCONE_TEST_EXECUTABLE="$PWD/build/$preset/app/raycone"
   phase "test $preset: the tool" \
-    ctest --preset dev --parallel "$jobs" --output-log "build/$preset/ctest.log" -R "^($suites)\." "$@"
+    ctest --preset dev --parallel "$test_jobs" --output-log "build/$preset/ctest.log" -R "^($suites)\." "$@"
   sh tests/check_skipped.sh "build/$preset/ctest.log" "build/$preset"
   unset RAYCONE_TEST_EXECUTABLE
 }
@@ -36,7 +37,7 @@ cmake --preset asan-ubsan
 phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
 black_box asan-ubsan
 phase 'test asan-ubsan: files and faults' \
-  ctest --preset asan-ubsan --parallel "$jobs" --output-log build/asan-ubsan/ctest-files.log \
+  ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \
   -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'
 sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
 

@@ -11,7 +11,7 @@ if [ "${1-}" = --quick ]; then
   shift
 fi
 sh app/install_packages.sh --tidy
-cmake --preset dev -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+cmake --preset dev -B build/tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DRAYCONE_UNITY=OFF >/dev/null
 [ $# -gt 0 ] || set -- $(find core io app -name '*.cpp' | sort)
 
 # tidy FILE: notes in build/tidy.tsv how long it took. The headers behind all others: <quadmath.h> is GCC's own.
@@ -20,7 +20,7 @@ export checks gcc_headers="$(g++ -print-file-name=include)"
 tidy_all() {
   printf '%s\n' "$@" | xargs -P "$(nproc)" -n 1 sh -c '
     begin=$(date +%s)
-    clang-tidy --quiet -p build/dev $checks --extra-arg=-Wno-unknown-warning-option --extra-arg=-idirafter \
+    clang-tidy --quiet -p build/tidy $checks --extra-arg=-Wno-unknown-warning-option --extra-arg=-idirafter \
       --extra-arg="$gcc_headers" "$1" || exit 1
     printf "%s\t%s\n" "$(($(date +%s) - begin))" "$1" >>build/tidy.tsv' tidy
 }

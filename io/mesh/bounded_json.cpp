@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/files/file_error.h"
+#include "io/mesh/mesh_error.h"
 
 namespace raycone {
 namespace {
@@ -17,7 +18,6 @@ using Json = nlohmann::json;
 constexpr std::size_t kMaxDepth = 256;
 // Objects and arrays: a parsed one takes up to a hundred times the memory of its text "{}".
 constexpr std::uint64_t kMaxContainers = 5'000'000;
-constexpr std::size_t kMaxQuoted = 120;
 
 // The place of byte `offset` of the JSON text: a line, or a byte of the GLB.
 std::string place_of(const JsonText& text, std::size_t offset) {

@@ -14,6 +14,7 @@
 
 #include "io/files/file_error.h"
 #include "io/mesh/bounded_json.h"
+#include "io/mesh/mesh_error.h"
 
 namespace raycone {
 namespace {
@@ -22,7 +23,6 @@ using Json = nlohmann::json;
 
 // Nodes, meshes, primitives, accessors and so on: with tinygltf each takes up to a kilobyte, even one of the text "{}".
 constexpr std::uint64_t kMaxParts = std::uint64_t{1} << 21;
-constexpr std::size_t kMaxQuotedValue = 120;
 constexpr const char* kRootPlace = "document";
 
 // --- The table ------------------------------------------------------------------------------------------------------
@@ -212,7 +212,7 @@ class Checker {
       const double number = value.get<double>();
       if (number >= 0.0 && number <= 0x1p53 && std::floor(number) == number) value = static_cast<std::uint64_t>(number);
     }
-    const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuotedValue);
+    const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuoted);
     if (!value.is_number_unsigned()) fail(place, member, " is " + text + ", expected a non-negative integer");
     const auto number = value.get<std::uint64_t>();
     const auto& [path, kind, name, presence, limit] = member.row;

@@ -18,7 +18,6 @@ constexpr std::size_t kGlbHeaderSize = 12;   // magic, version, length
 constexpr std::size_t kChunkHeaderSize = 8;  // length, type
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-constexpr std::size_t kMaxQuotedUri = 120;
 
 // One chunk of a GLB; `offset` moves behind it.
 struct Chunk {
@@ -85,7 +84,7 @@ bool leaves_directory(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const NamedBytes& source, std::size_t buffer, std::string_view uri, const std::string& why) {
-  std::string quoted(uri.substr(0, kMaxQuotedUri));
+  std::string quoted(uri.substr(0, kMaxQuoted));
   std::replace_if(
       quoted.begin(), quoted.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, '?');
   throw InputError(source.name + ": buffer " + std::to_string(buffer) + ": \"" + quoted + "\" " + why);

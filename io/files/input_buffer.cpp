@@ -7,20 +7,15 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
 
 #include "io/files/file_error.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
 namespace {
 
 // Bytes asked for in one go: large enough that the calls cost nothing, small enough for the second-level cache.
 constexpr std::size_t kBlock = std::size_t{1} << 18;
-
-[[noreturn]] void fail(const std::string& name, int error) {
-  if (error == EISDIR) throw InputError(name + ": is a directory, expected a file");
-  throw InputError(name + ": cannot be read: " + std::generic_category().message(error));
-}
 
 bool is_ready(int descriptor, int timeout) {
   pollfd request{descriptor, POLLIN, 0};
@@ -35,7 +30,7 @@ InputBuffer::InputBuffer(const std::string& path) : name_(path), descriptor_(STD
   do {
     descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   } while (descriptor_ < 0 && errno == EINTR);
-  if (descriptor_ < 0) fail(name_, errno);
+  if (descriptor_ < 0) fail_to_read(name_, errno);
 }
 
 InputBuffer::~InputBuffer() {
@@ -64,7 +59,7 @@ bool InputBuffer::fill() {
     if (errno == EAGAIN) {
       is_ready(descriptor_, -1);  // somebody made standard input non-blocking
     } else if (errno != EINTR) {
-      fail(name_, errno);
+      fail_to_read(name_, errno);
     }
   }
 }
@@ -81,7 +76,7 @@ void InputBuffer::read_at(std::uint64_t offset, char* bytes, std::size_t size) c
   while (size > 0) {
     const ssize_t count = pread(descriptor_, bytes, size, static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(name_, errno);
+    if (count < 0) fail_to_read(name_, errno);
     if (count == 0) throw InputError(name_ + ":byte " + std::to_string(offset) + ": the file was cut short meanwhile");
     bytes += count;
     offset += static_cast<std::uint64_t>(count);

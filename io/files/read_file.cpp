@@ -15,12 +15,13 @@
 #include "io/files/file_error.h"
 
 namespace raycone {
-namespace {
 
-[[noreturn]] void fail_to_read(const std::string& path, int error) {
+void fail_to_read(const std::string& path, int error) {
   if (error == EISDIR) throw InputError(path + ": is a directory, expected a file");
   throw InputError(path + ": cannot be read: " + std::generic_category().message(error));
 }
+
+namespace {
 
 // An open file, or standard input, which is not ours to close.
 class Descriptor {

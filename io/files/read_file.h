@@ -7,6 +7,9 @@
 
 namespace raycone {
 
+// Throws InputError about `path`, where a system call that reads it has set errno to `error`.
+[[noreturn]] void fail_to_read(const std::string& path, int error);
+
 // All bytes of a regular file, FIFO or device, or of standard input for "-". Throws InputError, LimitError where the
 // file is larger than `max_bytes`.
 [[nodiscard]] std::string read_file(const std::string& path, std::uint64_t max_bytes = UINT64_MAX);

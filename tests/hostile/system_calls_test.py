@@ -3,8 +3,8 @@
 strace(1) makes one call of a run return an error, as the kernel does where disks break, quotas and tables are full and
 memory ends, or delivers a signal during it. A run either does not need that call and ends as ever, or ends with a documented
 status and one line, and leaves the earlier outputs, or complete new ones; a batch that is run again completes them. In
-particular no input that cannot be read to its end is taken for a shorter one. --long tries every call of every run, else a
-few of each kind (of CALLs only, if given).
+particular no input that cannot be read to its end is taken for a shorter one. --long tries every call of every run, else one
+of each kind (of CALLs only, if given).
 Status 77 where strace is missing or may not trace, or RAYCONE is built with a sanitizer, which traces itself.
 """
 
@@ -21,7 +21,7 @@ from runs import CLOSED, MESHES, OPEN, RAYCONE, BatchRun, all_runs, fail, report
 
 LONG = "--long" in sys.argv
 CHOSEN = [argument for argument in sys.argv[3:] if not argument.startswith("--")]
-SAMPLED = 2  # calls of each kind, run and error
+SAMPLED = 1  # calls of each kind, run and error
 
 ERRORS = {
     "openat": ["EMFILE", "EACCES", "EIO", "EINTR"],

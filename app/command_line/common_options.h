@@ -15,6 +15,8 @@ namespace raycone {
 
 [[nodiscard]] OperandSpec mesh_operand();
 [[nodiscard]] OptionGroup mesh_group();
+// Throws UsageError where the extension of `path` is that of meshes that are promised and not read yet.
+void refuse_later_mesh(const std::string& path);
 [[nodiscard]] MeshOptions parse_mesh(const Values& values);
 
 // `formats` stands for the value of --format in the help.
@@ -27,10 +29,14 @@ struct OutputFormats {
   std::vector<FieldFormat> written;
   std::string listed;                    // for messages
   std::optional<FieldFormat> only = {};  // whatever the output is called
+  std::vector<const char*> later = {};   // extensions of those that are promised and do not exist yet
 };
 // Of values that go to `output`. No option but --format is looked at.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,
                                            const OutputFormats& formats);
+
+// Whether `path` ends with a dot and `extension`, which is in lower case, in any case.
+[[nodiscard]] bool has_extension(const std::string& path, const std::string& extension);
 
 [[nodiscard]] OptionGroup run_group();
 [[nodiscard]] RunOptions parse_run(const Values& values);

@@ -13,6 +13,7 @@
 #include <span>
 #include <utility>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/affine_map.h"
 #include "io/mesh/gltf_data.h"
@@ -126,8 +127,7 @@ class MeshAssembler {
         throw InputError(place_ + "index " + std::to_string(index) + " is the restart value, expected a vertex");
       }
       if (index >= vertices.count) {
-        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(vertices.count) +
-                         " vertices");
+        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + counted(vertices.count, "vertex"));
       }
     }
     add_faces(mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });

@@ -37,7 +37,7 @@ MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
   throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB" +
-                   (source.name == "-" ? " (--mesh-format names what has no signature)" : ""));
+                   "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
 }
 
 // Where relative references of the file at `path` start.

@@ -168,9 +168,6 @@ Command parse_batch(const Values& values) {
   command.directory = values.text("--out-dir");
   const bool full_names = values.given("--full-names") || !command.writes;  // no outputs, no collisions
   const std::vector<std::string> operands = values.texts("MESH|DIR|@LIST");
-  for (const std::string& operand : operands) {
-    if (!is_list(operand)) refuse_later_mesh(operand);
-  }
   if (values.given("--null") && std::ranges::none_of(operands, is_list)) {
     throw UsageError("--null: has no effect without a list, expected an operand @LIST");
   }

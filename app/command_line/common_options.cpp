@@ -52,12 +52,6 @@ bool has_extension(const std::string& path, const std::string& extension) {
                     [](char small, char c) { return small == ('A' <= c && c <= 'Z' ? c - 'A' + 'a' : c); });
 }
 
-void refuse_later_mesh(const std::string& path) {
-  for (const char* const later : {"3mf", "gz", "zst"}) {
-    if (has_extension(path, later)) not_available(path);
-  }
-}
-
 OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB file; - for standard input"}; }
 
 OptionGroup mesh_group() {
@@ -73,7 +67,6 @@ MeshOptions parse_mesh(const Values& values) {
   MeshOptions mesh;
   mesh.path = values.text("MESH");
   if (mesh.path.empty()) throw UsageError("MESH: expected a file, not an empty name");
-  refuse_later_mesh(mesh.path);
   if (values.text("--mesh-format") == "3mf") not_available("--mesh-format 3mf");
   if (values.given("--mesh-format")) {
     mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));

@@ -15,8 +15,6 @@ namespace raycone {
 
 [[nodiscard]] OperandSpec mesh_operand();
 [[nodiscard]] OptionGroup mesh_group();
-// Throws UsageError where the extension of `path` is that of meshes that are promised and not read yet.
-void refuse_later_mesh(const std::string& path);
 [[nodiscard]] MeshOptions parse_mesh(const Values& values);
 
 // `formats` stands for the value of --format in the help.

@@ -64,9 +64,9 @@ void refuse_outside(const AxisPlane& plane, double at, const Box& box) {
   const double upper = box.upper[plane.axis];
   if (lower <= at && at <= upper) return;
   const auto* percentage = std::get_if<Percentage>(&plane.at);
-  const std::string asked = percentage ? shortest(percentage->value) + "%" : shortest(at);
+  const std::string asked = percentage ? shortest(percentage->value) + "% (" + shortest(at) + ")" : shortest(at);
   throw UsageError("--at " + asked + ": outside the box, expected " + shortest(lower) + " to " + shortest(upper) +
-                   (percentage ? ", 0% to 100%" : "") + "; see --bounds and --padding");
+                   "; see --bounds and --padding");
 }
 
 void add_pixels(std::int64_t& count, std::int64_t padding) {

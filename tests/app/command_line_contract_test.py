@@ -4,6 +4,7 @@ What holds for all commands, what does not exist yet, what is suggested where a 
 to a terminal.
 """
 
+import gzip
 import json
 import os
 import pty
@@ -72,9 +73,9 @@ NOT_AVAILABLE_LINES = {
     "surface --help": "surface",
     "help surface": "surface",
     "info model.3mf": "model.3mf",
-    "info scan.ply.gz": "scan.ply.gz",
-    "lattice scan.STL.ZST -o out.vdb": "scan.STL.ZST",
-    "batch scan.ply.gz --out-dir batch": "scan.ply.gz",
+    "info cube.ply.gz": "cube.ply.gz",
+    "info compressed --mesh-format stl": "compressed",
+    "lattice cube.STL.ZST -o out.vdb": "cube.STL.ZST",
     "points cube.obj points.npz": "points.npz",
     "points cube.obj --sample surface=5 -o out.npz": "--sample surface=5",
     "batch cube.obj --out-dir batch --sample surface=5": "--sample surface=5",
@@ -132,6 +133,10 @@ class Contract(unittest.TestCase):
         os.chdir(cls.directory.name)
         with open("points.csv", "w") as file:
             file.write("0,0,0\n.5,.5,.5\n")
+        for name, content in {"model.3mf": b"PK\3\4", "cube.STL.ZST": b"\x28\xb5\x2f\xfd",
+                              "compressed": gzip.compress(b"solid"), "cube.ply.gz": gzip.compress(b"ply")}.items():
+            with open(name, "wb") as file:
+                file.write(content)
         assert run(["batch", CUBE, "--out-dir", "done", "--resolution", "3"]).returncode == 0
 
     @classmethod
@@ -204,6 +209,9 @@ class NotYet(Contract):
         for line, named in NOT_AVAILABLE_LINES.items():
             self.assertEqual(self.refused(line.split(), named), "raycone: %s: not available yet\n" % named)
         self.assertNotIn("surface ", self.works(["--help"]).stdout)
+        with open("compressed", "rb") as file:
+            result = run(["info", "-"], stdin=file)
+        self.assertEqual((result.returncode, result.stderr), (1, "raycone: -: not available yet\n"))
 
     def test_tolerances_that_count_as_none_are_there(self):
         for tolerance in ("0", "1e-13"):
@@ -242,7 +250,7 @@ class Messages(Contract):
         for options, message in {
             ("--at", "2"): "--at 2: outside the box, expected 0 to 1; see --bounds and --padding",
             ("--at", "-1e-9"): "--at -1e-09: outside the box, expected 0 to 1",
-            ("--at", "101%"): "--at 101%: outside the box, expected 0 to 1, 0% to 100%",
+            ("--at", "101%"): "--at 101% (1.01): outside the box, expected 0 to 1",
             ("--at", "1.6", "--padding", ".5"): "--at 1.6: outside the box, expected -0.5 to 1.5",
             ("--at", ".5", "--bounds", "0,0,2,1,1,3"): "--at 0.5: outside the box, expected 2 to 3",
             ("--axis", "x", "--at", "7"): "--at 7: outside the box, expected 0 to 1",

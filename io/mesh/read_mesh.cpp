@@ -33,19 +33,21 @@ std::optional<MeshFormat> format_from_extension(const std::string& path) {
 }
 
 // Compressed by gzip or zstd, or an archive as 3MF is.
-bool is_of_later_format(const NamedBytes& source) {
-  for (const std::string_view signature : {"\x1f\x8b", "\x28\xb5\x2f\xfd", "PK\x03\x04"}) {
-    if (source.bytes.starts_with(signature)) return true;
-  }
-  const std::string extension = lower_case(std::filesystem::path(source.name).extension().string());
+bool is_packed(std::string_view bytes) {
+  return bytes.starts_with("\x1f\x8b") || bytes.starts_with("\x28\xb5\x2f\xfd") || bytes.starts_with("PK\x03\x04");
+}
+
+bool has_later_extension(const std::string& path) {
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   return extension == ".gz" || extension == ".zst" || extension == ".3mf";
 }
 
 MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = recognise_mesh(source.bytes)) return *format;
+  if (is_packed(source.bytes)) throw NotAvailable(source.name);
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
-  if (is_of_later_format(source)) throw NotAvailable(source.name);
+  if (has_later_extension(source.name)) throw NotAvailable(source.name);
   throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB" +
                    "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
 }

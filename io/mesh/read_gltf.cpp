@@ -27,10 +27,6 @@ namespace {
 
 constexpr std::uint64_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
-std::string counted(std::uint64_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 // Makes room for `count` more elements, growing geometrically all the same.
 template <class Element>
 void make_room(std::vector<Element>& elements, std::size_t count) {

@@ -1,16 +1,19 @@
 #include "app/run_command.h"
 
+#include <cstddef>
 #include <string>
 #include <variant>
 
 #include "app/batch/report_page.h"
 #include "app/batch/run_batch.h"
+#include "app/process/messages.h"
 #include "app/run/run_info.h"
 #include "app/run/run_lattice.h"
 #include "app/run/run_limits.h"
 #include "app/run/run_points.h"
 #include "app/run/run_slice.h"
 #include "app/run/written_files.h"
+#include "io/files/counted.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -30,6 +33,7 @@ RunReport evaluate(const SliceCommand& command, const RunLimits& limits) { retur
 template <typename EvaluatingCommand>
 ExitCode dispatch(const EvaluatingCommand& command) {
   within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
+    refuse_terminal(files_written(command));
     refuse_to_replace_input(files_written(command), inputs_of(command));
     const SideFiles side_files = open_side_files(command.output);
     publish(evaluate(command, limits), command.run, side_files);
@@ -46,7 +50,11 @@ ExitCode dispatch(const InfoCommand& command) {
 ExitCode dispatch(const BatchCommand& command) { return run_batch(command); }
 
 ExitCode dispatch(const ReportCommand& command) {
-  write_report_page(command);
+  within_limits(command.run, command.directory, [&command](const RunLimits&) {
+    const std::size_t meshes = write_report_page(command);
+    const std::string place = command.output == "-" ? "standard output" : command.output;
+    if (!command.run.quiet) print_message(command.directory + ": " + counted(meshes, "mesh") + " -> " + place);
+  });
   return ExitCode::kDone;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/process/progress.h"
+#include "io/files/counted.h"
 
 namespace raycone {
 namespace {
@@ -37,8 +38,8 @@ std::string evaluated_line(const BatchOutcome& outcome) {
   char time[64];
   std::snprintf(time, sizeof time, " in %.2f s", outcome.seconds);
   const std::size_t done = outcome.evaluated.size() - failed;
-  std::string line = std::to_string(done) + (done == 1 ? " mesh" : " meshes") + " done, " + std::to_string(failed) +
-                     " failed" + failures_by_cause(outcome.evaluated) + time;
+  std::string line = counted(done, "mesh") + " done, " + std::to_string(failed) + " failed" +
+                     failures_by_cause(outcome.evaluated) + time;
   if (outcome.seconds > 0.0) line += ", " + readable_count(samples / outcome.seconds) + "samples/s";
   return line;
 }
@@ -78,7 +79,7 @@ void BatchProgress::add(bool failed, double part) {
 void BatchProgress::show() {
   if (!shown_) return;
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  std::string line = std::to_string(done_) + '/' + std::to_string(meshes_) + " meshes";
+  std::string line = std::to_string(done_) + '/' + counted(meshes_, "mesh");
   if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
   if (part_ > 0.0) line += "  " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
   if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";

@@ -233,7 +233,7 @@ void refuse_to_replace_results(const ReportCommand& command) {
 
 }  // namespace
 
-void write_report_page(const ReportCommand& command) {
+std::size_t write_report_page(const ReportCommand& command) {
   refuse_to_replace_results(command);
   const BatchRecords records = read_all_results(command.directory);
   if (records.empty()) throw InputError(command.directory + ": no results, expected the results.csv of a batch");
@@ -241,6 +241,7 @@ void write_report_page(const ReportCommand& command) {
   const std::string html = page(command.directory, records);
   output.write(html.data(), html.size());
   output.commit();
+  return records.size();
 }
 
 }  // namespace raycone

@@ -130,7 +130,8 @@ class Supervisor {
       char limit[32];
       std::snprintf(limit, sizeof limit, "%g", options_.timeout);
       finish(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
-                          jobs_[slot.running->mesh].mesh + ": not finished within " + limit + " seconds (--timeout)"));
+                          jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
+                              (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)"));
     }
   }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/command_line/common_options.h"
+#include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/command_line/parse_shard.h"
 #include "app/command_line/points_options.h"
@@ -109,6 +110,8 @@ MeshCommand parse_for_each(const std::string& format, MeshValues of_mesh) {
   return sampled ? finish(std::get<PointsCommand>(command)) : finish(std::get<LatticeCommand>(command));
 }
 
+bool is_list(const std::string& operand) { return operand.starts_with('@') || operand == "-"; }
+
 // A line an option, as it was given: "--name=value", flags "--name". Batches keep this text: to change how an option is
 // written there makes all results out of date.
 std::string result_options(const std::string& format, const MeshValues& of_mesh) {
@@ -159,11 +162,16 @@ Command parse_batch(const Values& values) {
   const std::string format = parse_batch_format(values);
   const MeshValues of_mesh = mesh_values_in(values);
   command.writes = format != "none";
+  if (!command.writes) refuse_options_of_outputs(values);
   command.for_each = parse_for_each(format, of_mesh);
   command.result_options = result_options(format, of_mesh);
   command.directory = values.text("--out-dir");
   const bool full_names = values.given("--full-names") || !command.writes;  // no outputs, no collisions
-  command.search = {values.texts("MESH|DIR|@LIST"), values.given("--null"), full_names, format};
+  const std::vector<std::string> operands = values.texts("MESH|DIR|@LIST");
+  if (values.given("--null") && std::ranges::none_of(operands, is_list)) {
+    throw UsageError("--null: has no effect without a list, expected an operand @LIST");
+  }
+  command.search = {operands, values.given("--null"), full_names, format};
   if (values.given("--shard")) command.shard = parse_shard(values.text("--shard"));
   command.run = parse_run(values);
   constexpr std::int64_t kMaxJobs = 1024;  // each has open files

@@ -10,9 +10,10 @@
 namespace raycone {
 
 struct OptionSpec {
-  std::string names;        // "-o,--output", the long name last: Values knows the option by it
-  std::string value;        // what stands for its value in the help, see app/manual/value_candidates.h; empty: a flag
+  std::string names;  // "-o,--output", the long name last: Values knows the option by it
+  std::string value;  // what stands for its value in the help, see app/command_line/value_candidates.h; empty: a flag
   std::string description;  // one line
+  bool once = false;        // given twice it is an error; of other options the last one counts
 };
 
 // Options under one heading; without a heading they are understood but listed nowhere.

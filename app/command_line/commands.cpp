@@ -1,6 +1,7 @@
 #include "app/command_line/commands.h"
 
 #include "app/command_line/batch_options.h"
+#include "app/command_line/help_options.h"
 #include "app/command_line/info_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/command_line/points_options.h"
@@ -12,8 +13,14 @@ namespace raycone {
 const std::vector<CommandEntry>& commands() {
   static const std::vector<CommandEntry> all{{lattice_spec(), parse_lattice}, {points_spec(), parse_points},
                                              {slice_spec(), parse_slice},     {info_spec(), parse_info},
-                                             {batch_spec(), parse_batch},     {report_spec(), parse_report}};
+                                             {batch_spec(), parse_batch},     {report_spec(), parse_report},
+                                             {help_spec(), parse_help}};
   return all;
+}
+
+const std::set<std::string>& later_commands() {
+  static const std::set<std::string> names{"surface"};
+  return names;
 }
 
 const CommandSpec& program_spec() {
@@ -23,11 +30,11 @@ const CommandSpec& program_spec() {
       .operands = {},
       .groups = {{"Options",
                   {{"-h,--help", "", "Print this help"},
-                   {"--version", "", "Print the versions of raycone and its libraries"}}}},
+                   {"-V,--version", "", "Print the versions of raycone and its libraries"}}}},
       .examples = {"raycone info bunny.obj", "raycone lattice bunny.obj -o bunny.vdb",
                    "raycone points bunny.obj points.csv > values.csv"},
       .notes = {
-          {"Help of a command", "raycone lattice --help"},
+          {"Help of a command", "raycone help lattice, or raycone lattice --help"},
           {"Environment", "RAYCONE_THREADS: the number of threads where --threads is not given"},
           {"Exit status", "0 done, 1 usage, 2 input, 3 output, 4 limit, 5 some meshes of a batch, 6 internal error"}}};
   return spec;

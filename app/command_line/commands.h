@@ -1,6 +1,7 @@
 // All commands: what each accepts and how its values become a Command.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct CommandEntry {
 
 // In the order of the help.
 [[nodiscard]] const std::vector<CommandEntry>& commands();
+
+// The names of commands that are promised and do not exist yet.
+[[nodiscard]] const std::set<std::string>& later_commands();
 
 // raycone itself: the options that need no command.
 [[nodiscard]] const CommandSpec& program_spec();

@@ -1,6 +1,7 @@
 #include "app/command_line/common_options.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -21,6 +22,13 @@ Weld parse_weld(const Values& values) {
   return {WeldMode::kDistance, *distance};
 }
 
+// `file`: ends with a dot and the format's name.
+void refuse_later_format(const std::string& what, const std::string& file, const OutputFormats& formats) {
+  for (const char* const name : formats.later) {
+    if (has_extension(file, name)) not_available(what);
+  }
+}
+
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
   if (formats.only) return *formats.only;
   const bool named = values.given("--format");
@@ -30,17 +38,26 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
       named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
+  refuse_later_format(named ? "--format " + name : output, (named ? "." : "") + (named ? name : output), formats);
   if (named) invalid("--format", values.text("--format"), formats.listed);
   throw UsageError(output + ": its extension names no format, expected " + formats.listed + ", or --format");
 }
 
 }  // namespace
 
+bool has_extension(const std::string& path, const std::string& extension) {
+  const std::string end = '.' + extension;
+  if (path.size() < end.size()) return false;
+  return std::equal(end.begin(), end.end(), path.end() - static_cast<std::ptrdiff_t>(end.size()),
+                    [](char small, char c) { return small == ('A' <= c && c <= 'Z' ? c - 'A' + 'a' : c); });
+}
+
 OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB file; - for standard input"}; }
 
 OptionGroup mesh_group() {
   return {"Mesh",
-          {{"--mesh-format", "obj|ply|stl|off|gltf|glb", "Format of the mesh on standard input"},
+          {{"--mesh-format", "obj|ply|stl|off|gltf|glb",
+            "Format of a mesh whose name and content do not tell it, as in pipes"},
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
            {"--scale", "S", "Multiply all coordinates by S"},
            {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"}}};
@@ -50,6 +67,7 @@ MeshOptions parse_mesh(const Values& values) {
   MeshOptions mesh;
   mesh.path = values.text("MESH");
   if (mesh.path.empty()) throw UsageError("MESH: expected a file, not an empty name");
+  if (values.text("--mesh-format") == "3mf") not_available("--mesh-format 3mf");
   if (values.given("--mesh-format")) {
     mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));
     if (!mesh.reading.format) invalid("--mesh-format", values.text("--mesh-format"), "obj, ply, stl, off, gltf or glb");
@@ -65,7 +83,7 @@ OptionGroup output_group(const std::string& formats) {
   const bool is_choice = formats.find('|') != std::string::npos;
   return {
       "Output",
-      {{"-o,--output", "OUT", "File to write; - for standard output"},
+      {{"-o,--output", "OUT", "File to write; - for standard output", true},
        {"--format", formats,
         is_choice ? "Format of OUT (default: by its extension, csv for -)" : "Format of OUT, whatever its extension"},
        {"--no-clobber", "", "Never replace an existing file"},

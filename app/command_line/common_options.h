@@ -27,10 +27,14 @@ struct OutputFormats {
   std::vector<FieldFormat> written;
   std::string listed;                    // for messages
   std::optional<FieldFormat> only = {};  // whatever the output is called
+  std::vector<const char*> later = {};   // extensions of those that are promised and do not exist yet
 };
 // Of values that go to `output`. No option but --format is looked at.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,
                                            const OutputFormats& formats);
+
+// Whether `path` ends with a dot and `extension`, which is in lower case, in any case.
+[[nodiscard]] bool has_extension(const std::string& path, const std::string& extension);
 
 [[nodiscard]] OptionGroup run_group();
 [[nodiscard]] RunOptions parse_run(const Values& values);

@@ -19,6 +19,9 @@ std::vector<Field> parse_fields(const Values& values) {
   const std::string text = values.text("--field");
   for (const std::string_view name : items_of(text)) {
     const std::optional<Field> field = field_from_name(name);
+    for (const char* const later : {"solid", "gradient", "label"}) {
+      if (name == later) not_available("--field " + text);
+    }
     if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf");
     if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
     fields.push_back(*field);
@@ -48,9 +51,9 @@ SimdLevel parse_simd(const std::string& text) {
 OptionGroup field_group() {
   return {"Field",
           {{"--field", "winding|inside|density|sdf[,...]",
-            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance"},
+            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance", true},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
-           {"--band", "B", "Cut sdf off at B voxels from the surface (default: 3)"},
+           {"--band", "B", "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side"},
            {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
            {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
            {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
@@ -64,7 +67,8 @@ FieldOptions parse_field(const Values& values) {
   if (values.given("--tolerance")) {
     const std::optional<double> tolerance = number_from(values.text("--tolerance"));
     if (!tolerance || *tolerance < 0.0) invalid("--tolerance", values.text("--tolerance"), "0");
-    if (*tolerance > 0.0) not_available("--tolerance " + values.text("--tolerance"));
+    constexpr double kLeast = 1e-12;  // what is less counts as 0
+    if (*tolerance >= kLeast) not_available("--tolerance " + values.text("--tolerance"));
   }
   FieldOptions options;
   if (values.given("--field")) options.fields = parse_fields(values);
@@ -73,6 +77,7 @@ FieldOptions parse_field(const Values& values) {
     if (!rule) invalid("--rule", values.text("--rule"), kRules);
     options.rule = *rule;
   }
+  if (values.text("--band") == "all") not_available("--band all");
   if (values.given("--band")) options.band = values.positive("--band");
   if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));
   if (values.given("--simd")) options.simd = parse_simd(values.text("--simd"));

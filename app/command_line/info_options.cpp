@@ -10,7 +10,8 @@ CommandSpec info_spec() {
           .operands = {mesh_operand()},
           .groups = {mesh_group(), {"Output", {{"--json", "", "Print JSON"}}}, run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",
-                       "raycone info model.glb --up y-to-z --weld 1e-6"}};
+                       "raycone info model.glb --up y-to-z --weld 1e-6"},
+          .later = {{"--normalize"}, {}}};
 }
 
 Command parse_info(const Values& values) {

@@ -8,6 +8,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/idle_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 
@@ -33,6 +34,9 @@ VoxelSize parse_voxel_size(const std::string& text) {
 
 // A file name may contain colons: the grid's name starts behind the last ".vdb:".
 GridReference parse_like(const std::string& text) {
+  for (const char* const later : {"npz", "nrrd", "nii", "nii.gz"}) {
+    if (has_extension(text, later)) not_available("--like " + text);
+  }
   const std::size_t end = text.rfind(".vdb:");
   if (end == std::string::npos) return {text, ""};
   return {text.substr(0, end + 4), text.substr(end + 5)};
@@ -102,6 +106,8 @@ std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text) 
   if (text.ends_with('v')) {
     const std::optional<std::int64_t> samples = integer_from(std::string_view(text).substr(0, text.size() - 1));
     if (samples) return VoxelPadding{*samples};
+  } else if (text.ends_with('%')) {
+    if (number_from(std::string_view(text).substr(0, text.size() - 1))) not_available("--padding " + text);
   } else if (const std::optional<double> width = number_from(text)) {
     return WorldPadding{*width};
   }
@@ -137,7 +143,8 @@ CommandSpec lattice_spec() {
                        "raycone lattice bunny.obj -o bunny.npy --resolution 50,50,50",
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
                        "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
-                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"}};
+                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"},
+          .later = {{"--normalize", "--parts", "--dtype"}, {"--compress", "--pack-bits"}}};
 }
 
 Command parse_lattice(const Values& values) {
@@ -149,12 +156,15 @@ Command parse_lattice(const Values& values) {
   command.lattice = parse_lattice_request(values);
   if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
   command.output = parse_output_files(values);
-  command.encoding = parse_encoding(
-      values, command.output,
-      {{FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti}, "vdb, csv, npy or vti"});
+  command.encoding =
+      parse_encoding(values, command.output,
+                     {.written = {FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti},
+                      .listed = "vdb, csv, npy or vti",
+                      .later = {"npz", "nrrd", "nii", "nii.gz"}});
   command.encoding.double_precision = values.given("--double");
   parse_grid_options(values, command);
   check_npy(command);
+  refuse_idle_options(values, command);
   return command;
 }
 

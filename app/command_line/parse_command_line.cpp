@@ -13,6 +13,7 @@
 #include "app/command_line/arguments.h"
 #include "app/command_line/command_spec.h"
 #include "app/command_line/commands.h"
+#include "app/command_line/suggestion.h"
 #include "app/command_line/values.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
@@ -66,16 +67,10 @@ void declare_all(CLI::App& root) {
 }
 
 // CLI11's formatter leaves two blank lines between groups and none below the description.
-std::string help_text(const CLI::App& app, const std::string& program) {
+std::string formatted_help(const CLI::App& app, const std::string& program) {
   std::string text = app.help(program);
   for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) text.erase(at, 1);
   return text.insert(text.find("\nUsage:"), 1, '\n');
-}
-
-std::string help_of(const std::string& command) {
-  CLI::App root(program_spec().description, program_spec().name);
-  declare_all(root);
-  return command.empty() ? help_text(root, "") : help_text(*root.get_subcommand(command), program_spec().name);
 }
 
 // `arguments` in a form that CLI11 cannot take for anything else.
@@ -130,12 +125,19 @@ bool given(const Arguments& arguments, std::initializer_list<std::string_view> n
                              [&](const OptionArgument& option) { return std::ranges::count(names, option.name) > 0; });
 }
 
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const CommandEntry& entry : commands()) names.push_back(entry.spec.name);
+  return names;
+}
+
 // "lattice, points or info"
 std::string listed_commands() {
+  const std::vector<std::string> names = command_names();
   std::string text;
-  for (std::size_t i = 0; i < commands().size(); ++i) {
-    if (i > 0) text += i + 1 < commands().size() ? ", " : " or ";
-    text += commands()[i].spec.name;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
+    text += names[i];
   }
   return text;
 }
@@ -143,18 +145,61 @@ std::string listed_commands() {
 const CommandEntry& command_named(const std::string& name) {
   const auto found = std::ranges::find(commands(), name, [](const CommandEntry& entry) { return entry.spec.name; });
   if (found != commands().end()) return *found;
-  const std::string what = name.empty() ? "no command given" : "unknown command " + name;
-  throw UsageError(what + ", expected " + listed_commands() + help_hint(""));
+  if (later_commands().contains(name)) not_available(name);
+  const std::string expected = ", expected " + listed_commands() + help_hint("");
+  if (name.empty()) throw UsageError("no command given" + expected);
+  const std::string meant = suggestion(name, command_names());
+  throw UsageError("unknown command " + name + (meant.empty() ? expected : meant));
+}
+
+// Those that the help lists.
+std::vector<std::string> listed_names(const CommandSpec& spec) {
+  std::vector<std::string> listed;
+  for (const OptionGroup& group : spec.groups) {
+    if (group.heading.empty()) continue;
+    for (const OptionSpec& option : group.options) listed.push_back(names_of(option).back());
+  }
+  return listed;
+}
+
+// `names`: those that it may be meant to be.
+[[noreturn]] void refuse_unknown(const std::string& option, const std::vector<std::string>& names,
+                                 const std::string& command) {
+  const std::string meant = suggestion(option, names);
+  throw UsageError("unknown option " + option + (meant.empty() ? help_hint(command) : meant));
+}
+
+// An option that no command has may have a value, which would be taken for the command.
+void check_options_before_command(const Arguments& arguments, const OptionNames& of_all_commands) {
+  if (std::ranges::count(command_names(), arguments.command) > 0) return;
+  std::vector<std::string> listed = listed_names(program_spec());
+  for (const CommandEntry& entry : commands()) {
+    const std::vector<std::string> names = listed_names(entry.spec);
+    listed.insert(listed.end(), names.begin(), names.end());
+  }
+  for (const OptionArgument& option : arguments.options) {
+    if (!contains(of_all_commands, option.name)) refuse_unknown(option.name, listed, "");
+  }
+}
+
+void refuse_repetition(const OptionSpec& option, const Arguments& arguments) {
+  const std::vector<std::string> names = names_of(option);
+  const auto is_option = [&](const OptionArgument& argument) { return std::ranges::count(names, argument.name) > 0; };
+  if (std::ranges::count_if(arguments.options, is_option) < 2) return;
+  throw UsageError(names.back() + ": given twice, expected once");
 }
 
 // CLI11 would ask for missing operands before it names a wrong option.
 void check_options(const CommandSpec& spec, const Arguments& arguments) {
   const OptionNames known = option_names(spec);
   for (const OptionArgument& option : arguments.options) {
-    if (!contains(known, option.name)) {
-      throw UsageError("unknown option " + option.name + help_hint(arguments.command));
-    }
+    if (!contains(known, option.name)) refuse_unknown(option.name, listed_names(spec), arguments.command);
     if (contains(spec.later, option.name)) not_available(option.name);
+  }
+  for (const OptionGroup& group : spec.groups) {
+    for (const OptionSpec& option : group.options) {
+      if (option.once) refuse_repetition(option, arguments);
+    }
   }
 }
 
@@ -167,19 +212,43 @@ void check_operand_count(const CommandSpec& spec, const Arguments& arguments) {
 
 std::string version_text() { return std::string("raycone ") + kVersion + " (" + kCommit + ")\n" + kLibraries + "\n"; }
 
+// What the values of `spec`'s options make of it, with a suggestion where one of them is misspelt.
+Command parse_values(const CommandEntry& entry, const Values& values) {
+  try {
+    return entry.parse(values);
+  } catch (const InvalidValue& error) {
+    for (const OptionGroup& group : entry.spec.groups) {
+      for (const OptionSpec& option : group.options) {
+        if (names_of(option).back() != error.name()) continue;
+        throw UsageError(error.what() + value_suggestion(error.text(), option.value));
+      }
+    }
+    throw;
+  }
+}
+
 }  // namespace
 
+std::string help_text(const std::string& command) {
+  CLI::App root(program_spec().description, program_spec().name);
+  declare_all(root);
+  if (command.empty()) return formatted_help(root, "");
+  return formatted_help(*root.get_subcommand(command_named(command).spec.name), program_spec().name);
+}
+
 Command parse_command_line(const std::vector<std::string>& words) {
-  const Arguments arguments = split_arguments(words, all_option_names());
-  if (given(arguments, {"--version"})) return PrintCommand{version_text()};
+  const OptionNames all_names = all_option_names();
+  const Arguments arguments = split_arguments(words, all_names);
+  if (given(arguments, {"-V", "--version"})) return PrintCommand{version_text()};
   const bool help = given(arguments, {"-h", "--help"});
-  if (help && arguments.command.empty()) return PrintCommand{help_of("")};
+  if (help && arguments.command.empty()) return PrintCommand{help_text("")};
   if (arguments.command.empty()) check_options(program_spec(), arguments);
-  const CommandEntry& command = command_named(arguments.command);
-  if (help) return PrintCommand{help_of(arguments.command)};
-  check_options(command.spec, arguments);
-  check_operand_count(command.spec, arguments);
-  return command.parse(parse_with_cli11(arguments));
+  check_options_before_command(arguments, all_names);
+  const CommandEntry& entry = command_named(arguments.command);
+  if (help) return PrintCommand{help_text(arguments.command)};
+  check_options(entry.spec, arguments);
+  check_operand_count(entry.spec, arguments);
+  return parse_values(entry, parse_with_cli11(arguments));
 }
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/idle_options.h"
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
@@ -37,8 +38,8 @@ std::optional<RawPrecision> parse_raw(const Values& values) {
 }
 
 OutputFormats output_formats(const PointsCommand& command) {
-  if (command.sample) return {{FieldFormat::kNpz, FieldFormat::kCsv}, "npz or csv"};
-  OutputFormats formats{{FieldFormat::kCsv, FieldFormat::kNpy}, "csv or npy"};
+  if (command.sample) return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .listed = "npz or csv"};
+  OutputFormats formats{.written = {FieldFormat::kCsv, FieldFormat::kNpy}, .listed = "csv or npy", .later = {"npz"}};
   if (command.reading.raw) {
     const bool single = *command.reading.raw == RawPrecision::kFloat;
     formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;
@@ -59,6 +60,7 @@ void parse_points_source(const Values& values, PointsCommand& command) {
   }
   if (!values.given("POINTS")) throw UsageError("POINTS is required, or --sample" + help_hint("points"));
   if (command.points.empty()) throw UsageError("POINTS: expected a file, not an empty name");
+  if (has_extension(command.points, "npz")) not_available(command.points);
   if (command.mesh.path == "-" && command.points == "-") {
     throw UsageError("MESH and POINTS cannot both be standard input");
   }
@@ -67,25 +69,31 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 }  // namespace
 
 CommandSpec points_spec() {
-  return {.name = "points",
-          .description = "Evaluate a mesh at given or random points",
-          .operands = {mesh_operand(),
-                       {"POINTS", "CSV, TSV or blank-separated text, NPY or PLY file; - for text on standard input",
-                        OperandCount::kOptional}},
-          .groups = {mesh_group(),
-                     {"Points",
-                      {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
-                       {"--raw", "f64|f32", "Read little-endian x y z triples, write bare values"}}},
-                     sample_group(),
-                     field_group(),
-                     unlisted_field_group(),
-                     output_group("csv|npy|npz"),
-                     run_group()},
-          .examples = {
-              "raycone points bunny.obj points.csv > values.csv", "raycone points bunny.obj points.npy -o values.npy",
-              "raycone points bunny.obj cloud.ply -o values.csv", "raycone points bunny.obj table.tsv --columns 2,3,4",
-              "echo 0 0.1 0 | raycone points bunny.obj -",
-              "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"}};
+  OptionGroup field = field_group();
+  std::erase_if(field.options, [](const OptionSpec& option) { return option.names == "--band"; });
+  OptionGroup unlisted = unlisted_field_group();
+  unlisted.options.push_back({"--band", "B", ""});  // to be told why it is not there
+  return {
+      .name = "points",
+      .description = "Evaluate a mesh at given or random points",
+      .operands = {mesh_operand(),
+                   {"POINTS", "CSV, TSV or blank-separated text, NPY or PLY file; - for text on standard input",
+                    OperandCount::kOptional}},
+      .groups = {mesh_group(),
+                 {"Points",
+                  {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
+                   {"--raw", "f64|f32", "Read little-endian x y z triples, write bare values"}}},
+                 sample_group(),
+                 field,
+                 unlisted,
+                 output_group("csv|npy|npz"),
+                 run_group()},
+      .examples = {"raycone points bunny.obj points.csv > values.csv",
+                   "raycone points bunny.obj points.npy -o values.npy",
+                   "raycone points bunny.obj cloud.ply -o values.csv",
+                   "raycone points bunny.obj table.tsv --columns 2,3,4", "echo 0 0.1 0 | raycone points bunny.obj -",
+                   "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"},
+      .later = {{"--normalize", "--parts", "--dtype"}, {"--pack-bits"}}};
 }
 
 Command parse_points(const Values& values) {
@@ -98,6 +106,7 @@ Command parse_points(const Values& values) {
   command.reading.raw = parse_raw(values);
   command.output = parse_output_files(values);
   command.encoding = parse_encoding(values, command.output, output_formats(command));
+  refuse_idle_options(values, command);
   return command;
 }
 

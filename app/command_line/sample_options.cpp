@@ -62,6 +62,7 @@ std::optional<SampleRequest> parse_sample(const Values& values) {
   const std::string text = values.text("--sample");
   for (const std::string_view item : items_of(text)) {
     const std::optional<SampleGroup> group = group_from(item);
+    if (item.starts_with("surface=")) not_available("--sample " + text);
     if (!group) invalid("--sample", text, "uniform=N, near=N:SIGMA or several of them, with commas between");
     request.groups.push_back(*group);
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/command_line/common_options.h"
+#include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
@@ -136,7 +137,8 @@ CommandSpec slice_spec() {
           .examples = {"raycone slice bunny.obj -o bunny.png",
                        "raycone slice bunny.obj -o foot.png --axis y --at 10% --padding 0.02",
                        "raycone slice part.stl -o cut.png --normal 1,1,0 --origin 0,0,5 --up 0,0,1",
-                       "raycone slice part.stl -o part.png --size 4096 --values part.npy"}};
+                       "raycone slice part.stl -o part.png --size 4096 --values part.npy"},
+          .later = {{"--normalize"}, {}}};
 }
 
 Command parse_slice(const Values& values) {
@@ -147,6 +149,7 @@ Command parse_slice(const Values& values) {
   command.run = parse_run(values);
   command.slice = parse_request(values, up.picture);
   command.output = parse_output_files(values);
+  refuse_idle_depfile(values, command.output);
   check_format(values, command.output.path);
   command.legend = !values.given("--no-legend");
   if (values.given("--values")) command.values = values.text("--values");

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 
 namespace raycone {
@@ -43,8 +42,11 @@ void Values::exclude(const std::string& name, std::initializer_list<const char*>
   }
 }
 
+InvalidValue::InvalidValue(const std::string& name, const std::string& text, const std::string& expected)
+    : UsageError(name + " " + text + ": expected " + expected), name_(name), text_(text) {}
+
 void invalid(const std::string& name, const std::string& text, const std::string& expected) {
-  throw UsageError(name + " " + text + ": expected " + expected);
+  throw InvalidValue(name, text, expected);
 }
 
 void not_available(const std::string& what) { throw UsageError(what + ": not available yet"); }

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/process/usage_error.h"
+
 namespace raycone {
 
 class Values {
@@ -35,6 +37,19 @@ class Values {
   std::map<std::string, std::vector<std::string>> given_;
 };
 
+// A value that an option does not take.
+class InvalidValue : public UsageError {
+ public:
+  InvalidValue(const std::string& name, const std::string& text, const std::string& expected);
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string name_;
+  std::string text_;
+};
+
+// Throws InvalidValue.
 [[noreturn]] void invalid(const std::string& name, const std::string& text, const std::string& expected);
 [[noreturn]] void not_available(const std::string& what);
 

@@ -4,9 +4,9 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/commands.h"
+#include "app/command_line/value_candidates.h"
 #include "app/manual/completion.h"
 #include "app/manual/shell_words.h"
-#include "app/manual/value_candidates.h"
 
 namespace raycone {
 namespace {
@@ -116,8 +116,9 @@ std::string command_case(const std::string& name, const CommandSpec& spec, const
 }
 
 std::string operands_of(const CommandSpec& spec) {
-  const FileCandidates files = candidates_for(spec.operands.front().name).files;
-  return files == FileCandidates::kDirectories ? "      operands=directories\n" : "      operands=files\n";
+  const ValueCandidates candidates = candidates_for(spec.operands.front().name);
+  if (!candidates.words.empty()) return "      operands=words words=" + quoted(joined(candidates.words, " ")) + '\n';
+  return candidates.files == FileCandidates::kDirectories ? "      operands=directories\n" : "      operands=files\n";
 }
 
 std::string names_with_value() {

@@ -2,9 +2,9 @@
 
 #include "app/command_line/command_spec.h"
 #include "app/command_line/commands.h"
+#include "app/command_line/value_candidates.h"
 #include "app/manual/completion.h"
 #include "app/manual/shell_words.h"
-#include "app/manual/value_candidates.h"
 
 namespace raycone {
 namespace {

@@ -48,6 +48,7 @@ struct BatchCommand {
 struct ReportCommand {
   std::string directory;  // of a batch
   std::string output;     // "-": standard output
+  RunOptions run;
 };
 
 }  // namespace raycone

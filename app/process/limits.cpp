@@ -199,6 +199,7 @@ std::string readable_bytes(double bytes) {
   std::size_t unit = 0;
   for (; bytes >= 1024.0 && unit + 1 < std::size(kUnits); ++unit) bytes /= 1024.0;
   char text[64];
+  if (bytes == 1.0 && unit == 0) return "1 byte";
   std::snprintf(text, sizeof text, bytes < 10.0 && unit > 0 ? "%.2g %s" : "%.0f %s", bytes, kUnits[unit]);
   return text;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io/files/counted.h"
+
 namespace raycone {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr std::chrono::milliseconds kInterval{100};
 std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
   const auto count = static_cast<double>(done);
   const double rate = seconds > 0.0 ? count / seconds : 0.0;
-  if (!total) return std::to_string(done) + " samples  " + readable_count(rate) + "samples/s";
+  if (!total) return counted(done, "sample") + "  " + readable_count(rate) + "samples/s";
   const auto all = static_cast<double>(*total);
   std::string line =
       std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_count(rate) + "samples/s";

@@ -130,7 +130,8 @@ void leave_signals_to_supervisor() {
 void start_timeout(double seconds, const std::string& name) {
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g", seconds);
-  const std::string line = message_line(name + ": not finished within " + limit + " seconds (--timeout)");
+  const std::string line = message_line(name + ": not finished within " + limit +
+                                        (seconds == 1.0 ? " second" : " seconds") + " (--timeout)");
   line.copy(timeout_message, sizeof timeout_message - 1);
   handle(SIGALRM, time_out);
   const double capped = std::min(seconds, kMaxTimeout);

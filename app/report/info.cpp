@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/text/plain_text.h"
+#include "io/files/counted.h"
 
 namespace raycone {
 namespace {
@@ -88,7 +89,7 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("bounds", printed(info.bounds.lower) + " to " + printed(info.bounds.upper));
   table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
   table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
-  const std::string on_threads = threads == 1 ? "1 thread" : std::to_string(threads) + " threads";
+  const std::string on_threads = counted(static_cast<std::uint64_t>(threads), "thread");
   std::string heading = "cost on " + on_threads;
   for (const Lattice& lattice : costed.lattices) table.row(std::exchange(heading, ""), cost_of(lattice, info, threads));
   if (costed.no_more) table.row("no lattice", *costed.no_more);

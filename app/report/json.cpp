@@ -63,7 +63,10 @@ std::string to_json(const RunReport& report) {
                 {"warnings", report.warnings},
                 {"seconds", to_object(report.seconds)}};
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
-  if (report.verification) document["verify"] = to_object(*report.verification);
+  if (report.verification) {
+    document["verify"] = to_object(*report.verification);
+    document["seconds"]["verify"] = report.seconds.verify;
+  }
   return to_text(document);
 }
 

@@ -2,13 +2,10 @@
 
 #include <cstdio>
 
+#include "io/files/counted.h"
+
 namespace raycone {
 namespace {
-
-// "1 face", "2 faces"
-std::string counted(std::uint64_t count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
 
 std::string verification_clause(const Verification& verification) {
   char difference[64];
@@ -27,10 +24,13 @@ std::string verification_clause(const Verification& verification) {
 std::string summary_line(const RunReport& report) {
   const Seconds& s = report.seconds;
   char times[160];
-  std::snprintf(times, sizeof times, " in %.2f s (read %.2f, prepare %.2f, evaluate %.2f, write %.2f) -> ", s.total,
-                s.read, s.prepare, s.evaluate, s.write);
+  std::snprintf(times, sizeof times, " in %.2f s (read %.2f, prepare %.2f, evaluate %.2f, write %.2f", s.total, s.read,
+                s.prepare, s.evaluate, s.write);
+  char verify[32] = "";
+  if (report.verification) std::snprintf(verify, sizeof verify, ", verify %.2f", s.verify);
   return report.mesh + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") +
-         ", " + counted(report.samples, "sample") + times + (report.output == "-" ? "standard output" : report.output) +
+         ", " + counted(report.samples, "sample") + times + verify + ") -> " +
+         (report.output == "-" ? "standard output" : report.output) +
          (report.verification ? verification_clause(*report.verification) : "");
 }
 

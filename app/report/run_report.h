@@ -17,6 +17,7 @@ struct Seconds {
   double prepare = 0.0;   // all that depends on the mesh alone: welding, exterior edges, acceleration structures
   double evaluate = 0.0;  // the rest of the evaluation
   double write = 0.0;
+  double verify = 0.0;  // where asked for
   double total = 0.0;
 };
 

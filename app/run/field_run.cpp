@@ -49,8 +49,9 @@ void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>
 
 void FieldRun::verify(double band_width) {
   if (field_.verify == 0) return;
-  run_.report.verification =
-      raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
+  run_.report.verification = timed(run_.report.seconds.verify, [&] {
+    return raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
+  });
 }
 
 OutputDescription description_of(const RunReport& report, const FieldOptions& field, const FieldEncoding& encoding) {

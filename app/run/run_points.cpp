@@ -10,6 +10,7 @@
 
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
+#include "app/process/usage_error.h"
 #include "app/run/disk_space.h"
 #include "app/run/field_run.h"
 #include "app/run/mesh_run.h"
@@ -46,7 +47,12 @@ void check_points_memory(const PointsCommand& command, const TriangleMesh& mesh,
 
 // Null where points are to be drawn, which takes the mesh.
 std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
-  return command.sample ? nullptr : open_points(command.points, command.reading);
+  if (command.sample) return nullptr;
+  std::unique_ptr<PointReader> reader = open_points(command.points, command.reading);
+  if (command.reading.columns && !reader->has_columns()) {
+    throw UsageError("--columns: has no effect on " + command.points + ", which is no text");
+  }
+  return reader;
 }
 
 }  // namespace

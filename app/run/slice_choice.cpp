@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -28,6 +29,12 @@ std::string printed(double number) {
   return text;
 }
 
+// All digits that matter.
+std::string shortest(double number) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
 Vec3 unit(int axis) {
   Vec3 v;
   v[axis] = 1.0;
@@ -46,9 +53,20 @@ double position_of(const AxisPlane& plane, const Box& box) {
   const double part = std::get<Percentage>(plane.at).value / 100.0;
   const double lower = box.lower[plane.axis];
   const double upper = box.upper[plane.axis];
-  const double at = lower + part * (upper - lower);
+  const double at = part == 1.0 ? upper : lower + part * (upper - lower);  // which may round to beyond the end
   if (!std::isfinite(at)) throw LimitError("the box is too large for double precision; see --scale");
   return at;
+}
+
+// The picture would be blank.
+void refuse_outside(const AxisPlane& plane, double at, const Box& box) {
+  const double lower = box.lower[plane.axis];
+  const double upper = box.upper[plane.axis];
+  if (lower <= at && at <= upper) return;
+  const auto* percentage = std::get_if<Percentage>(&plane.at);
+  const std::string asked = percentage ? shortest(percentage->value) + "% (" + shortest(at) + ")" : shortest(at);
+  throw UsageError("--at " + asked + ": outside the box, expected " + shortest(lower) + " to " + shortest(upper) +
+                   "; see --bounds and --padding");
 }
 
 void add_pixels(std::int64_t& count, std::int64_t padding) {
@@ -95,6 +113,7 @@ PlaneView view_of(const Lattice& lattice, int axis) {
 
 Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
   const double at = position_of(plane, box);
+  refuse_outside(plane, at, padded);
   Slice slice;
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);

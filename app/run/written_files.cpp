@@ -1,5 +1,7 @@
 #include "app/run/written_files.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -16,8 +18,8 @@ namespace {
 
 std::string name_of_output(const std::string& path) { return path == "-" ? "standard output" : path; }
 
-std::vector<WrittenFile> files_written(const OutputFiles& output) {
-  std::vector<WrittenFile> written{{output.path, "output"}};
+std::vector<WrittenFile> files_written(const OutputFiles& output, bool text) {
+  std::vector<WrittenFile> written{{output.path, "output", text}};
   if (output.report) written.push_back({*output.report, "report"});
   if (output.depfile) written.push_back({*output.depfile, "depfile"});
   return written;
@@ -25,13 +27,17 @@ std::vector<WrittenFile> files_written(const OutputFiles& output) {
 
 }  // namespace
 
-std::vector<WrittenFile> files_written(const LatticeCommand& command) { return files_written(command.output); }
+std::vector<WrittenFile> files_written(const LatticeCommand& command) {
+  return files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+}
 
-std::vector<WrittenFile> files_written(const PointsCommand& command) { return files_written(command.output); }
+std::vector<WrittenFile> files_written(const PointsCommand& command) {
+  return files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+}
 
 std::vector<WrittenFile> files_written(const SliceCommand& command) {
-  std::vector<WrittenFile> written = files_written(command.output);
-  if (command.values) written.push_back({*command.values, "values"});
+  std::vector<WrittenFile> written = files_written(command.output, false);
+  if (command.values) written.push_back({*command.values, "values", false});
   return written;
 }
 
@@ -53,18 +59,26 @@ void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std:
   std::vector<std::optional<FileIdentity>> read;
   for (const std::string& input : inputs) read.push_back(identity_of_input(input));
   for (std::size_t n = 0; n < written.size(); ++n) {
-    const auto& [path, role] = written[n];
+    const std::string& path = written[n].path;
+    const std::string& role = written[n].role;
     const std::optional<FileIdentity> identity = identity_of_output(path);
     if (identity && std::ranges::count(read, identity) > 0) {
       throw UsageError(name_of_output(path) + ": is input and " + role);
     }
     for (std::size_t before = 0; before < n; ++before) {
-      const auto& [other, other_role] = written[before];
+      const std::string& other = written[before].path;
       if (path == other || (identity && identity == identity_of_output(other))) {
-        throw UsageError(name_of_output(path) + ": is " + other_role + " and " + role);
+        throw UsageError(name_of_output(path) + ": is " + written[before].role + " and " + role);
       }
     }
   }
+}
+
+void refuse_terminal(const std::vector<WrittenFile>& written) {
+  const bool bytes =
+      std::ranges::any_of(written, [](const WrittenFile& file) { return file.path == "-" && !file.text; });
+  if (!bytes || !isatty(STDOUT_FILENO)) return;
+  throw UsageError("standard output: is a terminal, which cannot show this format; expected -o FILE, or a pipe behind");
 }
 
 SideFiles open_side_files(const OutputFiles& output) {

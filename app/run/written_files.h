@@ -18,6 +18,7 @@ namespace raycone {
 struct WrittenFile {
   std::string path;  // "-": standard output
   std::string role;
+  bool text = true;  // which a terminal can show
 };
 [[nodiscard]] std::vector<WrittenFile> files_written(const LatticeCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const PointsCommand& command);
@@ -32,6 +33,9 @@ struct WrittenFile {
 // `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,
 // and once more when it is known which files a mesh refers to.
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs);
+
+// Throws UsageError where what is no text would go to standard output, and that is a terminal.
+void refuse_terminal(const std::vector<WrittenFile>& written);
 
 // What is written beside the results; null where not asked for.
 struct SideFiles {

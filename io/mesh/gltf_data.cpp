@@ -14,6 +14,7 @@
 #include <tiny_gltf.h>
 
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/gltf_resources.h"
 
@@ -140,8 +141,7 @@ std::string_view GltfData::load(std::size_t index) {
     fail("buffer", index, "has no uri, expected one (only the first buffer of a GLB is its binary chunk)");
   }
   if (bytes.size() < buffer.byte_length) {
-    fail("buffer", index,
-         "has " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(buffer.byte_length));
+    fail("buffer", index, "has " + counted(bytes.size(), "byte") + ", expected " + std::to_string(buffer.byte_length));
   }
   bytes_ += bytes.size();
   return bytes.substr(0, buffer.byte_length);
@@ -153,8 +153,8 @@ std::string_view GltfData::view(std::size_t index) {
   auto& loaded = loaded_[buffer];
   if (!loaded) loaded = load(buffer);
   if (view.byteOffset > loaded->size() || view.byteLength > loaded->size() - view.byteOffset) {
-    throw InputError(source_.name + ": bufferView " + std::to_string(index) + ": " + std::to_string(view.byteLength) +
-                     " bytes at byte " + std::to_string(view.byteOffset) + ", but buffer " + std::to_string(buffer) +
+    throw InputError(source_.name + ": bufferView " + std::to_string(index) + ": " + counted(view.byteLength, "byte") +
+                     " at byte " + std::to_string(view.byteOffset) + ", but buffer " + std::to_string(buffer) +
                      " has only " + std::to_string(loaded->size()));
   }
   return loaded->substr(view.byteOffset, view.byteLength);
@@ -235,7 +235,7 @@ std::vector<Element> GltfData::read(std::size_t index, std::size_t components,
     const std::uint32_t target = targets.index(i);
     if (target >= result.size()) {
       fail("accessor", index,
-           "has sparse index " + std::to_string(target) + ", but only " + std::to_string(result.size()) + " elements");
+           "has sparse index " + std::to_string(target) + ", but only " + counted(result.size(), "element"));
     }
     result[target] = (values.*get)(i);
   }
@@ -250,16 +250,16 @@ GltfData::Elements GltfData::elements(std::size_t accessor, int view_index, std:
   const std::uint64_t stride = declared == 0 ? size : declared;
   if (stride < size) {
     fail("accessor", accessor,
-         "has elements of " + std::to_string(size) + " bytes, more than the byteStride " + std::to_string(stride) +
+         "has elements of " + counted(size, "byte") + ", more than the byteStride " + std::to_string(stride) +
              " of bufferView " + std::to_string(view_index));
   }
   const std::uint64_t available = offset < bytes.size() ? bytes.size() - offset : 0;
   const bool fits = count == 0 || (available >= size && count - 1 <= (available - size) / stride);
   if (!fits) {
     fail("accessor", accessor,
-         "has " + std::to_string(count) + " elements of " + std::to_string(size) + " bytes at byte " +
-             std::to_string(offset) + ", more than the " + std::to_string(bytes.size()) + " bytes of bufferView " +
-             std::to_string(view_index) + " hold");
+         "has " + counted(count, "element") + " of " + counted(size, "byte") + " at byte " + std::to_string(offset) +
+             ", more than the " + counted(bytes.size(), "byte") + " of bufferView " + std::to_string(view_index) +
+             " hold");
   }
   return {count == 0 ? nullptr : bytes.data() + offset, static_cast<std::size_t>(stride), size_of(type), type,
           model_->accessors[accessor].normalized};
@@ -295,14 +295,14 @@ std::optional<DracoMesh> GltfData::decompressed(const tinygltf::Primitive& primi
   DracoMesh mesh = decode_draco(bytes, attribute, accessor.componentType, place);
   const auto check = [&](const char* what, std::size_t count, std::size_t expected) {
     if (count == expected) return;
-    throw InputError(place + "Draco data of " + std::to_string(count) + " " + what + ", but the accessor has " +
+    throw InputError(place + "Draco data of " + counted(count, what) + ", but the accessor has " +
                      std::to_string(expected));
   };
-  check("vertices", mesh.vertices.size(), accessor.count);
+  check("vertex", mesh.vertices.size(), accessor.count);
   const auto indices = primitive.attributes.find(kGltfIndices);
   if (indices != primitive.attributes.end()) {
     check_indices(to_size(indices->second));
-    check("corners", mesh.corners.size(), model_->accessors[to_size(indices->second)].count);
+    check("corner", mesh.corners.size(), model_->accessors[to_size(indices->second)].count);
   }
   spend(mesh.vertices.size());
   for (Vec3& v : mesh.vertices) {

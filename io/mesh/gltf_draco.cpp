@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -130,7 +131,7 @@ DracoMesh decode_draco(std::string_view bytes, int positions, int component_type
   draco::Mesh mesh;
   const draco::Status status = decoder_of(bytes, allowance, place)->Decode(draco::DecoderOptions(), &buffer, &mesh);
   if (allowance.exceeded()) {
-    throw LimitError(place + "Draco data of " + std::to_string(bytes.size()) + " bytes claim to hold far more");
+    throw LimitError(place + "Draco data of " + counted(bytes.size(), "byte") + " claim to hold far more");
   }
   if (!status.ok()) fail(place, "cannot be decoded");
 

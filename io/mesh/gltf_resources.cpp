@@ -7,6 +7,7 @@
 
 #include "io/files/base64.h"
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/mesh/mesh_error.h"
@@ -32,9 +33,8 @@ Chunk next_chunk(const NamedBytes& source, std::string_view glb, std::size_t& of
   const std::uint32_t type = load_little_endian<std::uint32_t>(glb.data() + offset + 4);
   const std::size_t data = offset + kChunkHeaderSize;
   if (length > glb.size() - data) {
-    fail_at_byte(
-        source, offset,
-        "chunk of " + std::to_string(length) + " bytes, but only " + std::to_string(glb.size() - data) + " remain");
+    fail_at_byte(source, offset,
+                 "chunk of " + counted(length, "byte") + ", but only " + std::to_string(glb.size() - data) + " remain");
   }
   offset = data + length;
   return {type, data, glb.substr(data, length)};
@@ -130,8 +130,7 @@ GlbChunks split_glb(const NamedBytes& source) {
   if (version != 2) fail_at_byte(source, 4, "GLB version " + std::to_string(version) + ", expected 2");
   const std::uint32_t length = load_little_endian<std::uint32_t>(bytes.data() + 8);
   if (length > bytes.size() || length < kGlbHeaderSize) {
-    fail_at_byte(source, 8,
-                 "GLB announces " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
+    fail_at_byte(source, 8, "GLB announces " + counted(length, "byte") + ", but has " + std::to_string(bytes.size()));
   }
   const std::string_view glb = bytes.substr(0, length);
   std::size_t offset = kGlbHeaderSize;

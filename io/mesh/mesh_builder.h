@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
 
@@ -84,7 +85,7 @@ class MeshBuilder {
   // The mesh, with a warning about skipped faces. Nothing may follow.
   [[nodiscard]] ParsedMesh finish() {
     if (const std::uint64_t skipped = parsed_.skipped_faces)
-      warn(std::to_string(skipped) + (skipped == 1 ? " face" : " faces") + " with fewer than three corners skipped");
+      warn(counted(skipped, "face") + " with fewer than three corners skipped");
     return std::move(parsed_);
   }
 

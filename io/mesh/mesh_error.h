@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
 
@@ -16,9 +17,15 @@ inline constexpr std::size_t kMaxQuoted = 120;
 inline constexpr const char* kNonFiniteCorner =
     "a vertex that faces use has a coordinate that is not finite, expected finite numbers";
 
+// "1 byte follows", "2 bytes follow"
+[[nodiscard]] inline std::string remaining_bytes(std::uint64_t count) {
+  return counted(count, "byte") + (count == 1 ? " follows" : " follow");
+}
+
 // For formats that count vertices from 0.
 [[nodiscard]] inline std::string index_out_of_range(std::int64_t index, std::uint64_t vertices) {
-  return "face index " + std::to_string(index) + ", but there are only " + std::to_string(vertices) + " vertices";
+  return "face index " + std::to_string(index) + ", but there " + (vertices == 1 ? "is" : "are") + " only " +
+         counted(vertices, "vertex");
 }
 
 // Throws InputError "FILE:byte N: what", bytes counted from 0.

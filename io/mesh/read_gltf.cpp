@@ -13,6 +13,7 @@
 #include <span>
 #include <utility>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/affine_map.h"
 #include "io/mesh/gltf_data.h"
@@ -25,10 +26,6 @@ namespace raycone {
 namespace {
 
 constexpr std::uint64_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
-
-std::string counted(std::uint64_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
 
 // Makes room for `count` more elements, growing geometrically all the same.
 template <class Element>
@@ -126,8 +123,7 @@ class MeshAssembler {
         throw InputError(place_ + "index " + std::to_string(index) + " is the restart value, expected a vertex");
       }
       if (index >= vertices.count) {
-        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + std::to_string(vertices.count) +
-                         " vertices");
+        throw InputError(place_ + "index " + std::to_string(index) + ", but only " + counted(vertices.count, "vertex"));
       }
     }
     add_faces(mode, corners.size(), vertices, [&](std::size_t corner) { return corners[corner]; });

@@ -32,12 +32,24 @@ std::optional<MeshFormat> format_from_extension(const std::string& path) {
   return extension.empty() ? std::nullopt : mesh_format_from_name(std::string_view(extension).substr(1));
 }
 
+// Compressed by gzip or zstd, or an archive as 3MF is.
+bool is_packed(std::string_view bytes) {
+  return bytes.starts_with("\x1f\x8b") || bytes.starts_with("\x28\xb5\x2f\xfd") || bytes.starts_with("PK\x03\x04");
+}
+
+bool has_later_extension(const std::string& path) {
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  return extension == ".gz" || extension == ".zst" || extension == ".3mf";
+}
+
 MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = recognise_mesh(source.bytes)) return *format;
+  if (is_packed(source.bytes)) throw NotAvailable(source.name);
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
+  if (has_later_extension(source.name)) throw NotAvailable(source.name);
   throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB" +
-                   (source.name == "-" ? " (--mesh-format names what has no signature)" : ""));
+                   "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
 }
 
 // Where relative references of the file at `path` start.

@@ -2,6 +2,7 @@
 // Format: Wavefront "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 #include <vector>
 
+#include "io/files/counted.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_error.h"
@@ -88,8 +89,9 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(builder_.vertex_count());
     if (index == 0) text_.fail_at(offset, "face index 0, but OBJ counts vertices from 1");
     if (index < -count) {
-      text_.fail_at(offset, "face index " + std::to_string(index) + ", but only " + std::to_string(count) +
-                                " vertices precede it");
+      text_.fail_at(offset, "face index " + std::to_string(index) + ", but only " +
+                                counted(static_cast<std::uint64_t>(count), "vertex") +
+                                (count == 1 ? " precedes it" : " precede it"));
     }
     if (index < 0) return static_cast<std::uint32_t>(count + index);
     if (index > count) add_forward_reference(index, offset);
@@ -107,7 +109,7 @@ class ObjReader {
     for (const ForwardReference& reference : forward_references_) {
       if (reference.index <= count) continue;
       text_.fail_at(reference.offset, "face index " + std::to_string(reference.index) + ", but the file has only " +
-                                          std::to_string(count) + " vertices");
+                                          counted(static_cast<std::uint64_t>(count), "vertex"));
     }
   }
 

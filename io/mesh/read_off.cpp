@@ -1,5 +1,6 @@
 // OFF, the Object File Format of Geomview: ASCII, three coordinates, colours, normals and texture coordinates passed
 // over. Format: geomview.org, "OFF Files" (object file formats, OOGL reference).
+#include "io/files/counted.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_error.h"
@@ -15,12 +16,12 @@ class OffReader {
 
   ParsedMesh read() {
     read_keyword();
-    const std::uint64_t vertices = read_count("vertices");
-    const std::uint64_t faces = read_count("faces");
+    const std::uint64_t vertices = read_count("vertex");
+    const std::uint64_t faces = read_count("face");
     // The number of edges, often wrong and sometimes absent, tells nothing.
     text_.skip_line();
-    check_announced("vertices", vertices, kShortestVertex);
-    check_announced("faces", faces, kShortestFace);
+    check_announced("vertex", vertices, kShortestVertex);
+    check_announced("face", faces, kShortestFace);
     builder_.reserve_vertices(vertices);
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
     for (std::uint64_t i = 0; i < faces; ++i) read_face(i, faces);
@@ -55,25 +56,24 @@ class OffReader {
   std::uint64_t read_count(const char* what) {
     text_.skip_blanks();
     const std::optional<std::int64_t> count = text_.at_line_end() ? std::nullopt : text_.integer();
-    if (!count) text_.fail(std::string("expected the number of ") + what + ", found " + text_.found());
-    if (*count < 0) text_.fail(std::string("expected 0 or more ") + what + ", found " + std::to_string(*count));
+    if (!count) text_.fail("expected the number of " + plural_of(what) + ", found " + text_.found());
+    if (*count < 0) text_.fail("expected 0 or more " + plural_of(what) + ", found " + std::to_string(*count));
     return static_cast<std::uint64_t>(*count);
   }
 
   // Before anything is allocated for them.
   void check_announced(const char* what, std::uint64_t count, std::size_t shortest) const {
     if (count <= (text_.remaining() + 1) / shortest) return;
-    text_.fail(std::to_string(count) + " " + what + " announced, but only " + std::to_string(text_.remaining()) +
-               " bytes follow");
+    text_.fail(counted(count, what) + " announced, but only " + remaining_bytes(text_.remaining()));
   }
 
   void next_row(const char* what, std::uint64_t index, std::uint64_t count) {
     if (text_.skip_empty_lines()) return;
-    text_.fail("the file ends after " + std::to_string(index) + " of " + std::to_string(count) + " " + what);
+    text_.fail("the file ends after " + std::to_string(index) + " of " + counted(count, what));
   }
 
   void read_vertex(std::uint64_t index, std::uint64_t count) {
-    next_row("vertices", index, count);
+    next_row("vertex", index, count);
     const std::size_t offset = text_.offset();
     Vec3 vertex;
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,8 +87,8 @@ class OffReader {
   }
 
   void read_face(std::uint64_t index, std::uint64_t count) {
-    next_row("faces", index, count);
-    const std::uint64_t corners = read_count("corners");
+    next_row("face", index, count);
+    const std::uint64_t corners = read_count("corner");
     builder_.begin_polygon();
     for (std::uint64_t i = 0; i < corners; ++i) builder_.add_corner(read_corner());
     builder_.end_polygon();

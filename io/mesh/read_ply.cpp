@@ -7,6 +7,7 @@
 #include <concepts>
 
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_error.h"
@@ -215,16 +216,15 @@ class PlyReader {
   }
 
   void warn(std::uint64_t count, const std::string& noun, const std::string& what) {
-    if (count > 0) builder_.warn(std::to_string(count) + " " + noun + (count == 1 ? " " : "s ") + what);
+    if (count > 0) builder_.warn(counted(count, noun) + " " + what);
   }
 
   // The number of rows, which the bytes that follow may be enough for. Rows without properties take none.
   std::uint64_t checked_rows(const PlyElement& element) {
     if (element.properties.empty()) return 0;
     if (element.count > body_.max_rows(element)) {
-      body_.fail_at(body_.next_offset(), std::to_string(element.count) + " elements '" + element.name +
-                                             "' announced, but only " + std::to_string(body_.remaining()) +
-                                             " bytes follow");
+      body_.fail_at(body_.next_offset(), counted(element.count, "element") + " '" + element.name +
+                                             "' announced, but only " + remaining_bytes(body_.remaining()));
     }
     return element.count;
   }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_error.h"
@@ -123,7 +124,8 @@ std::uint32_t checked_triangle_count(const NamedBytes& source) {
   const std::uint64_t room = (source.bytes.size() - kStlHeaderSize) / kStlTriangleSize;
   if (*count > room) {
     fail_at_byte(source, kStlHeaderSize - 4,
-                 std::to_string(*count) + " triangles announced, but only " + std::to_string(room) + " follow");
+                 counted(*count, "triangle") + " announced, but only " + std::to_string(room) +
+                     (room == 1 ? " follows" : " follow"));
   }
   if (*count > std::numeric_limits<std::uint32_t>::max() / 3) {
     throw LimitError(source.name + ": " + std::to_string(*count) +

@@ -32,6 +32,9 @@ class PointReader {
   // Whether a further next() would have to wait for input now: the moment to flush what has been answered.
   [[nodiscard]] virtual bool would_block() const = 0;
 
+  // Whether there are columns to choose from, as in text.
+  [[nodiscard]] virtual bool has_columns() const { return false; }
+
   // Number of points in total where the format announces it (NPY, PLY).
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
 };

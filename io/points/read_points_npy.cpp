@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/points/point_readers.h"
 
@@ -154,14 +155,14 @@ NpyHeader read_header(InputBuffer& input) {
 void check_size(const NpyHeader& header, const InputBuffer& input) {
   const std::uint64_t row = header.columns > kMaxRow ? kMaxRow + 1 : header.columns * header.item_size;
   if (row > kMaxRow) {
-    throw InputError(input.name() + ": NPY rows of " + std::to_string(header.columns) + " columns, expected (n, 3)");
+    throw InputError(input.name() + ": NPY rows of " + counted(header.columns, "column") + ", expected (n, 3)");
   }
   const auto file_size = input.file_size();
   if (!file_size) return;
   const std::uint64_t available = *file_size - std::min(*file_size, header.data_offset);
   if (header.rows > available / row) {
-    throw InputError(input.name() + ": NPY data of " + std::to_string(available) + " bytes, expected " +
-                     std::to_string(header.rows) + " rows of " + std::to_string(row));
+    throw InputError(input.name() + ": NPY data of " + counted(available, "byte") + ", expected " +
+                     counted(header.rows, "row") + " of " + std::to_string(row));
   }
 }
 

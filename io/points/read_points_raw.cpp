@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/files/byte_order.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/points/point_readers.h"
 
@@ -57,7 +58,7 @@ class RawPointReader final : public PointReader {
     const std::size_t rest = input_->pending().size();
     if (rest == 0) return false;
     fail(input_->offset() + rest,
-         "end of the input " + std::to_string(rest) + " bytes into a point, expected " + std::to_string(kPointSize));
+         "end of the input " + counted(rest, "byte") + " into a point, expected " + std::to_string(kPointSize));
   }
 
   // At `place` of what is pending.

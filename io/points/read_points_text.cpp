@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/text_scanner.h"
 #include "io/points/point_readers.h"
@@ -234,6 +235,7 @@ class TextPointReader : public PointReader {
   }
 
   [[nodiscard]] bool would_block() const override { return lines_->would_wait(); }
+  [[nodiscard]] bool has_columns() const override { return true; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
@@ -288,8 +290,8 @@ class TextPointReader : public PointReader {
   }
 
   [[noreturn]] void fail_short(std::string_view line, std::size_t found, std::size_t last) const {
-    lines_->fail("found " + quoted(line) + " with " + std::to_string(found) + (found == 1 ? " column" : " columns") +
-                 ", expected at least " + std::to_string(last + 1));
+    lines_->fail("found " + quoted(line) + " with " + counted(found, "column") + ", expected at least " +
+                 std::to_string(last + 1));
   }
 
   std::unique_ptr<LineReader> lines_;  // would_block() reads ahead: the points stay the same

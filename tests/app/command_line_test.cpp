@@ -62,7 +62,7 @@ TEST_F(CommandLine, WithoutCommandIsUsageError) { expect_error(run_raycone({}), 
 
 TEST_F(CommandLine, UnknownCommandListsThoseThatExist) {
   expect_error(run_raycone({"voxelise"}), 1,
-               "unknown command voxelise, expected lattice, points, slice, info, batch or report");
+               "unknown command voxelise, expected lattice, points, slice, info, batch, report or help");
 }
 
 TEST_F(CommandLine, UnknownOptionIsUsageErrorOfEachCommand) {
@@ -111,11 +111,15 @@ TEST_F(CommandLine, NegativeValuesNeedNoEqualsSign) {
 }
 
 TEST_F(CommandLine, OfAnOptionGivenTwiceTheLastCounts) {
-  const CommandResult result =
-      run_raycone({"lattice", mesh_, "-o", csv_, "--resolution", "7", "--bounds", "0,0,0,9,9,9", "--resolution=2",
-                   "--bounds", "0,0,0,1,1,1", "--quiet", "--quiet", "-o", "-"});
+  const CommandResult result = run_raycone({"lattice", mesh_, "-o", "-", "--resolution", "7", "--bounds", "0,0,0,9,9,9",
+                                            "--resolution=2", "--bounds", "0,0,0,1,1,1", "--quiet", "--quiet"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(std::ranges::count(result.out, '\n'), 1 + 8);
+}
+
+TEST_F(CommandLine, FieldsAndOutputsAreGivenOnce) {
+  expect_error(lattice({"-o", "-"}), 1, "--output: given twice, expected once");
+  expect_error(lattice({"--field", "inside", "--field=inside"}), 1, "--field: given twice, expected once");
   EXPECT_FALSE(std::filesystem::exists(csv_));
 }
 

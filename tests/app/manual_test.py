@@ -84,7 +84,8 @@ class BashCompletion(unittest.TestCase):
         self.offers([""], *COMMANDS)
         self.offers(["lat"], "lattice")
         self.offers(["--quiet", "--threads", "2", "sl"], "slice")
-        self.offers(["-"], "-h", "--help", "--version")
+        self.offers(["-"], "-h", "--help", "-V", "--version")
+        self.offers(["help", "sl"], "slice")
 
     def test_offers_the_options_of_each_command(self):
         for command in COMMANDS:

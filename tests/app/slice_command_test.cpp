@@ -73,7 +73,7 @@ TEST_F(Slice, HasRowZeroAtTheTop) {
 }
 
 TEST_F(Slice, LiesWhereItIsAskedFor) {
-  for (const auto& [at, inside] : {std::pair{"50%", 1.0}, {"0.25", 1.0}, {"-0.5", 0.0}, {"125%", 0.0}}) {
+  for (const auto& [at, inside] : {std::pair{"50%", 1.0}, {"0.25", 1.0}, {"0%", 1.0}, {"100%", 0.0}}) {
     const CommandResult result = slice({"--axis", "y", "--at", at, "--size", "4", "--values", values_});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(values(4, 4), std::vector<double>(16, inside)) << at;

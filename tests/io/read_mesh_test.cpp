@@ -80,8 +80,10 @@ TEST(ReadMesh, FormatOptionNamesOnlyWhatHasNoSignature) {
 
 TEST(ReadMesh, WhatCannotBeRecognisedIsRefused) {
   const TemporaryDirectory directory;
-  EXPECT_EQ(error_of(write(directory, "a.txt", kObj)),
-            ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB");
+  EXPECT_EQ(
+      error_of(write(directory, "a.txt", kObj)),
+      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB; --mesh-format names the format where "
+      "neither content nor extension tells it, as in pipes");
 }
 
 TEST(ReadMesh, StandardInputIsReadUnderTheNameOfADash) {
@@ -97,9 +99,10 @@ TEST(ReadMesh, StandardInputIsReadUnderTheNameOfADash) {
   close(saved);
   EXPECT_EQ(mesh.parsed.mesh.vertices, kVertices);
   EXPECT_TRUE(mesh.companions.empty());
-  EXPECT_EQ(error,
-            ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB (--mesh-format names what has "
-            "no signature)");
+  EXPECT_EQ(
+      error,
+      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB; --mesh-format names the format where "
+      "neither content nor extension tells it, as in pipes");
 }
 
 TEST(ReadMesh, FilesThatCannotBeReadAreNamed) {

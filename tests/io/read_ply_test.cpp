@@ -160,7 +160,8 @@ TEST(ReadPly, CommentsAndObjInfoMayStandAnywhereInTheHeader) {
 
 TEST(ReadPly, AsciiRowsMayGoOnInTheNextLineButNotShareOne) {
   EXPECT_EQ(triangles(kHeader + "0 0\n0\n1 0 0\n\n0 1 0\n3\n0 1 2\n"), kOneTriangle);
-  EXPECT_EQ(error_of(kHeader + "0 0 0 1\n0 0 0 1 0\n3 0 1 2\n"), "f:13: 1 elements 'face' announced, but only 0 bytes follow");
+  EXPECT_EQ(error_of(kHeader + "0 0 0 1\n0 0 0 1 0\n3 0 1 2\n"),
+            "f:13: 1 element 'face' announced, but only 0 bytes follow");
 }
 
 TEST(ReadPly, FacesOfOneOrTwoCornersAreSkippedAndCounted) {

@@ -14,9 +14,12 @@ struct ValueCandidates {
   FileCandidates files = FileCandidates::kNone;
 };
 
+// Stands for the name of a command.
+inline constexpr const char* kCommandPlaceholder = "COMMAND";
+
 // `placeholder` is that of an option ("exact|none|D", "winding|sdf[,...]", "OUT.npy") or the name of an operand
 // ("MESH|DIR"): what begins with a small letter is a word; OUT, FILE, GRID, REPORT, MESH, POINTS are files, DIR is a
-// directory; all else, such as D, is for the user alone.
+// directory, COMMAND one of raycone's commands; all else, such as D, is for the user alone.
 [[nodiscard]] ValueCandidates candidates_for(const std::string& placeholder);
 
 }  // namespace raycone

@@ -1,8 +1,10 @@
-#include "app/manual/value_candidates.h"
+#include "app/command_line/value_candidates.h"
 
 #include <algorithm>
 #include <set>
 #include <string_view>
+
+#include "app/command_line/commands.h"
 
 namespace raycone {
 namespace {
@@ -30,6 +32,9 @@ FileCandidates leading_files(std::string_view alternative) {
 
 ValueCandidates candidates_for(const std::string& placeholder) {
   ValueCandidates candidates;
+  if (placeholder == kCommandPlaceholder) {
+    for (const CommandEntry& entry : commands()) candidates.words.push_back(entry.spec.name);
+  }
   candidates.list = placeholder.ends_with("[,...]");
   for (std::size_t begin = 0; begin < placeholder.size();) {
     const std::size_t end = std::min(placeholder.find('|', begin), placeholder.size());

@@ -1,0 +1,73 @@
+#include "app/command_line/idle_options.h"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include "app/process/usage_error.h"
+
+namespace raycone {
+namespace {
+
+// Flags have no text of their own.
+void refuse(const Values& values, const std::string& name, bool flag, const std::string& because) {
+  if (!values.given(name)) return;
+  throw UsageError(name + (flag ? "" : " " + values.text(name)) + ": has no effect " + because);
+}
+
+void refuse_flag(const Values& values, const std::string& name, const std::string& because) {
+  refuse(values, name, true, because);
+}
+
+void refuse_option(const Values& values, const std::string& name, const std::string& because) {
+  refuse(values, name, false, because);
+}
+
+bool has_numbers(const FieldOptions& field) {
+  return std::ranges::any_of(field.fields, [](Field one) { return one != Field::kInside; });
+}
+
+bool draws_in_box(const SampleRequest& request) {
+  return std::ranges::any_of(request.groups,
+                             [](const SampleGroup& group) { return std::holds_alternative<UniformSamples>(group); });
+}
+
+}  // namespace
+
+void refuse_idle_rule(const Values& values, const FieldOptions& field) {
+  if (field.has(Field::kInside) || field.has(Field::kDistance)) return;
+  refuse_option(values, "--rule", "on winding and density, expected --field inside or sdf");
+}
+
+void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
+  if (output.path == "-") refuse_option(values, "--depfile", "on standard output, expected -o FILE");
+}
+
+void refuse_idle_options(const Values& values, const LatticeCommand& command) {
+  refuse_idle_rule(values, command.field);
+  refuse_idle_depfile(values, command.output);
+  if (!command.field.has(Field::kDistance)) refuse_option(values, "--band", "without a distance, expected --field sdf");
+  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy or vti";
+  if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
+  for (const char* const name : {"--double", "--half"}) {
+    if (!has_numbers(command.field)) refuse_flag(values, name, "on inside, which is yes or no, expected another field");
+  }
+}
+
+void refuse_idle_options(const Values& values, const PointsCommand& command) {
+  refuse_idle_rule(values, command.field);
+  refuse_idle_depfile(values, command.output);
+  refuse_option(values, "--band", "on distances at points, which are not cut off");
+  if (!command.sample || draws_in_box(*command.sample)) return;
+  for (const char* const name : {"--bounds", "--padding"}) {
+    refuse_option(values, name, "on points near the surface, expected --sample uniform=N");
+  }
+}
+
+void refuse_options_of_outputs(const Values& values) {
+  const std::string because = "with --format none, which writes no files";
+  for (const char* const name : {"--double", "--half", "--full-names"}) refuse_flag(values, name, because);
+  refuse_option(values, "--grid-name", because);
+}
+
+}  // namespace raycone

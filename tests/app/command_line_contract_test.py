@@ -1,0 +1,355 @@
+"""The command line as the contract has it: python3 command_line_contract_test.py RAYCONE MESH_DIRECTORY
+
+What holds for all commands, what does not exist yet, what is suggested where a word is misspelt, and what is written
+to a terminal.
+"""
+
+import gzip
+import json
+import os
+import pty
+import re
+import select
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+CUBE = os.path.join(MESHES, "cube.obj")
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+
+# Command lines that work, by command.
+WORKING = {
+    "lattice": ["lattice", CUBE, "-o", "out.csv", "--resolution", "3"],
+    "points": ["points", CUBE, "points.csv", "-o", "out.csv"],
+    "slice": ["slice", CUBE, "-o", "out.png", "--size", "4"],
+    "info": ["info", CUBE],
+    "batch": ["batch", CUBE, "--out-dir", "batch", "--resolution", "3"],
+    "report": ["report", "done"],
+}
+
+NOT_AVAILABLE = {
+    "lattice": {
+        "--tolerance 1e-3": "--tolerance 1e-3",
+        "--field sdf --band all": "--band all",
+        "--field solid": "--field solid",
+        "--field winding,gradient": "--field winding,gradient",
+        "--field label": "--field label",
+        "--parts component": "--parts",
+        "--normalize cube": "--normalize",
+        "--dtype f16": "--dtype",
+        "--pack-bits": "--pack-bits",
+        "--compress": "--compress",
+        "--padding 5%": "--padding 5%",
+        "--format npz": "--format npz",
+        "--format nrrd": "--format nrrd",
+        "--format nii": "--format nii",
+        "--format NII.GZ": "--format NII.GZ",
+        "--mesh-format 3mf": "--mesh-format 3mf",
+    },
+    "points": {
+        "--tolerance 1e-3": "--tolerance 1e-3",
+        "--field gradient": "--field gradient",
+        "--parts group": "--parts",
+        "--normalize sphere:2": "--normalize",
+        "--dtype f32": "--dtype",
+        "--format npz": "--format npz",
+    },
+    "slice": {"--normalize cube": "--normalize", "--padding 5%": "--padding 5%"},
+    "info": {"--normalize cube": "--normalize"},
+    "batch": {
+        "--tolerance 1e-3": "--tolerance 1e-3",
+        "--field solid": "--field solid",
+        "--parts group": "--parts",
+        "--normalize cube": "--normalize",
+        "--format nrrd": "--format nrrd",
+    },
+}
+
+# Whole command lines, and what they name.
+NOT_AVAILABLE_LINES = {
+    "surface mesh.obj -o out.ply": "surface",
+    "surface --help": "surface",
+    "help surface": "surface",
+    "info model.3mf": "model.3mf",
+    "info cube.ply.gz": "cube.ply.gz",
+    "info compressed --mesh-format stl": "compressed",
+    "lattice cube.STL.ZST -o out.vdb": "cube.STL.ZST",
+    "points cube.obj points.npz": "points.npz",
+    "points cube.obj --sample surface=5 -o out.npz": "--sample surface=5",
+    "batch cube.obj --out-dir batch --sample surface=5": "--sample surface=5",
+    "lattice cube.obj -o out.nii.gz": "out.nii.gz",
+    "lattice cube.obj -o out.nrrd": "out.nrrd",
+    "lattice cube.obj -o out.npz": "out.npz",
+    "lattice cube.obj -o out.vdb --like other.nrrd": "--like other.nrrd",
+    "lattice cube.obj -o out.vdb --like other.nii.gz": "--like other.nii.gz",
+}
+
+# Of a misspelt word: the command line, what is named, what is suggested (nothing: the help).
+SUGGESTIONS = [
+    ("lattice m.obj -o o.vdb --resolutoin 5", "unknown option --resolutoin", "--resolution"),
+    ("--resolutoin 5 lattice m.obj -o o.vdb", "unknown option --resolutoin", "--resolution"),
+    ("lattice m.obj -o o.vdb --Voxelsize 5", "unknown option --Voxelsize", "--voxel-size"),
+    ("lattice m.obj -o o.vdb --res 5", "unknown option --res", "--resolution"),
+    ("lattice m.obj --ouput o.vdb", "unknown option --ouput", "--output"),
+    ("slice m.obj -o o.png --valeus o.npy", "unknown option --valeus", "--values"),
+    ("info m.obj --jsno", "unknown option --jsno", "--json"),
+    ("batch m --outdir o", "unknown option --outdir", "--out-dir"),
+    ("report o --ouptut o.html", "unknown option --ouptut", "--output"),
+    ("info m.obj --resolution 5", "unknown option --resolution", None),
+    ("lattice m.obj -o o.vdb --entirely-else 5", "unknown option --entirely-else", None),
+    ("lattice m.obj -o o.vdb -x", "unknown option -x", None),
+    ("latice m.obj -o o.vdb", "unknown command latice", "lattice"),
+    ("inof m.obj", "unknown command inof", "info"),
+    ("hlep", "unknown command hlep", "help"),
+    ("help slcie", "unknown command slcie", "slice"),
+    ("mesh.obj", "unknown command mesh.obj", None),
+    ("lattice m.obj -o o.vdb --field insied", "--field insied: expected", "inside"),
+    ("lattice m.obj -o o.vdb --field winding,densty", "--field winding,densty: expected", "density"),
+    ("lattice m.obj -o o.vdb --field inside --rule treshold=1", "--rule treshold=1: expected", "threshold="),
+    ("lattice m.obj -o o.vdb --field inside --rule ood", "--rule ood: expected", "odd"),
+    ("lattice m.obj -o o --format vbd", "--format vbd: expected", "vdb"),
+    ("info m.obj --weld exat", "--weld exat: expected", "exact"),
+    ("info m.obj --mesh-format gtlf", "--mesh-format gtlf: expected", "gltf"),
+    ("info m.obj --progress alwyas", "--progress alwyas: expected", "always"),
+    ("info m.obj --up y-to-x", "--up y-to-x: expected", "y-to-z"),
+    ("batch m --out-dir o --format noen", "--format noen: expected", "none"),
+    ("points m.obj p.csv --raw f46", "--raw f46: expected", "f64"),
+    ("info m.obj --weld thick", "--weld thick: expected", None),
+    ("info m.obj --threads two", "--threads two: expected", None),
+]
+
+
+def run(words, **options):
+    options = {"stdin": subprocess.DEVNULL, "text": True, "timeout": PATIENCE, **options}
+    return subprocess.run([RAYCONE, *words], capture_output=True, **options)
+
+
+class Contract(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.TemporaryDirectory()
+        os.chdir(cls.directory.name)
+        with open("points.csv", "w") as file:
+            file.write("0,0,0\n.5,.5,.5\n")
+        for name, content in {"model.3mf": b"PK\3\4", "cube.STL.ZST": b"\x28\xb5\x2f\xfd",
+                              "compressed": gzip.compress(b"solid"), "cube.ply.gz": gzip.compress(b"ply")}.items():
+            with open(name, "wb") as file:
+                file.write(content)
+        assert run(["batch", CUBE, "--out-dir", "done", "--resolution", "3"]).returncode == 0
+
+    @classmethod
+    def tearDownClass(cls):
+        os.chdir("/")
+        cls.directory.cleanup()
+
+    def refused(self, words, expected):
+        result = run(words)
+        self.assertEqual((result.returncode, result.stdout), (1, ""), (words, result.stderr))
+        self.assertRegex(result.stderr, r"\Araycone: [^\n]*\n\Z", words)
+        self.assertIn(expected, result.stderr, words)
+        return result.stderr
+
+    def works(self, words, **options):
+        result = run(words, **options)
+        self.assertEqual(result.returncode, 0, (words, result.stderr))
+        return result
+
+
+class Everywhere(Contract):
+    def test_limits_threads_and_quiet_hold_for_every_command(self):
+        for words in WORKING.values():
+            self.works([*words, "--threads", "2", "--memory-limit", "4G", "--timeout", "1000"])
+            self.assertEqual(self.works([*words, "--quiet"]).stderr, "")
+            poor = ["batch", CUBE, "--out-dir", "poor"] if words[0] == "batch" else words
+            self.assertEqual(run([*poor, "--memory-limit", "1"]).returncode, 5 if words[0] == "batch" else 4, words)
+            self.refused([*words, "--threads", "0"], "--threads 0: expected")
+            self.refused([*words, "--timeout", "-1"], "--timeout -1: expected")
+
+    def test_options_stand_anywhere_and_two_dashes_end_them(self):
+        for command, words in WORKING.items():
+            self.works([*words[1:], command] if words[1].startswith("-") else ["--quiet", *words, "--quiet"])
+            self.refused([*words, "--no-such-option"], "unknown option --no-such-option")
+            self.refused([*words, "--quiet=yes"], "--quiet: takes no value")
+        self.assertEqual(run(["info", "--", "--json"]).returncode, 2)  # a file of that name, which is not there
+
+    def test_options_of_no_effect_twice(self):
+        for command in ("lattice", "points", "slice", "report"):
+            for name in ("-o", "--output"):
+                self.refused([*WORKING[command], "-o", "a", name, "b"], "--output: given twice, expected once")
+        self.works([*WORKING["lattice"], "--resolution", "4", "--quiet", "--quiet", "--threads", "1", "--threads", "2"])
+
+    def test_nothing_but_the_documented_environment_counts(self):
+        words = ["lattice", CUBE, "-o", "-", "--resolution", "3", "--padding", "0.25"]
+        expected = self.works(words).stdout
+        others = {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "LC_NUMERIC": "de_DE.UTF-8", "TMPDIR": "/absent",
+                  "HOME": "/absent", "XDG_CONFIG_HOME": "/absent", "OMP_NUM_THREADS": "1", "NO_COLOR": "1"}
+        self.assertEqual(self.works(words, env={**os.environ, **others}).stdout, expected)
+        self.assertEqual(run(words, env={**os.environ, "RAYCONE_THREADS": "none"}).returncode, 1)
+
+    def test_every_format_goes_to_standard_output(self):
+        for name in ("csv", "npy", "vdb", "vti"):
+            words = ["lattice", CUBE, "--resolution", "3", "--quiet"]
+            self.works([*words, "-o", "out." + name])
+            piped = run([*words, "-o", "-", "--format", name], text=False)
+            with open("out." + name, "rb") as file:
+                self.assertEqual(piped.stdout, file.read(), name)
+
+
+class NotYet(Contract):
+    def test_what_is_promised_says_so_and_is_in_no_help(self):
+        for command, cases in NOT_AVAILABLE.items():
+            listed = self.works([command, "--help"]).stdout
+            for options, named in cases.items():
+                words = [*WORKING[command], *options.split()]
+                self.assertEqual(self.refused(words, named), "raycone: %s: not available yet\n" % named)
+                if options.split()[-1].startswith("--") or named.startswith("--") and " " not in named:
+                    self.assertNotIn(named, listed)
+        for line, named in NOT_AVAILABLE_LINES.items():
+            self.assertEqual(self.refused(line.split(), named), "raycone: %s: not available yet\n" % named)
+        self.assertNotIn("surface ", self.works(["--help"]).stdout)
+        with open("compressed", "rb") as file:
+            result = run(["info", "-"], stdin=file)
+        self.assertEqual((result.returncode, result.stderr), (1, "raycone: -: not available yet\n"))
+
+    def test_tolerances_that_count_as_none_are_there(self):
+        for tolerance in ("0", "1e-13"):
+            self.works([*WORKING["lattice"], "--tolerance", tolerance])
+        self.refused([*WORKING["lattice"], "--tolerance", "-1"], "--tolerance -1: expected")
+        self.refused([*WORKING["lattice"], "--field", "sdf", "--band", "al"], "--band al: expected a positive number")
+
+
+class Suggestions(Contract):
+    def test_misspelt_words(self):
+        for line, named, meant in SUGGESTIONS:
+            message = self.refused(line.split(), "raycone: " + named)
+            if meant:
+                self.assertTrue(message.endswith("; did you mean %s?\n" % meant), message)
+            else:
+                self.assertNotIn("did you mean", message)
+
+    def test_help_and_version(self):
+        self.assertEqual(self.works(["help"]).stdout, self.works(["--help"]).stdout)
+        for command in [*WORKING, "help"]:
+            expected = self.works([command, "--help"])
+            self.assertEqual(expected.stderr, "")
+            self.assertIn("raycone %s [OPTIONS]" % command, expected.stdout)
+            self.assertEqual(self.works(["help", command]).stdout, expected.stdout)
+        self.assertEqual(self.works(["-V"]).stdout, self.works(["--version"]).stdout)
+        self.refused(["help", "nonsense"], "unknown command nonsense, expected lattice, points")
+        self.refused(["help", "lattice", "points"], "unexpected operand points")
+
+    def test_the_help_of_sdf_says_that_the_lattice_grows(self):
+        listed = re.sub(r"\s+", " ", self.works(["lattice", "--help"]).stdout)
+        self.assertIn("the lattice grows by B + 1 voxels", listed)
+
+
+class Messages(Contract):
+    def test_slices_outside_the_box_are_refused(self):
+        for options, message in {
+            ("--at", "2"): "--at 2: outside the box, expected 0 to 1; see --bounds and --padding",
+            ("--at", "-1e-9"): "--at -1e-09: outside the box, expected 0 to 1",
+            ("--at", "101%"): "--at 101% (1.01): outside the box, expected 0 to 1",
+            ("--at", "1.6", "--padding", ".5"): "--at 1.6: outside the box, expected -0.5 to 1.5",
+            ("--at", ".5", "--bounds", "0,0,2,1,1,3"): "--at 0.5: outside the box, expected 2 to 3",
+            ("--axis", "x", "--at", "7"): "--at 7: outside the box, expected 0 to 1",
+        }.items():
+            self.refused(["slice", CUBE, "-o", "refused.png", *options], message)
+            self.assertFalse(os.path.exists("refused.png"))
+        for at in ("0", "1", "0%", "100%"):
+            self.works([*WORKING["slice"], "--at", at])
+        self.works([*WORKING["slice"], "--at", "-.5", "--padding", ".5"])
+        # Where 100 % by the formula would be beyond the end: -0.3 + 1 * (0.1 + 0.3) is not 0.1.
+        self.works([*WORKING["slice"], "--at", "100%", "--bounds", "-.3,-.3,-.3,.1,.1,.1"])
+
+    def test_counts_agree_with_their_nouns(self):
+        with open("one.ply", "wb") as file:
+            file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n"
+                       b"property uchar z\nend_header\n\0")
+        with open("one.obj", "w") as file:
+            file.write("v 0 0 0\nf 1 1 2\n")
+        for name, expected in (("one.ply", "1 element 'vertex' announced, but only 1 byte follows"),
+                               ("one.obj", "but the file has only 1 vertex")):
+            result = run(["info", name])
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(expected, result.stderr)
+        one = self.works(["lattice", CUBE, "-o", "out.csv", "--resolution", "1", "--verify", "1"]).stderr
+        self.assertRegex(one, r"12 faces, 0 exterior edges, 1 sample in .*, verified 1 sample,")
+        self.assertIn("the limit is 1 byte\n", run([*WORKING["lattice"], "--memory-limit", "1"]).stderr)
+        for words in ([*WORKING["report"]], ["batch", CUBE, "--out-dir", "batch", "--resolution", "3"]):
+            self.assertNotRegex(self.works(words).stderr, r"\b1 (meshes|samples|faces|bytes)\b")
+
+    def test_verification_is_a_phase_of_its_own(self):
+        words = [*WORKING["lattice"], "--report", "report.json"]
+        self.assertNotIn("verify", self.works(words).stderr)
+        with open("report.json") as file:
+            self.assertEqual(list(json.load(file)["seconds"]), ["read", "prepare", "evaluate", "write", "total"])
+        teapot = os.path.join(MESHES, "teapot.obj")
+        words = ["lattice", teapot, "-o", "out.csv", "--resolution", "8", "--report", "report.json", "--verify", "100"]
+        self.assertRegex(self.works(words).stderr, r"write [0-9.]+, verify [0-9.]+\) -> ")
+        with open("report.json") as file:
+            seconds = json.load(file)["seconds"]
+        self.assertGreater(seconds["verify"], 0.01)  # 100 samples of 6320 triangles at 2.7 us are 1.7 s on one thread
+        parts = sum(seconds[name] for name in ("read", "prepare", "evaluate", "write", "verify"))
+        self.assertLessEqual(parts, seconds["total"])
+        self.assertGreater(parts, 0.5 * seconds["total"])  # little is outside of all phases
+
+    def test_pipes_are_told_of_mesh_format(self):
+        with open(CUBE) as file:
+            result = run(["info", "/dev/stdin"], stdin=file)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("/dev/stdin: not recognised as a mesh", result.stderr)
+        self.assertIn("--mesh-format names the format", result.stderr)
+        with open(CUBE) as file:
+            self.works(["info", "/dev/stdin", "--mesh-format", "obj"], stdin=file)
+
+    def test_report_says_where_it_wrote(self):
+        self.assertEqual(self.works(["report", "done"]).stderr, "raycone: done: 1 mesh -> done/report.html\n")
+        self.assertEqual(self.works(["report", "done", "-o", "p.html"]).stderr, "raycone: done: 1 mesh -> p.html\n")
+        self.assertEqual(self.works(["report", "done", "-o", "-"]).stderr, "raycone: done: 1 mesh -> standard output\n")
+        self.assertEqual(self.works(["report", "done", "--quiet"]).stderr, "")
+
+
+class Terminals(Contract):
+    def on_terminal(self, words):
+        """Exit status and what a terminal shows of standard output, and standard error."""
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([RAYCONE, *words], stdin=subprocess.DEVNULL, stdout=theirs, stderr=subprocess.PIPE)
+        os.close(theirs)
+        shown = b""
+        while select.select([ours], [], [], PATIENCE)[0]:
+            try:
+                part = os.read(ours, 4096)
+            except OSError:  # Linux reports that the other end is closed as EIO
+                break
+            shown += part
+        messages = process.communicate(timeout=PATIENCE)[1]
+        os.close(ours)
+        return process.returncode, shown, messages.decode()
+
+    def test_what_is_no_text_is_refused(self):
+        lattice = ["lattice", CUBE, "--resolution", "3", "-o"]
+        for words in (
+            ["slice", CUBE, "-o", "-", "--size", "4"],
+            ["slice", CUBE, "-o", "out.png", "--size", "4", "--values", "-"],
+            *([*lattice, "-", "--format", name] for name in ("vdb", "npy", "vti")),
+            ["points", CUBE, "points.csv", "--format", "npy"],
+            ["points", CUBE, "points.csv", "--raw", "f64"],
+            ["points", CUBE, "--sample", "uniform=3", "-o", "-", "--format", "npz"],
+        ):
+            status, shown, messages = self.on_terminal(words)
+            self.assertEqual((status, shown), (1, b""), words)
+            expected = "is a terminal, which cannot show this format; expected -o FILE, or a pipe behind"
+            self.assertEqual(messages, "raycone: standard output: %s\n" % expected)
+
+    def test_text_is_shown(self):
+        for words in (["lattice", CUBE, "--resolution", "3", "-o", "-"], ["points", CUBE, "points.csv"], ["info", CUBE],
+                      ["report", "done", "-o", "-"], ["help"]):
+            status, shown, messages = self.on_terminal(words)
+            self.assertEqual(status, 0, messages)
+            self.assertTrue(shown)
+
+
+if __name__ == "__main__":
+    unittest.main()

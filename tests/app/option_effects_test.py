@@ -1,0 +1,323 @@
+"""Every option of every command has an effect, or is refused: python3 option_effects_test.py RAYCONE MESH_DIRECTORY
+
+A table of command lines, with what the last option of each does: it changes the result, it is a usage error, or it is
+harmless by design (it says how to run, or what must not happen). An option that --help lists must be in the table for
+that command, so that a new option cannot be forgotten.
+"""
+
+import collections
+import csv
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+TIMES = re.compile(r" in [0-9.]+ s.*?(?=->|$)|, [^,\n]*samples/s|slowest: .*", re.M)
+
+Row = collections.namedtuple("Row", "words option verdict")
+CHANGES, REFUSED, HARMLESS = "changes the result", "is refused", "is harmless"
+
+BARE = "lattice cubes.obj -o out/a.csv --report out/report.json"
+LATTICE = BARE + " --resolution 5"
+FILE = "lattice cubes.obj --report out/report.json --resolution 5 -o out/a."
+POINTS = "points cubes.obj points.csv -o out/a.csv --report out/report.json"
+SAMPLE = "points cubes.obj -o out/a.npz --report out/report.json --sample uniform=5"
+NEAR = "points cubes.obj -o out/a.npz --sample near=5:0.1"
+SLICE = "slice cubes.obj -o out/a.png --size 8 --report out/report.json"
+INFO = "info cubes.obj"
+BATCH = "batch good --out-dir out/batch --resolution 5"
+
+# Options that say how to run, or what must not happen; no value depends on them.
+RUN = ["--threads 1", "--memory-limit 4G", "--timeout 1000", "--progress never", "--quiet", "--strict"]
+
+TABLE = [
+    # --- Meshes
+    *(Row(words.replace("cubes.obj", "nameless"), "--mesh-format obj", CHANGES)
+      for words in (LATTICE, POINTS, SLICE, INFO)),
+    Row("batch nameless --out-dir out/batch --resolution 4", "--mesh-format obj", CHANGES),
+    *(Row(words.replace("cubes.obj", "seam.obj"), "--weld none", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO)),
+    Row("batch seam.obj --out-dir out/batch --resolution 4", "--weld none", CHANGES),
+    *(Row(words, option, CHANGES)
+      for words in (LATTICE, POINTS, SLICE, INFO, BATCH) for option in ("--scale 2", "--up y-to-z")),
+    Row(SLICE + " --normal 1,1,0", "--up 1,0,0", CHANGES),
+    Row(SLICE, "--up 1,0,0", REFUSED),
+    *(Row(words, "--orient flip", CHANGES) for words in (LATTICE, POINTS, INFO, BATCH, SLICE)),
+    # --- Lattices
+    *(Row(words, option, CHANGES)
+      for words in (LATTICE, BATCH)
+      for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--resolution 6", "--centers")),
+    *(Row(words, option, CHANGES)
+      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb")),
+    *(Row(LATTICE, option, REFUSED) for option in ("--voxel-size .25", "--like grid.vdb")),
+    *(Row(BARE + " --like grid.vdb", option, REFUSED)
+      for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--resolution 5", "--voxel-size 1", "--centers")),
+    *(Row("batch good --out-dir out/batch --sample uniform=3", option, REFUSED)
+      for option in ("--resolution 5", "--voxel-size 1", "--like grid.vdb", "--centers")),
+    # --- Fields
+    *(Row(words, "--field inside", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, SLICE)),
+    *(Row(words + " --field inside", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, SLICE)),
+    *(Row(words + " --field sdf", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    Row(SAMPLE, "--rule odd", CHANGES),  # whose fields are winding, inside and sdf
+    *(Row(words + fields, "--rule odd", REFUSED)
+      for words in (LATTICE, POINTS, BATCH)
+      for fields in ("", " --field winding", " --field density", " --field winding,density")),
+    Row(SAMPLE + " --field winding", "--rule odd", REFUSED),
+    Row("batch good --out-dir out/batch --sample uniform=3 --field density", "--rule odd", REFUSED),
+    *(Row(words + fields, "--band 2", CHANGES)
+      for words in (LATTICE, BATCH) for fields in (" --field sdf", " --field winding,sdf")),
+    *(Row(words + fields, "--band 2", REFUSED)
+      for words in (LATTICE, BATCH) for fields in ("", " --field inside", " --field winding,density")),
+    *(Row(words + " --field sdf", "--band 2", REFUSED)
+      for words in (POINTS, SAMPLE, "batch good --out-dir out/batch --sample uniform=3")),
+    Row(SLICE + " --field sdf", "--band 2", CHANGES),
+    *(Row(words, "--diagnostics", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    Row(FILE + "npy", "--diagnostics", REFUSED),
+    *(Row(words, "--verify 5", CHANGES) for words in (LATTICE, POINTS, SAMPLE)),
+    Row(BATCH, "--verify 5", HARMLESS),  # a wrong value fails its mesh
+    *(Row(words, option, HARMLESS)
+      for words in (LATTICE, POINTS, SAMPLE, BATCH) for option in ("--engine embree", "--simd sse4", "--tolerance 0")),
+    # --- Points
+    Row(POINTS, "--columns 3,2,1", CHANGES),
+    Row(POINTS.replace("points.csv", "points.npy"), "--columns 3,2,1", REFUSED),
+    Row(POINTS.replace("points.csv", "points.ply"), "--columns 3,2,1", REFUSED),
+    Row(SAMPLE, "--columns 3,2,1", REFUSED),
+    Row("points cubes.obj points.raw -o out/a.raw --format csv", "--raw f64", REFUSED),
+    Row("points cubes.obj points.raw -o out/a.raw --columns 3,2,1", "--raw f64", REFUSED),
+    Row("points cubes.obj points.raw -o out/a.raw", "--raw f64", CHANGES),
+    Row("points cubes.obj -o out/a.npz", "--sample uniform=5", CHANGES),
+    Row("batch good --out-dir out/batch", "--sample uniform=5", CHANGES),
+    *(Row(words, option, CHANGES)
+      for words in (SAMPLE, "batch good --out-dir out/batch --sample uniform=5")
+      for option in ("--seed 2", "--bounds 0,0,0,2,2,2", "--padding .5")),
+    *(Row(POINTS, option, REFUSED) for option in ("--seed 2", "--bounds 0,0,0,2,2,2", "--padding .5")),
+    *(Row(words, option, REFUSED)
+      for words in (NEAR, "batch good --out-dir out/batch --sample near=5:0.1")
+      for option in ("--bounds 0,0,0,2,2,2", "--padding .5")),
+    Row(NEAR, "--seed 2", CHANGES),
+    Row(BATCH, "--seed 2", REFUSED),
+    # --- Slices
+    *(Row(SLICE, option, CHANGES)
+      for option in ("--axis x", "--at 10%", "--normal 1,1,0", "--bounds 0,0,0,2,2,2", "--padding .5", "--size 9",
+                     "--values out/v.npy")),
+    Row("slice cubes.obj -o out/a.png --size 400", "--no-legend", CHANGES),
+    Row(SLICE + " --normal 1,1,0", "--origin .1,.1,.1", CHANGES),
+    Row(SLICE, "--origin .1,.1,.1", REFUSED),
+    Row(SLICE + " --normal 1,1,0", "--axis x", REFUSED),
+    Row(SLICE + " --normal 1,1,0", "--at 10%", REFUSED),
+    # --- Output
+    *(Row(re.sub("-o out/a.... ", "", words), "-o out/b" + end, CHANGES)
+      for words, end in ((LATTICE, ".csv"), (POINTS, ".csv"), (SAMPLE, ".npz"), (SLICE, ".png"))),
+    *(Row(words, twice, REFUSED)
+      for words in (LATTICE, POINTS, SLICE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
+    *(Row(words + " --field winding", "--field inside", REFUSED) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "vti")),
+    Row(LATTICE, "--format csv", HARMLESS),
+    Row(POINTS, "--format npy", CHANGES),
+    Row("slice cubes.obj -o out/a --size 8", "--format png", CHANGES),
+    *(Row(words.replace("out/a", "old"), "--no-clobber", CHANGES) for words in (LATTICE, POINTS, SLICE)),
+    Row("lattice cubes.obj -o - --resolution 2", "--no-clobber", HARMLESS),
+    Row(BATCH, "--no-clobber", HARMLESS),
+    *(Row(words, option, CHANGES)
+      for words in (LATTICE, POINTS, SLICE) for option in ("--report out/r.json", "--depfile out/a.d")),
+    *(Row(words, "--depfile out/a.d", REFUSED)
+      for words in ("lattice cubes.obj -o - --resolution 2", "points cubes.obj points.csv",
+                    "slice cubes.obj -o - --size 8")),
+    *(Row(FILE + end, "--double", CHANGES) for end in ("vdb", "npy", "vti")),
+    Row(FILE + "csv", "--double", REFUSED),
+    Row(BATCH + " --format csv", "--double", REFUSED),
+    *(Row(FILE + end + " --field inside", "--double", REFUSED) for end in ("vdb", "npy", "vti")),
+    Row(FILE + "vdb --field inside,density", "--double", CHANGES),
+    Row(FILE + "vdb", "--half", CHANGES),
+    *(Row(FILE + end, "--half", REFUSED) for end in ("csv", "npy", "vti")),
+    Row(FILE + "vdb --field inside", "--half", REFUSED),
+    Row(FILE + "vdb --double", "--half", REFUSED),
+    Row(FILE + "vdb", "--grid-name w", CHANGES),
+    Row(FILE + "vdb --field inside", "--grid-name mask", CHANGES),
+    *(Row(FILE + end, "--grid-name w", REFUSED) for end in ("csv", "npy", "vti")),
+    Row(FILE + "vdb --field winding,inside", "--grid-name w", REFUSED),
+    *(Row(BATCH, option, CHANGES)
+      for option in ("--double", "--half", "--grid-name w", "--format csv", "--format none")),
+    *(Row(BATCH + " --format none", option, REFUSED)
+      for option in ("--double", "--half", "--grid-name w", "--full-names")),
+    # --- info
+    Row(INFO, "--json", CHANGES),
+    Row(INFO, "--csv", CHANGES),
+    Row("info open.obj", "--require closed", CHANGES),
+    Row(INFO + " --json", "--intersections", CHANGES),
+    Row("info open.obj", "--mark out/mark.ply", CHANGES),
+    # --- batch
+    Row("batch good --resolution 4", "--out-dir out/other", CHANGES),
+    Row(BATCH, "--full-names", CHANGES),
+    Row("batch @null.txt --out-dir out/batch --resolution 4", "--null", CHANGES),
+    Row(BATCH, "--null", REFUSED),
+    Row(BATCH, "-0", REFUSED),
+    Row(BATCH, "--shard 1/2", CHANGES),
+    Row(BATCH, "--dry-run", CHANGES),
+    Row(BATCH.replace("good", "all") + " --jobs 1", "--fail-fast", CHANGES),
+    Row(BATCH + " --keep-going", "--fail-fast", REFUSED),
+    Row(BATCH.replace("good", "all"), "--exit-zero", CHANGES),
+    *(Row(BATCH, option, HARMLESS)  # the first run of a batch has neither failures nor rows to drop
+      for option in ("--jobs 1", "--keep-going", "--retry-failed", "--prune")),
+    # --- report
+    Row("report done", "-o out/page.html", CHANGES),
+    Row("report done -o out/page.html", "--output out/other.html", REFUSED),
+    *(Row("report done -o out/page.html", option, HARMLESS) for option in RUN),
+    # --- All of them
+    *(Row(words, option, HARMLESS) for words in (LATTICE, POINTS, SAMPLE, SLICE, INFO, BATCH) for option in RUN),
+    *(Row(words.replace("cubes.obj", "short.obj"), "--strict", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO)),
+]
+
+
+def run(words):
+    return subprocess.run([RAYCONE, *words.split()], stdin=subprocess.DEVNULL, capture_output=True, timeout=300)
+
+
+def options_in_help(command):
+    """As tuples of names: ("-o", "--output")."""
+    lists = re.findall(r"^  (-[-\w,]+)(?: |$)", run(command + " --help").stdout.decode(), re.M)
+    return [tuple(names.split(",")) for names in lists]
+
+
+def commands_in_help():
+    text = run("--help").stdout.decode()
+    return re.findall(r"^  (\w+) ", text[text.index("Commands:") : text.index("Examples:")], re.M)
+
+
+OPTIONS = {command: options_in_help(command) for command in commands_in_help()}
+
+
+def without_times(name, content):
+    if name.startswith("results") and name.endswith(".csv"):
+        rows = csv.DictReader(content.decode().splitlines())
+        return [{key: value for key, value in row.items() if not key.endswith(("_s", "_bytes"))} for row in rows]
+    if name.endswith(".json"):
+        report = json.loads(content)
+        return {key: value for key, value in report.items() if key not in ("seconds", "peak_memory_bytes", "threads")}
+    return content
+
+
+def written():
+    """What is in the directory out, but for times."""
+    result = {}
+    for top, _, names in os.walk("out"):
+        for name in names:
+            if name.startswith("batch-state"):
+                continue
+            path = os.path.join(top, name)
+            with open(path, "rb") as file:
+                result[path] = without_times(name, file.read())
+    return result
+
+
+def clear():
+    shutil.rmtree("out", ignore_errors=True)
+    os.mkdir("out")
+
+
+def result_of(words):
+    """Status, standard output, messages and files."""
+    clear()
+    done = run(words)
+    messages = TIMES.sub("", done.stderr.decode())
+    return done.returncode, done.stdout, messages, written()
+
+
+class OptionEffects(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.TemporaryDirectory()
+        os.chdir(cls.directory.name)
+        with open(os.path.join(MESHES, "overlapping_cubes.obj")) as file:
+            cubes = file.read()
+        corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"]
+        faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        seam = "".join("v %s\n" % corners[i] for face in faces for i in face)
+        seam += "".join("f %d %d %d\n" % (3 * n + 1, 3 * n + 2, 3 * n + 3) for n in range(4))
+        texts = {
+            "cubes.obj": cubes,
+            "nameless": cubes,
+            "good/a.obj": cubes,
+            "good/b.obj": seam,
+            "all/a.obj": "not a mesh",
+            "all/b.obj": cubes,
+            "seam.obj": seam,
+            "short.obj": cubes + "f 1 2\n",
+            "open.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            "points.csv": ".1,.2,.3\n1.3,1.4,1.5\n2.1,2.2,2.9\n",
+            "points.ply": "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                          "property float z\nend_header\n0 0 0\n",
+            "null.txt": "good/a.obj\0good/b.obj\0",
+            "old.csv": "", "old.png": "", "old.npz": "",
+        }
+        for name, text in texts.items():
+            os.makedirs(os.path.dirname(name) or ".", exist_ok=True)
+            with open(name, "w") as file:
+                file.write(text)
+        header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }"
+        header += b" " * (117 - len(header)) + b"\n"
+        raw = struct.pack("<3d", 0.1, 0.2, 0.3)
+        npy = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + raw
+        for name, content in {"points.npy": npy, "points.raw": raw}.items():
+            with open(name, "wb") as file:
+                file.write(content)
+        for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "batch good --out-dir done --resolution 4"):
+            assert run(words).returncode == 0, words
+        cls.baselines = {}
+
+    @classmethod
+    def tearDownClass(cls):
+        os.chdir("/")
+        cls.directory.cleanup()
+
+    def without(self, words):
+        if words not in self.baselines:
+            self.baselines[words] = result_of(words)
+        return self.baselines[words]
+
+    def check(self, row):
+        line = row.words + " " + row.option
+        status, output, messages, files = result_of(line)
+        if row.verdict == REFUSED:
+            self.assertEqual(status, 1, line + messages)
+            self.assertEqual(messages.count("\n"), 1, line + messages)
+            self.assertEqual(files, {}, line)
+            name = re.split("[ =]", row.option)[0]
+            self.assertIn({"-0": "--null", "-o": "--output"}.get(name, name), messages)
+        elif row.verdict == HARMLESS:
+            expected, _, _, others = self.without(row.words)
+            self.assertTrue((status, files) == (expected, others), line + " is not harmless: " + messages)
+        else:
+            changed = (status, output, messages, files) != self.without(row.words)
+            self.assertTrue(changed, line + " changes nothing: " + messages)
+
+    def is_known(self, row):
+        """Options that are yet to come have rows already."""
+        names = row.option.split()[0].split("=")[0]
+        command = row.words.split()[0]
+        used = [word for word in row.words.split() if word.startswith("--")] + [names]
+        known = {name for option in OPTIONS[command] for name in option} | {"--tolerance", "--band"}
+        return row.verdict == REFUSED or all(name in known for name in used)
+
+    def test_each_option_changes_the_result_or_is_refused(self):
+        for row in TABLE:
+            if self.is_known(row):
+                with self.subTest(row.words + " " + row.option):
+                    self.check(row)
+
+    def test_the_table_has_all_options(self):
+        listed = {(row.words.split()[0], row.option.split()[0]) for row in TABLE if row.verdict != REFUSED}
+        for command, options in OPTIONS.items():
+            for names in options:
+                if "--help" in names:
+                    continue
+                self.assertTrue(any((command, name) in listed for name in names), "%s %s" % (command, names))
+
+
+if __name__ == "__main__":
+    unittest.main()

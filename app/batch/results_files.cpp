@@ -83,7 +83,9 @@ std::string CsvLog::text() const {
 std::vector<CsvRecord> CsvLog::read() const {
   const std::string all = text();
   const std::string header = csv_line(columns_);
-  if (!former_columns_.empty() && all.starts_with(csv_line(former_columns_))) return {};
+  const std::string former = csv_line(former_columns_);
+  if (!former_columns_.empty() && all.starts_with(former))
+    return parse_csv(std::string_view(all).substr(former.size())).records;
   if (header.starts_with(all)) return {};  // empty, or a header that was never completed
   if (!all.starts_with(header)) throw InputError(path_ + ":1: not written by raycone batch, expected " + header);
   return parse_csv(std::string_view(all).substr(header.size())).records;
@@ -134,7 +136,7 @@ void CsvLog::sync() const {
 
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
     : directory_(directory),
-      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns()),
+      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns(), former_result_columns()),
       origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns(), former_origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const { return contents().records; }

@@ -21,7 +21,7 @@ namespace raycone {
 // A CSV file with a fixed header that several processes may append to.
 class CsvLog {
  public:
-  // A table with the columns of an earlier version counts as empty, and is replaced.
+  // A table with the columns of an earlier version is read, too; its records have only these.
   CsvLog(std::string path, CsvRecord columns, CsvRecord former_columns = {})
       : path_(std::move(path)), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
 

@@ -147,7 +147,7 @@ void CsvLog::sync() const {
 
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
     : directory_(directory),
-      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns(), {}),
+      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns(), {former_result_columns()}),
       origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns(), former_origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const { return contents().records; }

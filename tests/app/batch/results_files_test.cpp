@@ -20,6 +20,7 @@ BatchRecord record(const std::string& mesh, std::uint64_t faces = 1, std::int64_
   result.row.figures = MeshFigures{.faces = faces, .read_s = 0.5};
   result.row.output = mesh + ".vdb";
   result.row.message = "a \"quoted\", message";
+  result.row.warnings = "reversed inconsistent";
   result.origin = RowOrigin{.stamp = {7, 8, 9},
                             .companions = {{"a,b.bin", {1, 2, 3}, "hash"}, {.path = "c.vdb", .sha256 = "other"}},
                             .version = "1",
@@ -153,6 +154,17 @@ TEST_F(ResultsFilesTest, RemoveRowsOfAllShards) {
   remove_from_all_results(directory, {"b"});
   EXPECT_TRUE(files_.read().empty());
   EXPECT_TRUE(shard.read().empty());
+}
+
+TEST_F(ResultsFilesTest, KeepRowsOfTheVersionBefore) {
+  CsvRecord row = to_record(record("a").row);
+  row.resize(former_result_columns().size());
+  write_text(dir_ / "results.csv", csv_line(former_result_columns()) + csv_line(row));
+  EXPECT_EQ(meshes_of(files_.read()), Names{"a"});
+  files_.forget({{"b", 1}});
+  files_.append(record("c"));
+  EXPECT_EQ(meshes_of(files_.read()), (Names{"a", "c"}));
+  EXPECT_EQ(results().rfind(csv_line(result_columns()), 0), 0U);
 }
 
 TEST_F(ResultsFilesTest, RefuseTablesOfOthers) {

@@ -31,6 +31,7 @@ ALL = sorted(WARNINGS)
 # Clicks as a user does, and leaves what is seen behind in the page. A change of the address is told of later.
 SCRIPT = """
 <script>
+{
 const seen = {}, buttons = [...document.querySelectorAll('.filter button')];
 const names = () => [...document.querySelectorAll('tr[data-w]')].filter(row => row.checkVisibility())
   .map(row => row.querySelector('td.name').textContent).sort();
@@ -60,6 +61,7 @@ const settled = () => new Promise(resolve => setTimeout(resolve, 50));
   result.textContent = JSON.stringify(seen);
   document.body.append(result);
 })();
+}
 </script>
 """
 
@@ -95,7 +97,7 @@ def make_page(directory):
         return file.read()
 
 
-# The page as it is in the end. What scripts and loading complain of goes to standard error, as CONSOLE.
+# The page as it is in the end. What scripts complain of goes to standard error, as CONSOLE.
 def opened(directory, page, *options, fragment=""):
     path = os.path.join(directory, "page.html")
     with open(path, "w") as file:

@@ -32,7 +32,7 @@ TEST_F(Report, ShowsAllMeshesOfAllShardsOnASelfContainedPage) {
 // Whether it filters, a browser tells: report_page_test.py.
 TEST_F(Report, CountsWarningsByName) {
   put("a.obj");
-  put("b.obj", std::string(kTriangle) + "f 1 2\n");
+  put("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
   ASSERT_EQ(run({"--quiet"}).status, 0);
   const std::string page = run_raycone({"report", out_, "-o", "-"}).out;
   for (const char* const expected :

@@ -114,7 +114,8 @@ void refuse_missing_directory(const std::string& path) {
 }
 
 void add_operand(const std::string& operand, bool nul_separated_lists, std::vector<BatchMesh>& meshes) {
-  if (operand.empty()) throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
+  if (operand.empty() || operand == "@")
+    throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
   if (operand.starts_with('@') || operand == "-") {
     const std::string list = operand == "-" ? operand : operand.substr(1);
     for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists)) add_path(path, meshes);

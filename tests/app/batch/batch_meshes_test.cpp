@@ -143,7 +143,7 @@ TEST_F(BatchMeshes, OfADirectoryThatIsMissingAreRefused) {
   for (const char* const form : {"/no", "/no/", "/no/.", "/no/..", "/a.stl/"}) {
     EXPECT_THROW((void)find({root_ + "/a.stl", root_ + form}), InputError) << form;
   }
-  EXPECT_THROW((void)find({""}), UsageError);
+  for (const char* const empty : {"", "@"}) EXPECT_THROW((void)find({empty}), UsageError) << empty;
   EXPECT_EQ(names(find({root_ + "/no.stl"})), Names{"no.stl"});
 }
 

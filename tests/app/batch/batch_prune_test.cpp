@@ -83,6 +83,8 @@ TEST_F(BatchPrune, OfAShardIsOfItsOwnRowsAndOfAllWithoutShards) {
   const auto rows_of = [this](int shard) { return rows_in(out_ + "/results-" + std::to_string(shard) + "-of-2.csv"); };
   const Rows of_both[] = {rows_of(1), rows_of(2)};
   for (const Rows& some : of_both) fs::remove(meshes_ + "/" + some.begin()->first);
+  EXPECT_EQ(run({"--shard", "1/2", "--prune", "--dry-run"}).out,
+            meshes_ + "/" + of_both[0].begin()->first + "\tgone\n");
   ASSERT_EQ(run({"--shard", "1/2", "--prune"}).status, 0);
   EXPECT_FALSE(rows_of(1).contains(of_both[0].begin()->first));
   EXPECT_TRUE(rows_of(2).contains(of_both[1].begin()->first)) << "the table of another shard";

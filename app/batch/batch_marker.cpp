@@ -14,10 +14,9 @@ namespace raycone {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::seconds;
 
-constexpr seconds kBetweenSigns{60};
-constexpr seconds kSilence{600};  // ten signs
+constexpr std::chrono::seconds kBetweenSigns{60};
+constexpr std::chrono::seconds kSilence{600};  // ten signs
 
 std::string suffix_for(const std::string& options) {
   return std::string(kBatchSuffix) + sha256(options).substr(0, kHexadecimalDigits);

@@ -3,13 +3,17 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "app/batch/mesh_list.h"
 #include "app/process/usage_error.h"
+#include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/mesh/read_mesh.h"
 
@@ -24,6 +28,16 @@ using DirectoryIdentity = std::pair<dev_t, ino_t>;
 bool has_mesh_extension(const fs::path& path) {
   const std::string extension = path.extension().string();
   return !extension.empty() && mesh_format_from_name(std::string_view(extension).substr(1)).has_value();
+}
+
+// Of what is given by itself: its last component; where that is none of its own (`dir/`, `dir/..`), that of the
+// directory meant, with a slash behind it. Never empty.
+std::string own_name(const std::string& path) {
+  const fs::path name = fs::path(path).filename();
+  if (!name.empty() && name != "." && name != "..") return name.string();
+  std::error_code error;
+  const fs::path directory = (fs::absolute(path, error) / "").lexically_normal();
+  return directory.parent_path().filename().string() + '/';
 }
 
 // What a directory holds that may be a mesh, by names relative to it.
@@ -68,7 +82,7 @@ class DirectorySearch {
   }
 
   void add(const std::string& name) {
-    meshes_.push_back({path_of(name), name.empty() ? "./" : name, "", stamp_of(path_of(name))});
+    meshes_.push_back({path_of(name), name.empty() ? own_name(path_of("") + '/') : name, "", stamp_of(path_of(name))});
   }
 
   std::string root_;
@@ -83,18 +97,31 @@ void add_path(const std::string& path, std::vector<BatchMesh>& meshes) {
     std::vector<BatchMesh> found = DirectorySearch(path).meshes();
     meshes.insert(meshes.end(), found.begin(), found.end());
   } else {
-    meshes.push_back({path, fs::path(path).filename().string(), "", stamp_of(path)});
+    meshes.push_back({path, own_name(path), "", stamp_of(path)});
   }
 }
 
-void add_list(const std::string& list, char separator, std::vector<BatchMesh>& meshes) {
-  const std::string text = read_file(list);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    std::string path = text.substr(begin, end - begin);
-    if (separator == '\n' && path.ends_with('\r')) path.pop_back();
-    if (!path.empty()) add_path(path, meshes);
-    begin = end + 1;
+// What is not there is a mesh that is missing where it is named as a file. A directory that is missing would else be a
+// batch of one mesh, which no one meant.
+void refuse_missing_directory(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0) return;
+  const int error = errno;
+  if (own_name(path).ends_with('/') || !fs::path(path).has_extension()) {
+    throw InputError(path + ": cannot be read: " + std::generic_category().message(error) +
+                     ", expected a mesh, a directory or @LIST");
+  }
+}
+
+void add_operand(const std::string& operand, bool nul_separated_lists, std::vector<BatchMesh>& meshes) {
+  if (operand.empty() || operand == "@")
+    throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
+  if (operand.starts_with('@') || operand == "-") {
+    const std::string list = operand == "-" ? operand : operand.substr(1);
+    for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists)) add_path(path, meshes);
+  } else {
+    refuse_missing_directory(operand);
+    add_path(operand, meshes);
   }
 }
 
@@ -103,16 +130,40 @@ std::string output_name(const std::string& name, const MeshSearch& search) {
   return fs::path(name).replace_extension(search.extension).string();
 }
 
+// "a, b and c".
+std::string enumerated(const std::vector<const BatchMesh*>& meshes) {
+  std::string text = meshes.front()->path;
+  for (std::size_t i = 1; i < meshes.size(); ++i) text += (i + 1 < meshes.size() ? ", " : " and ") + meshes[i]->path;
+  return text;
+}
+
+bool have_one_name(const std::vector<const BatchMesh*>& meshes) {
+  return std::ranges::all_of(meshes, [&](const BatchMesh* mesh) { return mesh->name == meshes.front()->name; });
+}
+
+std::string collision_text(const std::vector<const BatchMesh*>& meshes) {
+  const std::string all = meshes.size() == 2 ? ": would both be " : ": would all be ";
+  const BatchMesh& first = *meshes.front();
+  return enumerated(meshes) + all +
+         (have_one_name(meshes) ? first.name + " in the results" : "written to " + first.output);
+}
+
 // Results are kept by name, outputs by theirs: both must be unique.
 void refuse_collisions(const std::vector<BatchMesh>& meshes) {
-  std::map<std::string, const BatchMesh*> by_output;
-  for (const BatchMesh& mesh : meshes) {
-    const auto [other, is_new] = by_output.emplace(mesh.output, &mesh);
-    if (is_new) continue;
-    const std::string both = other->second->path + " and " + mesh.path;
-    if (other->second->name == mesh.name) throw UsageError(both + ": would both be " + mesh.name + " in the results");
-    throw UsageError(both + ": would both be written to " + mesh.output + "; --full-names keeps them apart");
+  constexpr std::size_t kMostListed = 10;
+  std::map<std::string, std::vector<const BatchMesh*>> by_output;
+  for (const BatchMesh& mesh : meshes) by_output[mesh.output].push_back(&mesh);
+  std::erase_if(by_output, [](const auto& output) { return output.second.size() == 1; });
+  if (by_output.empty()) return;
+  std::string text;
+  bool full_names_help = false;
+  std::size_t listed = 0;
+  for (const auto& [output, same] : by_output) {
+    full_names_help = full_names_help || !have_one_name(same);
+    if (listed++ < kMostListed) text += (text.empty() ? "" : "; ") + collision_text(same);
   }
+  if (listed > kMostListed) text += "; and " + std::to_string(listed - kMostListed) + " more";
+  throw UsageError(text + (full_names_help ? "; --full-names keeps them apart" : ""));
 }
 
 bool same_file(const BatchMesh& a, const BatchMesh& b) {
@@ -124,18 +175,18 @@ bool same_file(const BatchMesh& a, const BatchMesh& b) {
 
 std::vector<BatchMesh> find_meshes(const MeshSearch& search) {
   std::vector<BatchMesh> meshes;
-  for (const std::string& operand : search.operands) {
-    if (operand.starts_with('@') || operand == "-") {
-      add_list(operand == "-" ? operand : operand.substr(1), search.nul_separated_lists ? '\0' : '\n', meshes);
-    } else {
-      add_path(operand, meshes);
-    }
-  }
+  for (const std::string& operand : search.operands) add_operand(operand, search.nul_separated_lists, meshes);
   std::ranges::stable_sort(meshes, {}, &BatchMesh::name);
   meshes.erase(std::unique(meshes.begin(), meshes.end(), same_file), meshes.end());
   for (BatchMesh& mesh : meshes) mesh.output = output_name(mesh.name, search);
   refuse_collisions(meshes);
   return meshes;
+}
+
+std::string path_from_root(const BatchMesh& mesh) {
+  std::error_code error;
+  const fs::path path = fs::absolute(mesh.path, error);
+  return error ? mesh.path : path.string();
 }
 
 }  // namespace raycone

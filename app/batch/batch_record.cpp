@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kRow = 1;  // empty in a note of a start
 constexpr std::size_t kFinished = 10;
 constexpr std::size_t kChanged = 12;
+constexpr std::size_t kPath = 13;
 
 std::string hash_of_line(const std::string& line) {
   constexpr std::size_t kDigits = 16;
@@ -70,13 +71,18 @@ void keep_latest(BatchRecord record, BatchRecords& records) {
 }
 
 const CsvRecord& origin_columns() {
-  static const CsvRecord columns{"mesh",        "row",       "size",         "modified_ns",          "companions",
-                                 "version",     "options",   "memory_limit", "default_memory_limit", "timeout_s",
-                                 "finished_ns", "thumbnail", "changed_ns"};
+  static const CsvRecord columns{"mesh",        "row",          "size",
+                                 "modified_ns", "companions",   "version",
+                                 "options",     "memory_limit", "default_memory_limit",
+                                 "timeout_s",   "finished_ns",  "thumbnail",
+                                 "changed_ns",  "path"};
   return columns;
 }
 
-CsvRecord former_origin_columns() { return {origin_columns().begin(), origin_columns().begin() + kChanged}; }
+std::vector<CsvRecord> former_origin_columns() {
+  const auto first = origin_columns().begin();
+  return {{first, first + kChanged}, {first, first + kPath}};
+}
 
 CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std::string& line) {
   return {mesh,
@@ -91,7 +97,8 @@ CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std:
           number_text(origin.timeout),
           std::to_string(origin.finished),
           origin.thumbnail,
-          changed_text(origin.stamp)};
+          changed_text(origin.stamp),
+          origin.path};
 }
 
 CsvRecord to_start_record(const std::string& mesh, std::int64_t time) {
@@ -127,7 +134,8 @@ std::optional<RowOrigin> origin_from(const CsvRecord& record) {
                    *timeout,
                    *finished,
                    false,
-                   record[11]};
+                   record[11],
+                   record[kPath]};
 }
 
 }  // namespace raycone

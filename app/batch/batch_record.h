@@ -24,6 +24,7 @@ struct RowOrigin {
   std::int64_t finished = 0;  // nanoseconds since 1970: of two rows of a mesh the later one counts
   bool superseded = false;    // begun again since: the output may be another one
   std::string thumbnail{};    // BMP in base64; empty where there is none
+  std::string path{};         // of the mesh, from the root: tells later whether it is gone
 };
 
 struct BatchRecord {
@@ -42,8 +43,8 @@ void keep_latest(BatchRecord record, BatchRecords& records);
 
 // The names of the columns of the files that keep the origins.
 [[nodiscard]] const CsvRecord& origin_columns();
-// Those of version 1.0.0-rc1, whose origins say too little to be trusted.
-[[nodiscard]] CsvRecord former_origin_columns();
+// Those of earlier versions, whose origins say too little to be trusted.
+[[nodiscard]] std::vector<CsvRecord> former_origin_columns();
 
 // A note that `mesh` was begun at `time` (nanoseconds since 1970): whatever rows there are from before, in this file or
 // that of another shard, its output need not be theirs any more.

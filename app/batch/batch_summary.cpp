@@ -50,6 +50,12 @@ std::string kept_line(const BatchRecords& kept) {
          (by_cause.empty() ? "" : ", of which " + std::to_string(count_failed(kept)) + " failed earlier" + by_cause);
 }
 
+std::string pruned_line(std::size_t count) {
+  const std::string rows =
+      count == 1 ? "1 row of a mesh that is gone" : std::to_string(count) + " rows of meshes that are gone";
+  return rows + " removed, outputs left as they are";
+}
+
 std::vector<std::string> slowest_lines(const BatchRecords& records) {
   constexpr std::size_t kSlowest = 10;
   std::vector<std::pair<double, std::string>> times;
@@ -69,35 +75,13 @@ std::vector<std::string> slowest_lines(const BatchRecords& records) {
 
 }  // namespace
 
-void BatchProgress::add(bool failed, double part) {
-  ++done_;
-  failed_ += failed ? 1 : 0;
-  part_ = part;
-  show();
-}
-
-void BatchProgress::show() {
-  if (!shown_) return;
-  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  std::string line = std::to_string(done_) + '/' + counted(meshes_, "mesh");
-  if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
-  if (part_ > 0.0) line += "  " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
-  if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";
-  std::fprintf(stderr, "\r\033[K%s", line.c_str());
-  std::fflush(stderr);
-  drawn_ = true;
-}
-
-void BatchProgress::erase() {
-  if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
-}
-
 bool BatchOutcome::any_failed() const { return count_failed(evaluated) + count_failed(kept) > 0; }
 
 std::vector<std::string> summary_lines(const BatchOutcome& outcome) {
   std::vector<std::string> lines = slowest_lines(outcome.evaluated);
   lines.push_back(evaluated_line(outcome));
   if (!outcome.kept.empty()) lines.push_back(kept_line(outcome.kept));
+  if (outcome.pruned > 0) lines.push_back(pruned_line(outcome.pruned));
   if (outcome.not_done > 0) lines.push_back(std::to_string(outcome.not_done) + " not done");
   return lines;
 }

@@ -12,7 +12,6 @@ namespace raycone {
 
 struct JobResult {
   ResultRow row;                        // its `mesh` and `output` are left empty
-  std::vector<std::string> warnings;    // about the mesh
   std::vector<StampedFile> companions;  // further files that were read, by their hashes
   std::string thumbnail;                // BMP in base64; empty where there is none
 };

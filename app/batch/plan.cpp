@@ -12,10 +12,11 @@ namespace {
 // Memory that is free differs from run to run; only a default limit that grew by more than this is another one.
 constexpr double kMoreMemory = 1.25;
 
-// Their stamps are brought up to date where they have not.
+// What the record knows of the file is brought up to date.
 bool mesh_changed(const BatchMesh& mesh, BatchRecord& record) {
   const FileStamp earlier = record.origin->stamp;
   record.origin->stamp = mesh.stamp;
+  record.origin->path = path_from_root(mesh);
   if (is_certainly_same(earlier, mesh.stamp)) return false;
   StampedFile file{mesh.path, kNoStamp, record.row.sha256};
   return earlier.size != mesh.stamp.size || !is_unchanged(file);

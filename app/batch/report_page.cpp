@@ -1,4 +1,4 @@
-// One file without references to others, readable without scripts; the only one sorts the table.
+// One file without references to others, readable without scripts; the only one sorts and filters the tables.
 #include "app/batch/report_page.h"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -56,12 +57,17 @@ th, td { padding: .3rem .6rem; border-bottom: 1px solid var(--line); text-align:
 th { position: sticky; top: 0; background: var(--paper); white-space: nowrap; }
 th.sort { cursor: pointer; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.name { overflow-wrap: anywhere; min-width: 18rem; }
-td.message { overflow-wrap: anywhere; }
+td.name { overflow-wrap: anywhere; min-width: 9rem; }
+td.message { overflow-wrap: anywhere; min-width: 9rem; }
+.filter { display: flex; flex-wrap: wrap; gap: .4rem; }
+.filter button { font: inherit; font-size: 13px; color: inherit; background: var(--panel); border: 1px solid var(--line);
+  border-radius: 1rem; padding: .15rem .7rem; cursor: pointer; }
+.filter button[aria-pressed=true] { color: var(--paper); background: var(--mark); border-color: var(--mark); }
 td img { display: block; width: 48px; height: 48px; object-fit: contain; image-rendering: pixelated; }
 )";
 
-// Sorts by the column whose heading is clicked, downwards first for numbers.
+// Sorts by the column whose heading is clicked, downwards first for numbers. Shows the rows with the warning that the
+// address names behind #warning=, or that is clicked; all where it names none that there is.
 constexpr const char* kScript = R"(
 for (const head of document.querySelectorAll('th.sort')) head.addEventListener('click', () => {
   const body = head.closest('table').tBodies[0], column = head.cellIndex, numeric = head.classList.contains('n');
@@ -70,6 +76,18 @@ for (const head of document.querySelectorAll('th.sort')) head.addEventListener('
   const order = (a, b) => { const x = key(a), y = key(b); return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1); };
   body.append(...[...body.rows].sort(order));
 });
+const buttons = [...document.querySelectorAll('.filter button')];
+const fragment = button => '#warning=' + encodeURIComponent(button.dataset.f);
+const filter = () => {
+  const chosen = buttons.find(button => location.hash === fragment(button)) ?? buttons[0];
+  for (const button of buttons) button.setAttribute('aria-pressed', button === chosen);
+  const name = chosen?.dataset.f;
+  for (const row of document.querySelectorAll('tr[data-w]'))
+    row.hidden = Boolean(name) && !row.dataset.w.split(' ').includes(name);
+};
+for (const button of buttons) button.addEventListener('click', () => { location.hash = fragment(button); });
+addEventListener('hashchange', filter);
+filter();
 )";
 
 using Quantities = std::vector<double>;
@@ -95,6 +113,48 @@ double faces_of(const MeshFigures& f) { return static_cast<double>(f.faces); }
 double edges_of(const MeshFigures& f) { return static_cast<double>(f.exterior_edges); }
 double samples_of(const MeshFigures& f) { return static_cast<double>(f.samples); }
 
+// --- Warnings
+
+constexpr const char* kNoWarning = "none";
+
+// Of each name, how many meshes have it.
+std::map<std::string, std::size_t> count_warnings(const BatchRecords& records) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [mesh, record] : records) {
+    std::istringstream names(record.row.warnings);
+    for (std::string name; names >> name;) ++counts[name];
+  }
+  return counts;
+}
+
+std::size_t count_warned(const BatchRecords& records) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(records, [](const auto& record) { return !record.second.row.warnings.empty(); }));
+}
+
+std::string filter_button(const std::string& name, const std::string& label, std::size_t count) {
+  return "<button type=\"button\" data-f=\"" + html_text(name) + "\">" + html_text(label) + ' ' +
+         std::to_string(count) + "</button>\n";
+}
+
+std::string warnings(const BatchRecords& records) {
+  const std::map<std::string, std::size_t> counts = count_warnings(records);
+  if (counts.empty()) return "";
+  std::string html = "<h2>Warnings</h2>\n<div class=\"filter\">\n" + filter_button("", "all meshes", records.size());
+  for (const auto& [name, count] : counts) html += filter_button(name, name, count);
+  return html + filter_button(kNoWarning, kNoWarning, records.size() - count_warned(records)) + "</div>\n";
+}
+
+// Of a table about meshes, its first cells yet to come.
+std::string row_start(const ResultRow& row) {
+  return "<tr data-w=\"" + html_text(row.warnings.empty() ? kNoWarning : row.warnings) + "\">";
+}
+
+std::string warning_cells(const ResultRow& row) {
+  return "<td class=\"warnings\">" + html_text(row.warnings) + "</td><td class=\"message\">" + html_text(row.message) +
+         "</td></tr>\n";
+}
+
 // --- Summary
 
 std::string tile(const std::string& value, const std::string& name, bool bad = false) {
@@ -108,6 +168,7 @@ std::string tiles(const BatchRecords& records) {
   std::string html = "<div class=\"tiles\">\n" + tile(std::to_string(records.size()), "meshes");
   for (const auto& [status, count] : counts)
     html += tile(std::to_string(count), name_of(status), status != MeshStatus::kOk);
+  if (const std::size_t warned = count_warned(records)) html += tile(std::to_string(warned), "with warnings");
   const double samples = sum(collect(records, samples_of));
   const double seconds = sum(collect(records, [](const MeshFigures& f) { return f.seconds(); }));
   html += tile(readable_quantity(samples, Quantity::kCount), "samples");
@@ -181,12 +242,13 @@ std::string failures(const BatchRecords& records) {
   std::string rows;
   for (const auto& [mesh, record] : records) {
     if (is_ok(record)) continue;
-    rows += "<tr><td class=\"name\">" + html_text(mesh) + "</td><td class=\"bad\">" + name_of(record.row.status) +
-            "</td><td class=\"message\">" + html_text(record.row.message) + "</td></tr>\n";
+    rows += row_start(record.row) + "<td class=\"name\">" + html_text(mesh) + "</td><td class=\"bad\">" +
+            name_of(record.row.status) + "</td>" + warning_cells(record.row);
   }
   if (rows.empty()) return "";
   return "<h2>Failures</h2>\n<div class=\"scroll\"><table><thead><tr><th class=\"sort\">mesh</th>"
-         "<th class=\"sort\">cause</th><th class=\"sort\">message</th></tr></thead><tbody>\n" +
+         "<th class=\"sort\">cause</th><th class=\"sort\">warnings</th><th "
+         "class=\"sort\">message</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
@@ -197,12 +259,11 @@ std::string evaluated(const BatchRecords& records) {
        {"faces", "exterior edges", "samples", "read", "prepare", "evaluate", "write", "peak memory"}) {
     html += std::string("<th class=\"n sort\">") + column + "</th>";
   }
-  html += "<th class=\"sort\">warnings</th></tr></thead><tbody>\n";
+  html += "<th class=\"sort\">warnings</th><th class=\"sort\">message</th></tr></thead><tbody>\n";
   for (const auto& [mesh, record] : records) {
     if (!is_ok(record)) continue;
-    html += "<tr>" + thumbnail_cell(record) + "<td class=\"name\">" + html_text(mesh) + "</td>" +
-            figure_cells(*record.row.figures) + "<td class=\"message\">" + html_text(record.row.message) +
-            "</td></tr>\n";
+    html += row_start(record.row) + thumbnail_cell(record) + "<td class=\"name\">" + html_text(mesh) + "</td>" +
+            figure_cells(*record.row.figures) + warning_cells(record.row);
   }
   return html + "</tbody></table></div>\n";
 }
@@ -213,7 +274,8 @@ std::string page(const std::string& directory, const BatchRecords& records) {
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
          title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
          "</h1>\n<div class=\"quiet\">raycone " + kVersion + "</div>\n" + tiles(records) + plots(records) +
-         failures(records) + evaluated(records) + "<script>" + kScript + "</script>\n</body>\n</html>\n";
+         warnings(records) + failures(records) + evaluated(records) + "<script>" + kScript +
+         "</script>\n</body>\n</html>\n";
 }
 
 // Those that shards are yet to write included.

@@ -15,6 +15,7 @@ constexpr std::array kStatusNames{"ok", "invalid", "timeout", "memory", "crashed
 // The columns between `exit` and `output`.
 constexpr std::size_t kFirstFigure = 3;
 constexpr std::size_t kFigures = 10;
+constexpr std::size_t kFormerColumns = 16;
 
 std::string seconds_text(double seconds) {
   char text[48];
@@ -71,21 +72,25 @@ std::string name_of(MeshStatus status) { return kStatusNames[static_cast<std::si
 
 const CsvRecord& result_columns() {
   static const CsvRecord columns{
-      "mesh",   "status",    "exit",       "faces",   "exterior_edges",    "samples", "degenerate", "on_surface",
-      "read_s", "prepare_s", "evaluate_s", "write_s", "peak_memory_bytes", "output",  "sha256",     "message"};
+      "mesh",       "status",  "exit",      "faces",      "exterior_edges", "samples",           "degenerate",
+      "on_surface", "read_s",  "prepare_s", "evaluate_s", "write_s",        "peak_memory_bytes", "output",
+      "sha256",     "message", "warnings"};
   return columns;
 }
+
+CsvRecord former_result_columns() { return {result_columns().begin(), result_columns().begin() + kFormerColumns}; }
 
 CsvRecord to_record(const ResultRow& row) {
   CsvRecord record{row.mesh, name_of(row.status), std::to_string(row.exit)};
   const CsvRecord figures = row.figures ? to_fields(*row.figures) : CsvRecord(kFigures);
   record.insert(record.end(), figures.begin(), figures.end());
-  record.insert(record.end(), {row.output, row.sha256, row.message});
+  record.insert(record.end(), {row.output, row.sha256, row.message, row.warnings});
   return record;
 }
 
 std::optional<ResultRow> row_from(const CsvRecord& record) {
-  if (record.size() != result_columns().size()) return std::nullopt;
+  const bool former = record.size() == kFormerColumns;
+  if (!former && record.size() != result_columns().size()) return std::nullopt;
   const auto status = std::ranges::find(kStatusNames, record[1]);
   const std::optional<std::int64_t> exit = integer_from(record[2]);
   if (status == kStatusNames.end() || !exit) return std::nullopt;
@@ -98,6 +103,7 @@ std::optional<ResultRow> row_from(const CsvRecord& record) {
   row.output = record[kBehindFigures];
   row.sha256 = record[kBehindFigures + 1];
   row.message = record[kBehindFigures + 2];
+  if (!former) row.warnings = record[kBehindFigures + 3];
   if (row.status == MeshStatus::kOk && !row.figures) return std::nullopt;
   return row;
 }

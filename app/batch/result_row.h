@@ -35,16 +35,19 @@ struct ResultRow {
   MeshStatus status = MeshStatus::kOk;
   int exit = 0;  // status of the process that evaluated it alone; 128 + N where signal N ended it
   std::optional<MeshFigures> figures;
-  std::string output;   // relative to the directory of outputs; empty where nothing was written
-  std::string sha256;   // of the mesh; empty where unknown
-  std::string message;  // error or warnings, one line
+  std::string output;    // relative to the directory of outputs; empty where nothing was written
+  std::string sha256;    // of the mesh; empty where unknown
+  std::string message;   // error or warnings, one line
+  std::string warnings;  // their names, separated by spaces
 };
 
 // The names of the columns.
 [[nodiscard]] const CsvRecord& result_columns();
+// The first of them: those of version 1.0.0~rc2 and before.
+[[nodiscard]] CsvRecord former_result_columns();
 
 [[nodiscard]] CsvRecord to_record(const ResultRow& row);
-// Nothing where it is no row.
+// Nothing where it is no row, also of former columns.
 [[nodiscard]] std::optional<ResultRow> row_from(const CsvRecord& record);
 
 }  // namespace raycone

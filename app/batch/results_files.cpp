@@ -64,6 +64,16 @@ std::optional<Shard> shard_of(const std::string& name) {
   return Shard{std::stoull(match[1]), std::stoull(match[2])};
 }
 
+std::vector<ResultsFiles> all_results_files(const std::string& directory) {
+  std::vector<ResultsFiles> all;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (holds_rows(name)) all.emplace_back(directory, shard_of(name));
+  }
+  return all;
+}
+
 BatchRecord record_of(ResultRow row, const std::map<std::string, CsvRecord>& origins) {
   const auto origin = origins.find(row.mesh);
   BatchRecord record{std::move(row), std::nullopt};
@@ -83,7 +93,10 @@ std::string CsvLog::text() const {
 std::vector<CsvRecord> CsvLog::read() const {
   const std::string all = text();
   const std::string header = csv_line(columns_);
-  if (!former_columns_.empty() && all.starts_with(csv_line(former_columns_))) return {};
+  for (const CsvRecord& columns : former_columns_) {
+    const std::string former = csv_line(columns);
+    if (all.starts_with(former)) return parse_csv(std::string_view(all).substr(former.size())).records;
+  }
   if (header.starts_with(all)) return {};  // empty, or a header that was never completed
   if (!all.starts_with(header)) throw InputError(path_ + ":1: not written by raycone batch, expected " + header);
   return parse_csv(std::string_view(all).substr(header.size())).records;
@@ -134,7 +147,7 @@ void CsvLog::sync() const {
 
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
     : directory_(directory),
-      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns()),
+      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns(), {former_result_columns()}),
       origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns(), former_origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const { return contents().records; }
@@ -153,7 +166,7 @@ ResultsFiles::Contents ResultsFiles::contents() const {
   }
   for (const CsvRecord& record : rows_.read()) {
     std::optional<ResultRow> row = row_from(record);
-    if (!row) continue;
+    if (!row || row->mesh.empty()) continue;  // as versions before 1.0.0 wrote them of directories that are missing
     const std::string mesh = row->mesh;
     contents.records.insert_or_assign(mesh, record_of(std::move(*row), origins));
   }
@@ -166,6 +179,14 @@ void ResultsFiles::forget(const Starts& meshes) const {
   std::erase_if(all.records, [&meshes](const auto& record) { return meshes.contains(record.first); });
   for (const auto& [mesh, start] : meshes) all.starts.insert_or_assign(mesh, start);
   write(all);
+}
+
+void ResultsFiles::remove(const std::set<std::string>& meshes) const {
+  const DirectoryLock lock(directory_);
+  Contents all = contents();
+  const auto removed =
+      std::erase_if(all.records, [&meshes](const auto& record) { return meshes.contains(record.first); });
+  if (removed > 0) write(all);
 }
 
 // The origin first: without it a row would have to be made again.
@@ -202,11 +223,8 @@ void ResultsFiles::write(const Contents& contents) const {
 BatchRecords read_all_results(const std::string& directory) {
   BatchRecords all;
   Starts starts;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!holds_rows(name)) continue;
-    ResultsFiles::Contents contents = ResultsFiles(directory, shard_of(name)).contents();
+  for (const ResultsFiles& files : all_results_files(directory)) {
+    ResultsFiles::Contents contents = files.contents();
     for (auto& [mesh, record] : contents.records) keep_latest(std::move(record), all);
     for (const auto& [mesh, start] : contents.starts) starts[mesh] = std::max(starts[mesh], start);
   }
@@ -217,6 +235,10 @@ BatchRecords read_all_results(const std::string& directory) {
     record.origin->finished = start->second;
   }
   return all;
+}
+
+void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes) {
+  for (const ResultsFiles& files : all_results_files(directory)) files.remove(meshes);
 }
 
 bool is_results_file(const std::string& name) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,8 +22,8 @@ namespace raycone {
 // A CSV file with a fixed header that several processes may append to.
 class CsvLog {
  public:
-  // A table with the columns of an earlier version counts as empty, and is replaced.
-  CsvLog(std::string path, CsvRecord columns, CsvRecord former_columns = {})
+  // A table with the columns of an earlier version is read, too; its records have only these.
+  CsvLog(std::string path, CsvRecord columns, std::vector<CsvRecord> former_columns)
       : path_(std::move(path)), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
 
   // Nothing where there is no file. Throws InputError where it is no such table.
@@ -38,7 +39,7 @@ class CsvLog {
 
   std::string path_;
   CsvRecord columns_;
-  CsvRecord former_columns_;
+  std::vector<CsvRecord> former_columns_;
   mutable off_t complete_ = 0;  // the size that this has left behind: it ends with a complete line
 };
 
@@ -55,6 +56,8 @@ class ResultsFiles {
   // of other shards from before are superseded, too, although they are theirs to forget.
   void forget(const Starts& meshes) const;
   void append(const BatchRecord& record) const;
+  // Removes the rows of `meshes`, where there are any.
+  void remove(const std::set<std::string>& meshes) const;
   // Adds `records` where they are newer than what is there, sorts by mesh, and syncs.
   void merge(const BatchRecords& records) const;
 
@@ -74,6 +77,10 @@ class ResultsFiles {
 
 // Of the whole batch and all its shards together. Throws InputError.
 [[nodiscard]] BatchRecords read_all_results(const std::string& directory);
+
+// Removes from the whole batch and all its shards the rows of meshes that are gone. Not while a shard runs: a row that
+// it adds at this moment would be lost, and made again. Throws InputError, OutputError.
+void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes);
 
 // Whether a batch keeps its results in files of this name.
 [[nodiscard]] bool is_results_file(const std::string& name);

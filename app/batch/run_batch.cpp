@@ -16,14 +16,15 @@
 #include <vector>
 
 #include "app/batch/batch_marker.h"
+#include "app/batch/batch_progress.h"
 #include "app/batch/batch_summary.h"
 #include "app/batch/plan.h"
+#include "app/batch/prune.h"
 #include "app/batch/results_files.h"
 #include "app/batch/shard.h"
 #include "app/batch/supervisor.h"
 #include "app/process/limits.h"
 #include "app/process/messages.h"
-#include "app/process/progress.h"
 #include "app/process/signals.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
@@ -43,6 +44,10 @@ namespace fs = std::filesystem;
 const GridReference* grid_of(const MeshCommand& command) {
   const auto* const lattice = std::get_if<LatticeCommand>(&command);
   return lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
+}
+
+void warn(const BatchCommand& command, const std::string& text) {
+  if (!command.run.quiet) print_message("warning: " + text);
 }
 
 // Files that the batch reads beside the meshes: lists, the grid of --like.
@@ -80,20 +85,41 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
   }
 }
 
-std::vector<BatchMesh> meshes_of(const BatchCommand& command) {
-  std::vector<BatchMesh> all = find_meshes(command.search);
-  if (all.empty()) print_message("warning: no meshes found");
+std::vector<BatchMesh> all_meshes_of(const BatchCommand& command) {
+  const std::vector<BatchMesh> all = find_meshes(command.search);
+  if (all.empty()) warn(command, std::string("no meshes found") + (command.prune ? ", no rows removed" : ""));
   for (const BatchMesh& mesh : all) {
     if (!command.writes || !is_results_file(mesh.output)) continue;
     throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
   }
   if (command.writes) refuse_to_replace(command, all);
-  if (!command.shard) return all;
+  return all;
+}
+
+std::vector<BatchMesh> meshes_of(const std::optional<Shard>& shard, const std::vector<BatchMesh>& all) {
+  if (!shard) return all;
   std::vector<SizedName> names;
   for (const BatchMesh& mesh : all) names.push_back({mesh.name, mesh.stamp.size});
   std::vector<BatchMesh> part;
-  for (const std::size_t i : part_of(names, *command.shard)) part.push_back(std::move(all[i]));
+  for (const std::size_t i : part_of(names, *shard)) part.push_back(all[i]);
   return part;
+}
+
+// A row that says so would be one of those to be removed.
+void leave_out_missing(const BatchCommand& command, std::vector<BatchMesh>& meshes) {
+  const auto missing = std::ranges::find_if(meshes, is_missing);
+  if (missing == meshes.end()) return;
+  const std::string first = missing->path;
+  const std::size_t count = std::erase_if(meshes, is_missing);
+  warn(command,
+       first + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") + ": not there, left out (--prune)");
+}
+
+// Where nothing at all is found, a file system is rather not mounted.
+GoneMeshes gone_from(const BatchCommand& command, const BatchRecords& records, const std::vector<BatchMesh>& found) {
+  if (!command.prune || found.empty()) return {};
+  // The tables of others are theirs.
+  return gone_meshes(command.shard ? ResultsFiles(command.directory, command.shard).read() : records, found);
 }
 
 // What outputs and results depend on beside the mesh, as text.
@@ -126,13 +152,14 @@ PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& l
 }
 
 // For programs names as they are, for people such that no terminal is moved.
-void print_plan(const Plan& plan) {
+void print_plan(const Plan& plan, const GoneMeshes& gone) {
   const bool for_people = isatty(STDOUT_FILENO) == 1;
   OutputFile standard_output("-");
-  for (const PlannedMesh& planned : plan.todo) {
-    const std::string& path = planned.mesh.path;
-    standard_output.stream() << (for_people ? plain_text(path, "?") : path) << '\t' << planned.reason << '\n';
-  }
+  const auto print = [&](const std::string& path, const std::string& reason) {
+    standard_output.stream() << (for_people ? plain_text(path, "?") : path) << '\t' << reason << '\n';
+  };
+  for (const PlannedMesh& planned : plan.todo) print(planned.mesh.path, planned.reason);
+  for (const auto& [name, path] : gone) print(path, "gone");
   standard_output.commit();
 }
 
@@ -145,17 +172,19 @@ void make_directory(const std::string& path) {
 // One batch run, from its plan to its results.
 class BatchRun {
  public:
-  BatchRun(const BatchCommand& command, Plan plan, const PlanOptions& options)
+  BatchRun(const BatchCommand& command, Plan plan, GoneMeshes gone, const PlanOptions& options)
       : command_(command),
         plan_(std::move(plan)),
+        gone_(std::move(gone)),
         options_(options),
         results_(command.directory, command.shard),
-        progress_(progress_is_shown(command.run.progress, command.run.quiet, ""), plan_.todo.size()) {}
+        progress_(progress_style(command.run.progress, command.run.quiet), plan_.todo.size()) {}
 
   // Returns the signal that interrupted it, or 0.
   int run(const SupervisorOptions& limits) {
     const HeldSignals signals;
     BatchMarker marker(command_.directory, options_.version + '\n' + options_.options);
+    remove_gone();
     prepare_directory();
     const int signal = timed(outcome_.seconds, [&] {
       return supervise(
@@ -178,6 +207,18 @@ class BatchRun {
   [[nodiscard]] const BatchOutcome& outcome() const { return outcome_; }
 
  private:
+  void remove_gone() {
+    if (gone_.empty()) return;
+    std::set<std::string> names;
+    for (const auto& [name, path] : gone_) names.insert(name);
+    if (command_.shard) {
+      results_.remove(names);
+    } else {
+      remove_from_all_results(command_.directory, names);
+    }
+    outcome_.pruned = names.size();
+  }
+
   // Rows that are about to be made again are forgotten, and what killed runs left is removed.
   void prepare_directory() {
     std::set<std::string> directories{command_.directory};
@@ -215,9 +256,7 @@ class BatchRun {
     const bool failed = record.row.status != MeshStatus::kOk;
     progress_.erase();
     if (failed) print_message(record.row.message);
-    if (!failed && !record.row.message.empty() && !command_.run.quiet) {
-      print_message("warning: " + mesh.path + ": " + record.row.message);
-    }
+    if (!failed && !record.row.message.empty()) warn(command_, mesh.path + ": " + record.row.message);
     progress_.add(failed, part);
     outcome_.evaluated.insert_or_assign(mesh.name, std::move(record));
     return !(failed && command_.fail_fast);
@@ -236,7 +275,8 @@ class BatchRun {
                      .default_memory_limit = options_.default_memory_limit,
                      .timeout = options_.timeout,
                      .finished = time_after(starts_.at(mesh.name)),
-                     .thumbnail = std::move(result.thumbnail)};
+                     .thumbnail = std::move(result.thumbnail),
+                     .path = path_from_root(mesh)};
     return {std::move(row), std::move(origin)};
   }
 
@@ -261,6 +301,7 @@ class BatchRun {
 
   const BatchCommand& command_;
   Plan plan_;
+  GoneMeshes gone_;
   const PlanOptions& options_;
   ResultsFiles results_;
   BatchProgress progress_;
@@ -272,21 +313,25 @@ class BatchRun {
 }  // namespace
 
 ExitCode run_batch(const BatchCommand& command) {
-  const std::vector<BatchMesh> meshes = meshes_of(command);
+  const std::vector<BatchMesh> all = all_meshes_of(command);
+  std::vector<BatchMesh> meshes = meshes_of(command.shard, all);
+  if (command.prune) leave_out_missing(command, meshes);
   const SupervisorOptions limits = supervisor_options(command);
   const PlanOptions options = plan_options(command, limits);
-  Plan plan = make_plan(meshes, read_all_results(command.directory), options);
+  const BatchRecords records = read_all_results(command.directory);
+  Plan plan = make_plan(meshes, records, options);
+  GoneMeshes gone = gone_from(command, records, all);
   if (command.dry_run) {
-    print_plan(plan);
+    print_plan(plan, gone);
     return ExitCode::kDone;
   }
   make_directory(command.directory);
-  BatchRun run(command, std::move(plan), options);
+  BatchRun run(command, std::move(plan), std::move(gone), options);
   if (const int signal = run.run(limits)) raise(signal);
   if (!command.run.quiet) {
     for (const std::string& line : summary_lines(run.outcome())) print_message(line);
   }
-  return run.outcome().any_failed() ? ExitCode::kBatch : ExitCode::kDone;
+  return run.outcome().any_failed() && !command.exit_zero ? ExitCode::kBatch : ExitCode::kDone;
 }
 
 }  // namespace raycone

@@ -103,9 +103,9 @@ MeshFigures figures_of(const RunReport& report) {
 }
 
 // "FILE: 3 faces skipped; 1 triangle ..."
-std::string joined(const std::vector<std::string>& warnings) {
+std::string joined(const std::vector<Warning>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings) text += (text.empty() ? "" : "; ") + warning;
+  for (const Warning& warning : warnings) text += (text.empty() ? "" : "; ") + line_of(warning);
   return text;
 }
 
@@ -115,7 +115,9 @@ JobResult result_of(const RunReport& report, const std::string& thumbnail) {
   result.row.figures = figures_of(report);
   result.row.sha256 = report.sha256;
   result.row.message = joined(report.warnings);
-  result.warnings = report.warnings;
+  for (const Warning& warning : report.warnings) {
+    result.row.warnings += (result.row.warnings.empty() ? "" : " ") + warning.name;
+  }
   result.thumbnail = to_base64(thumbnail);
   for (const FileRead& file : report.companions)
     result.companions.push_back({.path = file.path, .sha256 = file.sha256});

@@ -35,6 +35,8 @@ OptionGroup batch_group(const std::string& formats) {
        {"--retry-failed", "", "Try failed meshes again"},
        {"--keep-going", "", "Go on when a mesh fails (default)"},
        {"--fail-fast", "", "Stop when a mesh fails"},
+       {"--exit-zero", "", "Exit with status 0 although meshes failed; results.csv has them"},
+       {"--prune", "", "Remove the rows of meshes that are gone"},
        {"--dry-run", "", "List what would be done and why, and do nothing"}}};
 }
 
@@ -157,7 +159,7 @@ CommandSpec batch_spec() {
 
 Command parse_batch(const Values& values) {
   if (!values.given("--out-dir")) throw UsageError("no directory given, expected --out-dir DIR" + help_hint("batch"));
-  values.exclude("--fail-fast", {"--keep-going"});
+  values.exclude("--fail-fast", {"--keep-going", "--exit-zero"});
   BatchCommand command;
   const std::string format = parse_batch_format(values);
   const MeshValues of_mesh = mesh_values_in(values);
@@ -178,6 +180,8 @@ Command parse_batch(const Values& values) {
   if (values.given("--jobs")) command.jobs = static_cast<int>(values.integer("--jobs", 1, kMaxJobs));
   command.retry_failed = values.given("--retry-failed");
   command.fail_fast = values.given("--fail-fast");
+  command.exit_zero = values.given("--exit-zero");
+  command.prune = values.given("--prune");
   command.dry_run = values.given("--dry-run");
   return command;
 }

@@ -42,6 +42,8 @@ struct BatchCommand {
   std::optional<int> jobs;  // meshes at a time; else as many as threads
   bool retry_failed = false;
   bool fail_fast = false;
+  bool exit_zero = false;  // also where meshes failed
+  bool prune = false;      // rows of meshes that are gone
   bool dry_run = false;
 };
 

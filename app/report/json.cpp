@@ -39,6 +39,18 @@ Json to_object(const Verification& verification) {
   return object;
 }
 
+Json names_of(const std::vector<Warning>& warnings) {
+  Json names = Json::array();
+  for (const Warning& warning : warnings) names.push_back(warning.name);
+  return names;
+}
+
+Json lines_of(const std::vector<Warning>& warnings) {
+  Json lines = Json::array();
+  for (const Warning& warning : warnings) lines.push_back(line_of(warning));
+  return lines;
+}
+
 // File names may hold any bytes; JSON is UTF-8.
 std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -60,7 +72,8 @@ std::string to_json(const RunReport& report) {
                 {"degenerate", report.tally.degenerate},
                 {"on_surface", report.tally.on_surface},
                 {"peak_memory_bytes", report.peak_memory_bytes},
-                {"warnings", report.warnings},
+                {"warnings", names_of(report.warnings)},
+                {"warning_lines", lines_of(report.warnings)},
                 {"seconds", to_object(report.seconds)}};
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
   if (report.verification) {

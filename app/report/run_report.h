@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/lattice.h"
+#include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "io/mesh/read_mesh.h"
 
@@ -46,7 +47,7 @@ struct RunReport {
   Tally tally;
   std::optional<Verification> verification;  // where asked for
   std::uint64_t peak_memory_bytes = 0;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Seconds seconds;
 };
 

@@ -76,7 +76,25 @@ double spacing_of_flat_sides(const Vec3& sides, const Vec3& spacing) {
   return result;
 }
 
-Lattice sample(const Box& box, const SampleCounts& request, bool centers, std::vector<std::string>& warnings) {
+// Sides that got one sample, and how many were asked for.
+class FlatSides {
+ public:
+  void add(int axis, std::int64_t asked) {
+    const std::string separator = axes_.empty() ? "" : " and ";
+    axes_ += separator + "xyz"[axis];
+    asked_ += separator + std::to_string(asked);
+  }
+
+  void warn(std::vector<Warning>& warnings) const {
+    if (axes_.empty()) return;
+    warnings.push_back({"flat-box", "the box is flat along " + axes_ + ": 1 sample there, not " + asked_});
+  }
+
+ private:
+  std::string axes_, asked_;
+};
+
+Lattice sample(const Box& box, const SampleCounts& request, bool centers, std::vector<Warning>& warnings) {
   const Vec3 sides = sides_of(box);
   Lattice lattice;
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,14 +105,14 @@ Lattice sample(const Box& box, const SampleCounts& request, bool centers, std::v
     set_axis(lattice, axis, box.lower[axis] + (ends_included ? 0.0 : spacing / 2), spacing, 0, count);
   }
   const double flat_spacing = spacing_of_flat_sides(sides, lattice.spacing);
+  FlatSides flat;
   for (int axis = 0; axis < 3; ++axis) {
     if (sides[axis] != 0.0) continue;
-    const std::int64_t asked = request.counts[static_cast<std::size_t>(axis)];
     set_axis(lattice, axis, box.lower[axis], flat_spacing, 0, 1);
-    if (asked == 1) continue;
-    warnings.push_back(std::string("the box is flat along ") + "xyz"[axis] + ": 1 sample there, not " +
-                       std::to_string(asked));
+    const std::int64_t asked = request.counts[static_cast<std::size_t>(axis)];
+    if (asked > 1) flat.add(axis, asked);
   }
+  flat.warn(warnings);
   return lattice;
 }
 
@@ -110,7 +128,7 @@ Lattice sample(const Box& box, const VoxelSize& request, bool centers) {
   return lattice;
 }
 
-Lattice sample(const Box& box, const LatticeRequest& request, std::vector<std::string>& warnings) {
+Lattice sample(const Box& box, const LatticeRequest& request, std::vector<Warning>& warnings) {
   if (const auto* longest_side = std::get_if<LongestSide>(&request.sampling)) {
     return sample(box, *longest_side, request.centers);
   }
@@ -163,7 +181,7 @@ Box widened(Box box, double width) {
   return box;
 }
 
-Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<std::string>& warnings) {
+Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<Warning>& warnings) {
   Box box = request.bounds.value_or(mesh_box);
   if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, padding->width);
   check_finite(box);

@@ -2,19 +2,19 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "app/options/lattice_request.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 
 namespace raycone {
 
 // A description of each flat side for which more than one sample was asked is appended to `warnings`. Throws
 // UsageError where negative padding leaves nothing, LimitError where double or the indices cannot hold the lattice.
 [[nodiscard]] Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request,
-                                     std::vector<std::string>& warnings);
+                                     std::vector<Warning>& warnings);
 
 // Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, double width);

@@ -21,8 +21,8 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   const std::vector<PolygonFan> polygons = std::move(file.parsed.polygons);
   if (const std::uint64_t bad = cut_concave_polygons(file.parsed.mesh, polygons)) {
     const std::string what = bad == 1 ? " polygon that crosses itself" : " polygons that cross themselves";
-    file.parsed.warnings.push_back("bad-polygons: " + std::to_string(bad) + what +
-                                   ", seen along the area vector, fanned from the first corner");
+    file.parsed.warnings.push_back(
+        {"bad-polygons", std::to_string(bad) + what + ", seen along the area vector, fanned from the first corner"});
   }
   return file;
 }
@@ -31,10 +31,11 @@ TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options) 
   return weld(std::move(as_read), options.weld);
 }
 
-void print_warnings(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh) {
-  for (const std::string& warning : warnings) {
-    if (options.strict) throw InputError(mesh + ": " + warning + " (an error because of --strict)");
-    if (!options.quiet) print_message("warning: " + mesh + ": " + warning);
+void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh) {
+  for (const Warning& warning : warnings) {
+    const std::string line = mesh + ": " + line_of(warning);
+    if (options.strict) throw InputError(line + " (an error because of --strict)");
+    if (!options.quiet) print_message("warning: " + line);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "app/options/run_options.h"
 #include "app/run/run_limits.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -20,6 +21,6 @@ namespace raycone {
 [[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
-void print_warnings(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh);
+void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_input.h"
 #include "app/run/written_files.h"
+#include "core/data/warning.h"
 #include "core/mesh/mesh_statistics.h"
 #include "io/files/file_error.h"
 
@@ -18,7 +19,7 @@ namespace {
 // The default, and what many go on to.
 CostedLattices costed_lattices(const Box& bounds) {
   CostedLattices costed;
-  std::vector<std::string> warnings;  // of flat sides: none with one count for all axes
+  std::vector<Warning> warnings;  // of flat sides: none with one count for all axes
   try {
     for (const std::int64_t resolution : {std::int64_t{64}, std::int64_t{256}}) {
       LatticeRequest request;

@@ -37,7 +37,7 @@ void check_cubic(const Vec3& spacing) {
   throw UsageError(message);
 }
 
-Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const Lattice lattice = grid
                               ? read_grid_lattice(grid->path, grid->name)

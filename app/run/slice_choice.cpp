@@ -85,7 +85,7 @@ std::int64_t pixels_of(const SliceRequest& request) {
 Lattice lattice_across(int axis, double at, Box box, const SliceRequest& request) {
   box.lower[axis] = at;
   box.upper[axis] = at;
-  std::vector<std::string> none;  // a flat side is what is asked for
+  std::vector<Warning> none;  // a flat side is what is asked for
   Lattice lattice = choose_lattice(box, {box, WorldPadding{}, LongestSide{request.size}, true}, none);
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(axis)];
   for (const int in_plane : {right, up}) {
@@ -196,14 +196,14 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
 
 }  // namespace
 
-Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<std::string>& warnings) {
+Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<Warning>& warnings) {
   const Box box = request.bounds.value_or(mesh_box);
   const auto* padding = std::get_if<WorldPadding>(&request.padding);
   const Box padded = padding ? widened(box, padding->width) : box;
   Slice slice = std::visit([&](const auto& plane) { return choose(plane, box, padded, request); }, request.plane);
   if (slice.view.width == 1 || slice.view.height == 1) {
-    warnings.push_back("the box is flat: the picture is " + std::to_string(slice.view.width) + " x " +
-                       std::to_string(slice.view.height) + " pixels; see --padding");
+    warnings.push_back({"flat-box", "the box is flat: the picture is " + std::to_string(slice.view.width) + " x " +
+                                        std::to_string(slice.view.height) + " pixels; see --padding"});
   }
   return slice;
 }

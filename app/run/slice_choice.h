@@ -10,6 +10,7 @@
 #include "app/picture/plane_view.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 
 namespace raycone {
 
@@ -21,6 +22,6 @@ struct Slice {
 
 // What the user should know is appended to `warnings`. Throws UsageError where the box has no such picture, LimitError
 // where double cannot hold it.
-[[nodiscard]] Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<std::string>& warnings);
+[[nodiscard]] Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<Warning>& warnings);
 
 }  // namespace raycone

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/warning.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
@@ -19,6 +20,12 @@ namespace raycone {
 
 [[nodiscard]] inline bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// `count` is not 0.
+[[nodiscard]] inline Warning skipped_faces_warning(std::uint64_t count) {
+  const std::string faces = std::to_string(count) + (count == 1 ? " face" : " faces");
+  return {"skipped-faces", faces + " with fewer than three corners skipped"};
 }
 
 class MeshBuilder {
@@ -64,7 +71,7 @@ class MeshBuilder {
   // Counts a face of fewer than three corners.
   void skip_face() { ++parsed_.skipped_faces; }
 
-  void warn(std::string text) { parsed_.warnings.push_back(std::move(text)); }
+  void warn(Warning warning) { parsed_.warnings.push_back(std::move(warning)); }
 
   // The first vertex that is not finite.
   [[nodiscard]] std::optional<NonFinite> first_non_finite_vertex() const {
@@ -84,8 +91,7 @@ class MeshBuilder {
 
   // The mesh, with a warning about skipped faces. Nothing may follow.
   [[nodiscard]] ParsedMesh finish() {
-    if (const std::uint64_t skipped = parsed_.skipped_faces)
-      warn(counted(skipped, "face") + " with fewer than three corners skipped");
+    if (const std::uint64_t skipped = parsed_.skipped_faces) warn(skipped_faces_warning(skipped));
     return std::move(parsed_);
   }
 

@@ -9,6 +9,7 @@
 
 #include "core/data/polygon_fan.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 #include "io/files/named_bytes.h"
 
 namespace raycone {
@@ -26,10 +27,10 @@ struct ReadMeshOptions {
 
 // What a format's reader returns.
 struct ParsedMesh {
-  TriangleMesh mesh;                  // polygons as fans around their first corners
-  std::vector<PolygonFan> polygons;   // those of more than three corners, which may leave the polygon if it is concave
-  std::uint64_t skipped_faces = 0;    // faces of one or two corners
-  std::vector<std::string> warnings;  // one per kind, with its count: "3 faces with fewer than three corners skipped"
+  TriangleMesh mesh;                 // polygons as fans around their first corners
+  std::vector<PolygonFan> polygons;  // those of more than three corners, which may leave the polygon if it is concave
+  std::uint64_t skipped_faces = 0;   // faces of one or two corners
+  std::vector<Warning> warnings;     // one per kind, with its count
 };
 
 struct FileRead {

@@ -25,7 +25,7 @@ class OffReader {
     builder_.reserve_vertices(vertices);
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
     for (std::uint64_t i = 0; i < faces; ++i) read_face(i, faces);
-    if (text_.skip_empty_lines()) builder_.warn("lines after the last face ignored");
+    if (text_.skip_empty_lines()) builder_.warn({"trailing-data", "lines after the last face ignored"});
     if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
     return builder_.finish();
   }

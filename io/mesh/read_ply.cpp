@@ -184,10 +184,10 @@ class PlyReader {
   ParsedMesh read_mesh() {
     for (const PlyElement& element : header_.elements) read_element(element);
     if (const std::size_t surplus = body_.remaining())
-      builder_.warn("bytes after the last element ignored: " + std::to_string(surplus));
+      builder_.warn({"trailing-data", "bytes after the last element ignored: " + std::to_string(surplus)});
     if (const auto offset = builder_.non_finite_corner_offset()) body_.fail_at(*offset, kNonFiniteCorner);
-    warn(header_.unknown_lines, "header line", "of no known keyword ignored");
-    warn(body_.long_rows(), "row", "longer than the header announces, what is too much ignored");
+    warn("unknown-header-lines", header_.unknown_lines, "header line", "of no known keyword ignored");
+    warn("long-rows", body_.long_rows(), "row", "longer than the header announces, what is too much ignored");
     return builder_.finish();
   }
 
@@ -215,8 +215,8 @@ class PlyReader {
     }
   }
 
-  void warn(std::uint64_t count, const std::string& noun, const std::string& what) {
-    if (count > 0) builder_.warn(counted(count, noun) + " " + what);
+  void warn(const char* name, std::uint64_t count, const std::string& noun, const std::string& what) {
+    if (count > 0) builder_.warn({name, counted(count, noun) + " " + what});
   }
 
   // The number of rows, which the bytes that follow may be enough for. Rows without properties take none.

@@ -153,8 +153,8 @@ ParsedMesh read_binary_stl(const NamedBytes& source) {
   }
   const std::uint64_t surplus = source.bytes.size() - kStlHeaderSize - kStlTriangleSize * count;
   if (surplus > 0) {
-    parsed.warnings.push_back("bytes after the announced number of triangles (" + std::to_string(count) +
-                              ") ignored: " + std::to_string(surplus));
+    parsed.warnings.push_back({"trailing-data", "bytes after the announced number of triangles (" +
+                                                    std::to_string(count) + ") ignored: " + std::to_string(surplus)});
   }
   return parsed;
 }

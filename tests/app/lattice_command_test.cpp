@@ -101,9 +101,10 @@ TEST_F(LatticeCommand, WritesAReportForMachines) {
   const auto json = nlohmann::ordered_json::parse(read_text(report));
   std::vector<std::string> keys;
   for (const auto& item : json.items()) keys.push_back(item.key());
-  EXPECT_EQ(keys, (std::vector<std::string>{"version", "mesh", "sha256", "output", "vertices", "faces",
-                                            "exterior_edges", "samples", "lattice", "threads", "degenerate",
-                                            "on_surface", "peak_memory_bytes", "warnings", "seconds"}));
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"version", "mesh", "sha256", "output", "vertices", "faces", "exterior_edges",
+                                      "samples", "lattice", "threads", "degenerate", "on_surface", "peak_memory_bytes",
+                                      "warnings", "warning_lines", "seconds"}));
   EXPECT_EQ(json["mesh"], mesh_);
   EXPECT_EQ(json["output"], out);
   EXPECT_EQ(json["sha256"].get<std::string>().size(), 64U);
@@ -129,11 +130,13 @@ TEST_F(LatticeCommand, WarnsOnceAboutAFlatSide) {
   const CommandResult result =
       run_raycone({"lattice", flat_, "-o", dir_ / "out.csv", "--resolution", "4,4,4", "--report", report});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err.rfind("raycone: warning: " + flat_ + ": the box is flat along z: 1 sample there, not 4\n", 0),
+  EXPECT_EQ(result.err.rfind(
+                "raycone: warning: " + flat_ + ": flat-box: the box is flat along z: 1 sample there, not 4\n", 0),
             0U)
       << result.err;
   const auto json = nlohmann::json::parse(read_text(report));
-  EXPECT_EQ(json["warnings"], nlohmann::json({"the box is flat along z: 1 sample there, not 4"}));
+  EXPECT_EQ(json["warnings"], nlohmann::json({"flat-box"}));
+  EXPECT_EQ(json["warning_lines"], nlohmann::json({"flat-box: the box is flat along z: 1 sample there, not 4"}));
 }
 
 TEST_F(LatticeCommand, StrictTurnsWarningsIntoErrorsWithoutOutput) {
@@ -142,7 +145,7 @@ TEST_F(LatticeCommand, StrictTurnsWarningsIntoErrorsWithoutOutput) {
     write_text(mesh_, mesh);
     const CommandResult lenient = run_raycone({"lattice", mesh_, "-o", "-", "--resolution", "2"});
     EXPECT_EQ(lenient.status, 0);
-    EXPECT_EQ(lenient.err.rfind("raycone: warning: " + mesh_ + ": 1 ", 0), 0U) << lenient.err;
+    EXPECT_EQ(lenient.err.rfind("raycone: warning: " + mesh_ + ": skipped-faces: 1 ", 0), 0U) << lenient.err;
     const CommandResult strict = run_raycone({"lattice", mesh_, "-o", out, "--strict"});
     EXPECT_EQ(strict.status, 2);
     EXPECT_EQ(std::ranges::count(strict.err, '\n'), 1) << strict.err;

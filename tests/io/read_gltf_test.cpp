@@ -154,7 +154,7 @@ TEST(ReadGltf, TriangleListWithoutIndicesSkipsTheIncompleteFace) {
   EXPECT_EQ(parsed.mesh.triangles.size(), 1u);
   EXPECT_EQ(parsed.skipped_faces, 1u);
   ASSERT_EQ(parsed.warnings.size(), 1u);
-  EXPECT_EQ(parsed.warnings[0], "1 face with fewer than three corners skipped");
+  EXPECT_EQ(parsed.warnings[0], (Warning{"skipped-faces", "1 face with fewer than three corners skipped"}));
 }
 
 TEST(ReadGltf, PointsAndLinesAreIgnoredWithAWarning) {
@@ -164,7 +164,7 @@ TEST(ReadGltf, PointsAndLinesAreIgnoredWithAWarning) {
   const ParsedMesh parsed = parse(asset);
   EXPECT_EQ(parsed.mesh.triangles.size(), 2u);
   ASSERT_EQ(parsed.warnings.size(), 1u);
-  EXPECT_EQ(parsed.warnings[0], "2 primitives of points or lines ignored");
+  EXPECT_EQ(parsed.warnings[0], (Warning{"points-or-lines", "2 primitives of points or lines ignored"}));
 }
 
 TEST(ReadGltf, InterleavedPositionsAreReadByTheirStride) {
@@ -297,8 +297,9 @@ TEST(ReadGltf, SkinnedMeshIgnoresItsNodeAndWarns) {
   asset.nodes = R"([{"mesh":0,"skin":0,"translation":[5,0,0]}])";
   const ParsedMesh parsed = parse(asset);
   EXPECT_EQ(triangles_of(parsed.mesh), kSquareTriangles);
-  EXPECT_EQ(parsed.warnings,
-            (std::vector<std::string>{"1 skinned mesh instance taken in the bind pose, without its joints"}));
+  EXPECT_EQ(
+      parsed.warnings,
+      (std::vector<Warning>{{"bind-pose", "1 skinned mesh instance taken in the bind pose, without its joints"}}));
 }
 
 TEST(ReadGltf, MorphTargetsAreLeftOutWithAWarning) {

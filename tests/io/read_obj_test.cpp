@@ -133,7 +133,8 @@ TEST(ReadObj, FacesOfOneOrTwoCornersAreSkippedAndCounted) {
   const ParsedMesh parsed = parse(with_triangle("f 1 2\nf 1 2 3\nf 3\n"));
   EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
   EXPECT_EQ(parsed.skipped_faces, 2u);
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"2 faces with fewer than three corners skipped"});
+  EXPECT_EQ(parsed.warnings,
+            (std::vector<Warning>{{"skipped-faces", "2 faces with fewer than three corners skipped"}}));
 }
 
 TEST(ReadObj, DegenerateFacesAreKept) { EXPECT_EQ(triangles(with_triangle("f 1 1 2\n")).size(), 1u); }

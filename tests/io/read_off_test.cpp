@@ -61,12 +61,13 @@ TEST(ReadOff, BinaryIsRefusedByName) {
 TEST(ReadOff, FacesOfFewerThanThreeCornersAreSkippedAndCounted) {
   const ParsedMesh parsed = parse("OFF\n3 3 0\n" + kVertices + "2 0 1\n3 0 1 2\n0\n");
   EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"2 faces with fewer than three corners skipped"});
+  EXPECT_EQ(parsed.warnings,
+            (std::vector<Warning>{{"skipped-faces", "2 faces with fewer than three corners skipped"}}));
 }
 
 TEST(ReadOff, LinesAfterTheLastFaceAreWarnedAbout) {
   EXPECT_EQ(parse("OFF\n3 1 0\n" + kVertices + "3 0 1 2\n3 0 1 2\n").warnings,
-            std::vector<std::string>{"lines after the last face ignored"});
+            (std::vector<Warning>{{"trailing-data", "lines after the last face ignored"}}));
 }
 
 TEST(ReadOff, NonFiniteCoordinateIsAnErrorOnlyOfAFace) {

@@ -167,14 +167,14 @@ TEST(ReadPly, AsciiRowsMayGoOnInTheNextLineButNotShareOne) {
 TEST(ReadPly, FacesOfOneOrTwoCornersAreSkippedAndCounted) {
   const ParsedMesh parsed = parse(kHeader + kVertices + "2 0 1\n");
   EXPECT_TRUE(parsed.mesh.triangles.empty());
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"1 face with fewer than three corners skipped"});
+  EXPECT_EQ(parsed.warnings, (std::vector<Warning>{{"skipped-faces", "1 face with fewer than three corners skipped"}}));
 }
 
 TEST(ReadPly, BytesAfterTheLastElementAreWarnedAbout) {
   EXPECT_EQ(parse(kHeader + kVertices + "3 0 1 2\n3 0 1 2").warnings,
-            std::vector<std::string>{"bytes after the last element ignored: 7"});
+            (std::vector<Warning>{{"trailing-data", "bytes after the last element ignored: 7"}}));
   EXPECT_EQ(parse(binary_file(true) + "abc").warnings,
-            std::vector<std::string>{"bytes after the last element ignored: 3"});
+            (std::vector<Warning>{{"trailing-data", "bytes after the last element ignored: 3"}}));
 }
 
 TEST(ReadPly, NonFiniteCoordinateIsAnErrorOnlyOfAFace) {
@@ -194,7 +194,8 @@ TEST(ReadPly, HeaderLinesOfNoKnownKeywordAreWarnedAbout) {
       parse(kAscii + "made_by somebody\n" + kHeader.substr(kAscii.size(), kHeader.size() - kAscii.size() - 11) +
             "units mm 3\nend_header\n" + kVertices + "3 0 1 2\n");
   EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"2 header lines of no known keyword ignored"});
+  EXPECT_EQ(parsed.warnings,
+            (std::vector<Warning>{{"unknown-header-lines", "2 header lines of no known keyword ignored"}}));
 }
 
 TEST(ReadPly, RowsLongerThanAnnouncedAreWarnedAbout) {
@@ -202,7 +203,7 @@ TEST(ReadPly, RowsLongerThanAnnouncedAreWarnedAbout) {
   EXPECT_EQ(parsed.mesh.triangles, kOneTriangle);
   EXPECT_EQ(parsed.mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(parsed.warnings,
-            std::vector<std::string>{"3 rows longer than the header announces, what is too much ignored"});
+            (std::vector<Warning>{{"long-rows", "3 rows longer than the header announces, what is too much ignored"}}));
   // Behind a row that took numbers of the next line they tell of a wrong header.
   EXPECT_EQ(error_of(kHeader + "0 0 0\n1 0\n0 0 1 0\n3 0 1 2\n"), "f:12: expected the end of the line, found '0'");
 }

@@ -132,7 +132,7 @@ TEST(ReadStl, AsciiLoopOfFourVerticesIsFannedAndOfTwoSkipped) {
       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
       "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n");
   EXPECT_EQ(parsed.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"1 face with fewer than three corners skipped"});
+  EXPECT_EQ(parsed.warnings, (std::vector<Warning>{{"skipped-faces", "1 face with fewer than three corners skipped"}}));
 }
 
 TEST(ReadStl, AsciiErrorsNameTheLine) {
@@ -161,7 +161,8 @@ TEST(ReadStl, BinaryCountBeyondTheLengthIsAnErrorThatNamesBoth) {
 TEST(ReadStl, BytesAfterTheLastBinaryTriangleAreWarnedAbout) {
   const ParsedMesh parsed = parse(binary_file("", 1, 2) + "x");
   EXPECT_EQ(parsed.mesh.triangles.size(), 1u);
-  EXPECT_EQ(parsed.warnings, std::vector<std::string>{"bytes after the announced number of triangles (1) ignored: 51"});
+  EXPECT_EQ(parsed.warnings,
+            (std::vector<Warning>{{"trailing-data", "bytes after the announced number of triangles (1) ignored: 51"}}));
 }
 
 TEST(ReadStl, FilesTooShortForAHeaderAreRefused) {

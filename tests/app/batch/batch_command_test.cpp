@@ -170,6 +170,34 @@ TEST_F(Batch, FailFastStopsAndKeepGoingDoesNot) {
   EXPECT_EQ(run({"--keep-going", "--fail-fast"}).status, 1);
 }
 
+TEST_F(Batch, ExitsWithZeroOnlyWhereMeshesFailed) {
+  put("a.obj");
+  put("bad.obj", "broken");
+  put("big.obj", open_cube(5000));
+  put("sub/c.obj");
+  fs::create_directories(out_);
+  write_text(out_ + "/sub", "in the way");
+  const std::vector<std::string> words{"batch", meshes_,          "--out-dir", out_,         "--voxel-size",
+                                       "1",     "--memory-limit", "8G",        "--exit-zero"};
+  EXPECT_EQ(run_raycone(words).status, 0);
+  EXPECT_EQ(statuses(rows()),
+            (Statuses{{"a.obj", "ok"}, {"bad.obj", "invalid"}, {"big.obj", "memory"}, {"sub/c.obj", "unwritable"}}));
+  EXPECT_EQ(run_raycone(words).status, 0) << "failed in an earlier run";
+  EXPECT_EQ(run({"--exit-zero", "--jobs", "0"}).status, 1);
+  EXPECT_EQ(run({"--exit-zero", "--fail-fast"}).status, 1);
+  EXPECT_EQ(run_raycone({"batch", "@" + dir_ / "absent", "--out-dir", out_, "--exit-zero"}).status, 2);
+  EXPECT_EQ(run({"--exit-zero", "--scale", "2"}, {.file_size_limit = 300}).status, 3) << "no rows to say so";
+}
+
+TEST_F(Batch, OfADirectoryThatIsMissingIsNone) {
+  put("a.obj");
+  for (const std::string& operand : {dir_ / "no", dir_ / "no/", std::string()}) {
+    const CommandResult result = run_raycone({"batch", meshes_, operand, "--out-dir", out_, "--format", "none"});
+    EXPECT_EQ(result.status, operand.empty() ? 1 : 2) << operand;
+    EXPECT_FALSE(fs::exists(out_)) << operand;
+  }
+}
+
 TEST_F(Batch, MeasuresOnlyWithFormatNone) {
   put("a.obj");
   put("a.stl", kCube);  // OBJ inside, which has no signature: fails

@@ -46,6 +46,8 @@ class BatchMeshes : public testing::Test {
     return {};
   }
 
+  [[nodiscard]] std::string root_name() const { return dir_.path().filename().string(); }
+
   TemporaryDirectory dir_;
   std::string root_ = dir_.path().string();
 };
@@ -95,6 +97,54 @@ TEST_F(BatchMeshes, WithOneOutputAreRefusedByBothNames) {
   EXPECT_EQ(full[0].output, "a.obj.vdb");
   EXPECT_EQ(full[1].output, "a.stl.vdb");
   EXPECT_EQ(find({root_}, true).size(), 3U);
+}
+
+TEST_F(BatchMeshes, WithOneOutputAreAllListed) {
+  std::string last;
+  for (int i = 0; i < 12; ++i) {
+    const std::string stem = "x/" + std::to_string(10 + i);
+    put(stem + ".obj");
+    last = put(stem + ".stl");
+  }
+  put("x/10.ply");
+  const std::string error = error_of({root_ + "/x"});
+  const std::string x = root_ + "/x/";
+  EXPECT_NE(error.find(x + "10.obj, " + x + "10.ply and " + x + "10.stl: would all be written to 10.vdb; " + x +
+                       "11.obj and " + x + "11.stl: would both be written to 11.vdb; "),
+            std::string::npos)
+      << error;
+  EXPECT_TRUE(error.ends_with("19.vdb; and 2 more; --full-names keeps them apart")) << error;
+  EXPECT_EQ(error.find(last), std::string::npos) << "ten are enough";
+  EXPECT_TRUE(error_of({put("y/a.stl"), put("z/a.stl")}).ends_with("would both be a.stl in the results"));
+}
+
+TEST_F(BatchMeshes, HaveNamesHoweverTheyAreWritten) {
+  put("tree/a.stl");
+  for (const char* const form : {"/tree", "/tree/", "/tree//", "/tree/.", "/tree/../tree/", "/tree/./"}) {
+    EXPECT_EQ(names(find({root_ + form})), Names{"a.stl"}) << form;
+  }
+  // Of a list any line is a mesh, if only one that will fail.
+  const std::vector<std::pair<std::string, std::string>> missing{{"/no", "no"},
+                                                                 {"/no/", "no/"},
+                                                                 {"/no//", "no/"},
+                                                                 {"/no/.", "no/"},
+                                                                 {"/no/../", root_name() + "/"},
+                                                                 {"/no/..", root_name() + "/"},
+                                                                 {"/tree/a.stl/", "a.stl/"},
+                                                                 {"/no/b.stl", "b.stl"}};
+  for (const auto& [form, name] : missing) {
+    write_text(dir_ / "list", root_ + form + "\n");
+    EXPECT_EQ(names(find({"@" + dir_ / "list"})), Names{name}) << form;
+  }
+}
+
+TEST_F(BatchMeshes, OfADirectoryThatIsMissingAreRefused) {
+  put("a.stl");
+  for (const char* const form : {"/no", "/no/", "/no/.", "/no/..", "/a.stl/"}) {
+    EXPECT_THROW((void)find({root_ + "/a.stl", root_ + form}), InputError) << form;
+  }
+  for (const char* const empty : {"", "@"}) EXPECT_THROW((void)find({empty}), UsageError) << empty;
+  EXPECT_EQ(names(find({root_ + "/no.stl"})), Names{"no.stl"});
 }
 
 TEST_F(BatchMeshes, GivenTwiceAreThereOnce) {

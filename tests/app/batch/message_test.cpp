@@ -40,14 +40,14 @@ TEST(Message, CarriesResults) {
   JobResult sent;
   sent.row.figures = MeshFigures{.faces = 12, .evaluate_s = 0.25};
   sent.row.sha256 = "0123";
-  sent.warnings = {"one", "two"};
+  sent.row.warnings = "one two";
   sent.companions = {{.path = "x.bin", .sha256 = "abc"}};
   sent.thumbnail = "iVBO";
   const JobResult received = result_from(to_message(sent));
   EXPECT_EQ(received.row.figures->faces, 12U);
   EXPECT_EQ(received.row.figures->evaluate_s, 0.25);
   EXPECT_EQ(received.row.sha256, "0123");
-  EXPECT_EQ(received.warnings, sent.warnings);
+  EXPECT_EQ(received.row.warnings, "one two");
   EXPECT_EQ(received.companions, sent.companions);
   EXPECT_EQ(received.thumbnail, "iVBO");
 }

@@ -29,6 +29,19 @@ TEST_F(Report, ShowsAllMeshesOfAllShardsOnASelfContainedPage) {
   EXPECT_EQ(printed.out, page);
 }
 
+// Whether it filters, a browser tells: report_page_test.py.
+TEST_F(Report, CountsWarningsByName) {
+  put("a.obj");
+  put("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
+  ASSERT_EQ(run({"--quiet"}).status, 0);
+  const std::string page = run_raycone({"report", out_, "-o", "-"}).out;
+  for (const char* const expected :
+       {"<b>1</b>with warnings", "data-f=\"skipped-faces\">skipped-faces 1</button>", "<tr data-w=\"skipped-faces\">",
+        "data-f=\"none\">none 1</button>", "<tr data-w=\"none\">"}) {
+    EXPECT_NE(page.find(expected), std::string::npos) << expected;
+  }
+}
+
 TEST_F(Report, OfWhatIsNoBatchIsAnInputError) {
   EXPECT_EQ(run_raycone({"report", dir_ / "absent"}).status, 2);
   EXPECT_EQ(run_raycone({"report", dir_.path().string()}).status, 2);

@@ -20,11 +20,13 @@ BatchRecord record(const std::string& mesh, std::uint64_t faces = 1, std::int64_
   result.row.figures = MeshFigures{.faces = faces, .read_s = 0.5};
   result.row.output = mesh + ".vdb";
   result.row.message = "a \"quoted\", message";
+  result.row.warnings = "reversed inconsistent";
   result.origin = RowOrigin{.stamp = {7, 8, 9},
                             .companions = {{"a,b.bin", {1, 2, 3}, "hash"}, {.path = "c.vdb", .sha256 = "other"}},
                             .version = "1",
                             .options = "--a\n--b",
-                            .finished = finished};
+                            .finished = finished,
+                            .path = "/d/" + mesh};
   return result;
 }
 
@@ -56,6 +58,7 @@ TEST_F(ResultsFilesTest, KeepRowsAndWhatTheyWereMadeFrom) {
   EXPECT_EQ(b.origin->stamp, (FileStamp{7, 8, 9}));
   EXPECT_EQ(b.origin->companions, record("b").origin->companions);
   EXPECT_EQ(b.origin->options, "--a\n--b");
+  EXPECT_EQ(b.origin->path, "/d/b");
   EXPECT_LT(results().find("\nb,"), results().find("\na,")) << "as they come";
   files_.merge({});
   EXPECT_GT(results().find("\nb,"), results().find("\na,")) << "sorted";
@@ -125,14 +128,43 @@ TEST_F(ResultsFilesTest, DoNotTrustRowsOfOtherShardsFromBeforeAStart) {
   EXPECT_FALSE(read_all_results(directory).at("a").origin->superseded);
 }
 
-TEST_F(ResultsFilesTest, DoNotTrustStatesOfTheVersionBefore) {
-  files_.append(record("a"));
-  CsvRecord old = former_origin_columns();
-  write_text(dir_ / "batch-state.csv", csv_line(old) + csv_line(CsvRecord(old.size(), "1")));
-  EXPECT_FALSE(files_.read().at("a").origin);
+TEST_F(ResultsFilesTest, DoNotTrustStatesOfVersionsBefore) {
+  for (const CsvRecord& old : former_origin_columns()) {
+    files_.append(record("a"));
+    write_text(dir_ / "batch-state.csv", csv_line(old) + csv_line(CsvRecord(old.size(), "1")));
+    EXPECT_FALSE(files_.read().at("a").origin);
+    files_.forget({{"b", 1}});
+    files_.append(record("c"));
+    EXPECT_TRUE(files_.read().at("c").origin);
+  }
+}
+
+TEST_F(ResultsFilesTest, DropRowsWithoutAName) {
+  write_text(dir_ / "results.csv", csv_line(result_columns()) + csv_line(to_record(record("").row)));
+  EXPECT_TRUE(files_.read().empty());
+}
+
+TEST_F(ResultsFilesTest, RemoveRowsOfAllShards) {
+  const std::string directory = dir_.path().string();
+  const ResultsFiles shard(directory, Shard{1, 2});
+  for (const char* const mesh : {"a", "b"}) files_.append(record(mesh));
+  shard.append(record("b"));
+  files_.remove({"a", "x"});
+  EXPECT_EQ(meshes_of(files_.read()), Names{"b"});
+  remove_from_all_results(directory, {"b"});
+  EXPECT_TRUE(files_.read().empty());
+  EXPECT_TRUE(shard.read().empty());
+}
+
+TEST_F(ResultsFilesTest, KeepRowsOfTheVersionBefore) {
+  CsvRecord row = to_record(record("a").row);
+  row.resize(former_result_columns().size());
+  write_text(dir_ / "results.csv", csv_line(former_result_columns()) + csv_line(row));
+  EXPECT_EQ(meshes_of(files_.read()), Names{"a"});
   files_.forget({{"b", 1}});
   files_.append(record("c"));
-  EXPECT_TRUE(files_.read().at("c").origin);
+  EXPECT_EQ(meshes_of(files_.read()), (Names{"a", "c"}));
+  EXPECT_EQ(results().rfind(csv_line(result_columns()), 0), 0U);
 }
 
 TEST_F(ResultsFilesTest, RefuseTablesOfOthers) {

@@ -1,0 +1,57 @@
+#include "app/batch/batch_progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "app/process/messages.h"
+#include "io/files/counted.h"
+
+namespace raycone {
+
+void BatchProgress::add(bool failed, double part) {
+  ++done_;
+  failed_ += failed ? 1 : 0;
+  part_ = part;
+  if (style_ == Style::kLines && done_ == meshes_) return write_line();
+  show();
+}
+
+void BatchProgress::show() {
+  if (style_ == Style::kRewritten) rewrite();
+  if (style_ == Style::kLines && Clock::now() - last_line_ >= between_lines_) write_line();
+}
+
+void BatchProgress::rewrite() {
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  std::string line = std::to_string(done_) + '/' + counted(meshes_, "mesh");
+  if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
+  if (part_ > 0.0) line += "  " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
+  if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void BatchProgress::write_line() {
+  last_line_ = Clock::now();
+  const double elapsed = std::chrono::duration<double>(last_line_ - start_).count();
+  std::string line =
+      std::to_string(done_) + '/' + counted(meshes_, "mesh") + ", " + std::to_string(failed_) + " failed";
+  if (elapsed > 0.0) line += ", " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
+  if (part_ > 0.0 && done_ < meshes_) line += ", " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
+  print_message(line);
+}
+
+void BatchProgress::erase() {
+  if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
+}
+
+BatchProgress::Style progress_style(ProgressMode mode, bool quiet) {
+  if (!progress_is_shown(mode, quiet, "")) return BatchProgress::Style::kNone;
+  return isatty(STDERR_FILENO) == 1 ? BatchProgress::Style::kRewritten : BatchProgress::Style::kLines;
+}
+
+}  // namespace raycone

@@ -43,7 +43,8 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
 }
 
 double bytes_per_sample(const FieldOptions& options) {
-  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample;
+  const double of_caps = options.rule_only() ? sizeof(double) : 0.0;  // their crossings
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps;
 }
 
 }  // namespace

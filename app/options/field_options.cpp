@@ -18,6 +18,8 @@ std::optional<Field> field_from_name(std::string_view name) {
   return std::nullopt;
 }
 
+bool FieldOptions::rule_only() const { return !has(Field::kWinding) && !has(Field::kDensity) && !diagnostics; }
+
 std::optional<Rule> rule_from_name(std::string_view name) {
   if (name == "nonzero") return Rule{RuleKind::kNonzero, 0.5};
   if (name == "positive") return Rule{RuleKind::kPositive, 0.5};

@@ -41,6 +41,9 @@ struct FieldOptions {
   SimdLevel simd = SimdLevel::kBest;
 
   [[nodiscard]] bool has(Field field) const;
+
+  // Whether of winding numbers nothing is asked but whether the rule holds.
+  [[nodiscard]] bool rule_only() const;
 };
 
 }  // namespace raycone

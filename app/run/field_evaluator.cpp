@@ -23,6 +23,7 @@ Vec3 point_of(const Lattice& lattice, const LatticeBlock& block, std::size_t num
 
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options)
     : band_(options.band),
+      rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
       thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(mesh) : std::nullopt),
       winding_number_(std::move(mesh), options.engine, options.simd) {}
@@ -56,7 +57,9 @@ void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
 Tally FieldEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, FieldSamples& samples,
                                std::atomic<std::uint64_t>* done) const {
   samples.resize(static_cast<std::size_t>(block.size()));
-  const Tally tally = winding_number_.evaluate(lattice, block, samples.winding_numbers(), done, samples.diagnostics());
+  const std::span<double> values = samples.winding_numbers();
+  const Tally tally = rule_ ? winding_number_.evaluate_for(*rule_, lattice, block, values, done)
+                            : winding_number_.evaluate(lattice, block, values, done, samples.diagnostics());
   settle([&](std::size_t n) { return point_of(lattice, block, n); }, samples);
   if (distance_) distance_->evaluate(lattice, block, band_ * lattice.spacing.x, samples.distances());
   samples.derive();

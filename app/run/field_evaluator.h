@@ -39,6 +39,7 @@ class FieldEvaluator {
   void settle(const Point& point, FieldSamples& samples) const;
 
   double band_;
+  std::optional<Rule> rule_;                   // where nothing but it is asked of winding numbers
   std::vector<double> thresholds_;             // that values may have to be settled for
   std::optional<DistanceEvaluator> distance_;  // where wanted
   WindingNumberEvaluator winding_number_;

@@ -99,13 +99,16 @@ void FieldSamples::resize(std::size_t count) {
 void FieldSamples::derive() {
   const bool inside = options_.has(Field::kInside), density = options_.has(Field::kDensity);
   const bool distance = options_.has(Field::kDistance);
+  const bool rule_only = options_.rule_only();
   if (!inside && !density && !distance) return;
   parallel_for(winding_numbers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const double w = winding_numbers_[n];
-      if (inside) inside_[n] = holds(options_.rule, w) ? 1 : 0;
+      const bool holds_here = (inside || distance) && holds(options_.rule, w);
+      if (inside) inside_[n] = holds_here ? 1 : 0;
       if (density) density_[n] = std::clamp(w, 0.0, 1.0);
-      if (distance && holds(options_.rule, w)) distances_[n] = -distances_[n];
+      if (distance && holds_here) distances_[n] = -distances_[n];
+      if (rule_only) winding_numbers_[n] = holds_here ? 1.0 : 0.0;
     }
   });
 }

@@ -19,7 +19,7 @@ namespace raycone {
 
 // Numbers of some samples; those of fields that are not wanted are missing.
 struct SampleNumbers {
-  std::span<const double> winding{};
+  std::span<const double> winding{};  // empty where only the rule is asked for
   std::span<const std::uint8_t> inside{};
   std::span<const double> density{};
   std::span<const double> distance{};  // signed
@@ -37,6 +37,7 @@ class FieldSamples {
   // What was obtained from here before is no longer valid.
   void resize(std::size_t count);
 
+  // After derive(), where only the rule is asked for: 1 inside, 0 outside.
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
@@ -47,7 +48,10 @@ class FieldSamples {
   void derive();
 
   // After derive().
-  [[nodiscard]] SampleNumbers numbers() const { return {winding_numbers_, inside_, density_, distances_}; }
+  [[nodiscard]] SampleNumbers numbers() const {
+    const bool rule_only = options_.rule_only();
+    return {rule_only ? std::span<const double>() : winding_numbers_, inside_, density_, distances_};
+  }
 
   // As describe_fields() lists them.
   [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }

@@ -93,7 +93,8 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);
   const LatticeBlock smallest = Slabs(lattice, *writer, 1).first();
-  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field), limits.memory());
+  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, report.exterior_edges > 0),
+               limits.memory());
   return writer;
 }
 
@@ -103,7 +104,7 @@ Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const
   const OutputDescription description = description_of(report, command.field, command.encoding);
   const double of_writer = writer_memory(*report.lattice, command.encoding.format, description);
   const double left = static_cast<double>(limits.memory()) - memory_in_use() - of_writer;
-  return {*report.lattice, writer, slab_samples(command.field, left)};
+  return {*report.lattice, writer, slab_samples(command.field, report.exterior_edges > 0, left)};
 }
 
 void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& writer, const SlabObserver& observe,

@@ -42,8 +42,9 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
   return 0.0;
 }
 
-double bytes_per_sample(const FieldOptions& options) {
-  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample;
+double bytes_per_sample(const FieldOptions& options, bool open) {
+  const double of_caps = open && options.rule_only() ? sizeof(double) : 0.0;  // their crossings
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps;
 }
 
 }  // namespace
@@ -61,13 +62,13 @@ LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment,
   return slab;
 }
 
-std::int64_t slab_samples(const FieldOptions& options, double left) {
-  const double samples = left / 3 / bytes_per_sample(options);
+std::int64_t slab_samples(const FieldOptions& options, bool open, double left) {
+  const double samples = left / 3 / bytes_per_sample(options, open);
   return static_cast<std::int64_t>(std::clamp(samples, 1.0, static_cast<double>(kSlabSamples)));
 }
 
-double slab_memory(const LatticeBlock& slab, const FieldOptions& options) {
-  return bytes_per_sample(options) * static_cast<double>(slab.size());
+double slab_memory(const LatticeBlock& slab, const FieldOptions& options, bool open) {
+  return bytes_per_sample(options, open) * static_cast<double>(slab.size());
 }
 
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {

@@ -25,8 +25,8 @@ struct DrawnSample {
   std::uint64_t number = 0;  // in the run, from 0; those of a lattice are counted x fastest, then y, then z
   std::uint64_t rank = 0;    // pseudo-random, a one-to-one function of the number
   Vec3 point;
-  // As the run has them; empty where a field is not wanted.
-  double winding = 0.0;
+  // As the run has them; empty where a field is not wanted. To be verified, each needs its winding number.
+  std::optional<double> winding{};
   std::optional<bool> inside{};
   std::optional<double> density{};
   std::optional<double> distance{};
@@ -79,7 +79,8 @@ struct Expectations {
                                                 std::span<const DrawnSample> samples, const Expectations& expectations);
 
 // The same of a run of `evaluator`, which is that of `mesh` and `options`; throws also if it answers differently now,
-// as at points, or if a winding number is off by more than its error bound. `band_width` as above.
+// as at points, or if a winding number is off by more than its error bound. Samples without a winding number are
+// verified with what the evaluator answers now. `band_width` as above.
 [[nodiscard]] Verification verify(const std::string& name, const TriangleMesh& mesh, const FieldEvaluator& evaluator,
                                   const FieldOptions& options, double band_width, std::span<const DrawnSample> samples);
 

@@ -34,6 +34,10 @@ int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real r
   return static_cast<int>(difference > error) - static_cast<int>(difference < -error);
 }
 
+DirectedEdge directed(const Vec3& from, const Vec3& to, bool reversed, std::int32_t multiplicity) {
+  return reversed ? DirectedEdge{to, from, multiplicity} : DirectedEdge{from, to, multiplicity};
+}
+
 bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return on_triangle(a, b, b, q); }
 
 }  // namespace
@@ -58,11 +62,22 @@ void Boundary::add_chains(const TriangleMesh& mesh) {
     if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
     const Vec3 &from = mesh.vertices[e.from], &to = mesh.vertices[e.to];
     const bool along_rays = projects_to_a_point(from, to);
-    if (along_rays) edges_along_rays_.push_back({from, to});
+    if (along_rays) edges_along_rays_.push_back(directed(from, to, e.multiplicity < 0, multiplicity));
     steps.push_back({to, !along_rays, e.multiplicity < 0});
     total_multiplicity_ += multiplicity;
     previous = &e;
   }
+}
+
+std::vector<DirectedEdge> Boundary::directed_edges() const {
+  std::vector<DirectedEdge> edges = edges_along_rays_;
+  for (const ChainGroup& group : groups_) {
+    for (std::size_t i = 1; i < group.steps.size(); ++i) {
+      const ChainStep& step = group.steps[i];
+      if (step.joined) edges.push_back(directed(group.steps[i - 1].to, step.to, step.reversed, group.multiplicity));
+    }
+  }
+  return edges;
 }
 
 // The plane through all exterior edges, if there is one and no more.
@@ -89,8 +104,8 @@ void Boundary::find_plane() {
 // of all directions, of a query that is on none of the edges. w is then a multiple of 1/2.
 bool Boundary::lies_in_plane_of_edges(const Vec3& q) const {
   if (!plane_ || plane_side((*plane_)[0], (*plane_)[1], (*plane_)[2], q) != 0) return false;
-  for (const auto& [a, b] : edges_along_rays_) {
-    if (on_segment(a, b, q)) return false;
+  for (const DirectedEdge& e : edges_along_rays_) {
+    if (on_segment(e.from, e.to, q)) return false;
   }
   for (const ChainGroup& group : groups_) {
     for (std::size_t i = 1; i < group.steps.size(); ++i) {

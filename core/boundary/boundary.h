@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +12,11 @@
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
+
+struct DirectedEdge {
+  Vec3 from, to;
+  std::int32_t multiplicity;  // positive
+};
 
 class Boundary {
  public:
@@ -25,6 +31,9 @@ class Boundary {
 
   // All edges but those along the rays, whose factor is 1 from everywhere.
   [[nodiscard]] std::span<const ChainGroup> groups() const { return groups_; }
+
+  // All edges, as ExteriorEdge says, with positive multiplicities.
+  [[nodiscard]] std::vector<DirectedEdge> directed_edges() const;
 
   // `w`, a winding number of the mesh at q that is off by at most kMostDoubt, on the side of `critical` on which the
   // true one is; `critical` itself where that cannot be told. Takes as long as thousands of winding numbers, but no
@@ -41,7 +50,7 @@ class Boundary {
   std::uint64_t edges_ = 0;
   double total_multiplicity_ = 0.0;
   std::vector<ChainGroup> groups_;
-  std::vector<std::array<Vec3, 2>> edges_along_rays_;
+  std::vector<DirectedEdge> edges_along_rays_;
   std::optional<std::array<Vec3, 3>> plane_;  // through all edges, where there is just one
 };
 

@@ -20,6 +20,22 @@ std::vector<double> thresholds_to_settle(const Rule& rule) {
   return rule.threshold > 0.0 ? std::vector{rule.threshold, -rule.threshold} : std::vector<double>{};
 }
 
+double distance_to_threshold(const Rule& rule, double w) {
+  switch (rule.kind) {
+    case RuleKind::kThreshold:
+      return std::abs(w - rule.threshold);
+    case RuleKind::kAbs:
+      return std::abs(std::abs(w) - rule.threshold);
+    case RuleKind::kNonzero:
+      return std::abs(std::abs(w) - 0.5);
+    case RuleKind::kPositive:
+      return std::abs(w - 0.5);
+    case RuleKind::kOdd:
+      return 0.5 - std::abs(w - nearest_integer(w));
+  }
+  return 0.0;
+}
+
 bool holds(const Rule& rule, double w) {
   switch (rule.kind) {
     case RuleKind::kThreshold:

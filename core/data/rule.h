@@ -26,6 +26,10 @@ inline constexpr double kIndistinguishable = 1e-24;
 // asked (core/evaluation/winding_number.h). Near half-integers, values need no settling.
 [[nodiscard]] std::vector<double> thresholds_to_settle(const Rule& rule);
 
+// How far w (finite) is from the nearest number where the rule changes its mind, at most: numbers that are nearer to w
+// than this are on w's side. Off by rounding, some units of w in the last place.
+[[nodiscard]] double distance_to_threshold(const Rule& rule, double w);
+
 // Whether a point of winding number `w` (finite) is inside. Exact.
 [[nodiscard]] bool holds(const Rule& rule, double w);
 

@@ -9,6 +9,8 @@
 #include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
+#include "core/evaluation/lattice_tile.h"
+#include "core/evaluation/rule_blocks.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -42,56 +44,17 @@ std::optional<OrderedSlab> ordered_slab(const ScaledMesh& mesh, const Lattice& l
 
 // ---- What the boundary adds ------------------------------------------------------------------------------------
 
-// Samples that are evaluated together, and where their values belong.
-class LatticeTile {
- public:
-  [[nodiscard]] bool full() const { return samples_.count == kTile; }
-
-  void add(std::size_t index, const Vec3& scaled_query) {
-    indices_[samples_.count] = index;
-    samples_.add(scaled_query);
-  }
-
-  // Turns the crossings of the samples, if any, into winding numbers, and forgets them.
-  void evaluate(const ScaledMesh& mesh, std::span<double> values) {
-    if (samples_.count == 0) return;
-    const std::span<const std::size_t> indices(indices_.data(), samples_.count);
-    std::array<std::int64_t, kTile> crossings{};
-    std::array<double, kTile> w;
-    if (mesh.counts_crossings()) {
-      std::ranges::transform(indices, crossings.begin(),
-                             [&](std::size_t index) { return static_cast<std::int64_t>(values[index]); });
-    }
-    mesh.set_values(samples_, {crossings.data(), indices.size()}, {w.data(), indices.size()});
-    for (std::size_t i = 0; i < indices.size(); ++i) values[indices[i]] = w[i];
-    samples_.clear();
-  }
-
- private:
-  std::array<std::size_t, kTile> indices_;
-  SampleTile samples_;
-};
-
-// Turns crossings of the rows [begin, end) into winding numbers. Samples of a row share a ray, which saves work; where
-// a row leaves fewer than fill the lanes, those of several rows are taken together.
+// Turns crossings of the rows [begin, end) into winding numbers.
 void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
                        std::span<double> values) {
-  constexpr std::size_t kAlone = 8;  // samples
   const std::size_t samples = rows.xs.size();
-  LatticeTile along, across;
+  RowTiles tiles(mesh, values);
   for (std::size_t number = begin; number < end; ++number) {
     const Row row = rows.row(number);
-    for (std::size_t first = 0; first < samples; first += kTile) {
-      const std::size_t last = std::min(first + kTile, samples);
-      LatticeTile& tile = last - first >= kAlone ? along : across;
-      for (std::size_t i = first; i < last; ++i) {
-        tile.add(number * samples + i, row.query(i));
-        if (tile.full()) tile.evaluate(mesh, values);
-      }
-      along.evaluate(mesh, values);
-    }
+    tiles.begin_row(samples);
+    for (std::size_t i = 0; i < samples; ++i) tiles.add(number * samples + i, row.query(i));
   }
-  across.evaluate(mesh, values);
+  tiles.finish();
 }
 
 void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
@@ -105,9 +68,10 @@ void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t b
 
 // ---- The whole -------------------------------------------------------------------------------------------------
 
-// Sets the values of rows whose crossings are known. Returns how many samples lie on the surface.
+// Sets the values of rows whose crossings are known; only the crossings where the rest is left to apply_rule(). Returns
+// how many samples lie on the surface.
 std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
-                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, bool crossings_only) {
   std::atomic<std::uint64_t> on_surface = 0;
   const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
   parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
@@ -115,6 +79,7 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
     for (std::size_t begin = first; begin < last; begin += rows_per_task) {
       const std::size_t end = std::min(begin + rows_per_task, last);
       for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
+      if (crossings_only) continue;
       if (!mesh.is_closed()) add_boundary_term(mesh, rows, begin, end, values);
       if (diagnostics) bound_errors(mesh, rows, begin, end, values, *diagnostics);
       if (done) done->fetch_add((end - begin) * rows.xs.size(), std::memory_order_relaxed);
@@ -124,13 +89,29 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
   return on_surface;
 }
 
+std::vector<double> crossings_of(const TriangleMesh& caps, const LatticeRows& rows) {
+  std::vector<double> crossings(rows.size() * rows.xs.size());
+  LatticeSums sums(rows.size(), rows.xs.size(), crossings, nullptr);
+  scan_triangles(caps, rows, std::nullopt, sums);
+  sums.arrange();
+  parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) sums.finish(row);
+  });
+  return crossings;
+}
+
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
+                    const Rule* rule) {
   const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
   const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
-  const bool counts = mesh.counts_crossings() || diagnostics;
+  // Caps and their tree take about as long as so many edges at samples.
+  constexpr double kWorthCaps = 0x1p20;
+  const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
+  const bool by_rule = rule && !mesh.is_closed() && work > kWorthCaps;
+  const bool counts = mesh.counts_crossings() || diagnostics || by_rule;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   if (mesh.options().ray_engine == RayEngine::kScan) {
     scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
@@ -139,22 +120,24 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
     cast_rays(mesh, rows, sums);
   }
   sums.arrange();
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics);
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule);
+  if (by_rule) apply_rule(mesh, rows, *rule, values, crossings_of(mesh.changes().caps.mesh, rows), done);
   return {sums.ties(), on_surface};
 }
 
 }  // namespace
 
 Tally evaluate_block(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
+                     const Rule* rule) {
   const std::vector<LatticeBlock> parts =
       parts_alike(lattice, block, [&](double x) { return meshes.scaled().can_take(x); });
-  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics);
+  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics, rule);
   Tally tally;
   for (const LatticeBlock& part : parts) {
     PartSamples samples(static_cast<std::size_t>(part.size()));
     const Diagnostics* part_diagnostics = diagnostics ? &samples.diagnostics() : nullptr;
-    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics);
+    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics, rule);
     samples.copy_to(block, part, values, diagnostics);
   }
   return tally;

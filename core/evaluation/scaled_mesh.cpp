@@ -58,6 +58,16 @@ const SlabOrder& ScaledMesh::slab_order(int axis) const {
   return *slab_orders_[n];
 }
 
+const Changes& ScaledMesh::changes() const {
+  constexpr double kNarrow = 0x1p-5;  // of the mesh's size: some voxels
+  std::call_once(changes_built_, [this] {
+    const Box box = bounding_box(mesh_);
+    const Vec3 size = box.upper - box.lower;
+    changes_.emplace(make_caps(boundary_, kNarrow * std::max({size.x, size.y, size.z})));
+  });
+  return *changes_;
+}
+
 void ScaledMesh::prepare_points() const {
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();

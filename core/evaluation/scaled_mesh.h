@@ -9,9 +9,11 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/boundary/boundary.h"
 #include "core/boundary/boundary_term.h"
+#include "core/boundary/change_bound.h"
 #include "core/boundary/sample_tile.h"
 #include "core/crossings/crossings.h"
 #include "core/crossings/projected_grid.h"
@@ -29,6 +31,15 @@ struct EvaluatorOptions {
   RayEngine ray_engine = RayEngine::kScan;
   SimdLevel level = SimdLevel::kBest;
   Summation summation = Summation::kCheapest;
+};
+
+// How winding numbers change from place to place: by integers where rays begin or cease to cross triangles of the mesh,
+// less those of the caps; beside that as the bound says.
+struct Changes {
+  Caps caps;
+  ChangeBound bound;
+
+  explicit Changes(Caps all) : caps(std::move(all)), bound(caps) {}
 };
 
 class ScaledMesh {
@@ -59,6 +70,7 @@ class ScaledMesh {
   [[nodiscard]] const RayCaster& rays() const;
   [[nodiscard]] const ProjectedGrid& grid() const;
   [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
+  [[nodiscard]] const Changes& changes() const;
   void prepare_points() const;
 
   // What follows takes queries in the scale.
@@ -90,10 +102,11 @@ class ScaledMesh {
   TriangleMesh mesh_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
-  mutable std::once_flag rays_built_, grid_built_;
+  mutable std::once_flag rays_built_, grid_built_, changes_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
+  mutable std::optional<Changes> changes_;
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };
 

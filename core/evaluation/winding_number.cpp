@@ -75,7 +75,18 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   const ScaledMeshes& meshes = *implementation_;
   if (!has_values(meshes.scaled().mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;
-  return evaluate_block(meshes, lattice, block, values, done, diagnostics);
+  return evaluate_block(meshes, lattice, block, values, done, diagnostics, nullptr);
+}
+
+Tally WindingNumberEvaluator::evaluate_for(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
+                                           std::span<double> values, std::atomic<std::uint64_t>* done) const {
+  check_counts(block);
+  assert(values.size() == static_cast<std::size_t>(block.size()));
+  if (block.size() == 0) return {};
+  const ScaledMeshes& meshes = *implementation_;
+  if (!has_values(meshes.scaled().mesh(), values, done, nullptr)) return {};
+  const DefaultFloatingPoint guard;
+  return evaluate_block(meshes, lattice, block, values, done, nullptr, &rule);
 }
 
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,

@@ -70,6 +70,12 @@ class WindingNumberEvaluator {
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
+  // The same for who asks of the values only whether `rule` holds, which for open meshes takes a small part of the
+  // time. A value is then w, or a number that is certain to be on the same side of every threshold of the rule. Where
+  // such a threshold is no half-integer, values within doubt() of it must be settled, as ever.
+  Tally evaluate_for(const Rule& rule, const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
+                     std::atomic<std::uint64_t>* done = nullptr) const;
+
   // |value - w| <= accuracy(), turns. This is 1e-10. From a million exterior edges on, counted with multiplicity, it is
   // 2^-53 times their number: doubles of such values can do no better.
   [[nodiscard]] double accuracy() const;

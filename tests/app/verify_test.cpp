@@ -201,7 +201,7 @@ TEST(Verify, NoticesAValueThatTheEvaluatorDidNotGive) {
     return error_of([&] { return verify("mesh.obj", mesh, evaluator, options, kInfinity, samples); });
   };
   ASSERT_EQ(error(), "");
-  samples[17].winding = std::nextafter(samples[17].winding, 2.0);  // by the last bit
+  samples[17].winding = std::nextafter(*samples[17].winding, 2.0);  // by the last bit
   EXPECT_EQ(error().rfind("mesh.obj: sample 17 at (", 0), 0U) << error();
   EXPECT_TRUE(error().ends_with(", expected the same bits")) << error();
   samples[17].winding = std::numeric_limits<double>::quiet_NaN();
@@ -228,7 +228,7 @@ struct Sabotage {
 };
 
 constexpr Sabotage kNumbers[] = {
-    {"winding", [](DrawnSample& s, double by) { s.winding += by; }},
+    {"winding", [](DrawnSample& s, double by) { *s.winding += by; }},
     {"density", [](DrawnSample& s, double by) { *s.density += by; }},
     {"sdf", [](DrawnSample& s, double by) { *s.distance += std::copysign(by, *s.distance); }},
 };

@@ -1,0 +1,52 @@
+// How fast winding numbers can change from place to place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/boundary/caps.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// The winding number of a mesh jumps by integers where its surface is. Beside that it changes as the solid angles of
+// its loops do. By the law of Biot and Savart a piece of an edge, of length L, adds at most L / (4 pi d^2) to the
+// length of the gradient at a distance d. A loop with caps of area A adds at most the integral of the gradients of
+// dipoles, 2 A / (4 pi d^3), d being the distance from the caps: less, if it is narrow. A tree gathers all.
+// Thread-safe.
+class ChangeBound {
+ public:
+  explicit ChangeBound(const Caps& caps);
+
+  // The gradient is at most so long in the closed box, turns per unit; infinite where the box comes too close, or where
+  // the bound exceeds `limit`, beyond which it is of no use.
+  [[nodiscard]] double in(const Box& box, double limit) const;
+
+  // Boxes that contain the caps of wide loops, which are cut into pieces.
+  [[nodiscard]] std::span<const Box> wide_caps() const { return wide_caps_; }
+
+ private:
+  struct Source {
+    Box box;
+    double length, area;  // L and 2 A, over 4 pi
+  };
+  // Sources [begin, end). The clusters that it is made of follow it, up to `next`.
+  struct Cluster {
+    Source sum;
+    std::uint32_t begin, end, next;
+  };
+  void add_edges(const std::vector<DirectedEdge>& edges);
+  void add_narrow(const Caps& caps);
+  void add_wide(const Caps& caps);
+  void cut(const Vec3& a, const Vec3& b, const Vec3& c, int depth);
+  void build(std::uint32_t begin, std::uint32_t end);
+
+  double piece_, place_error_;  // length of pieces, and how far they may be from where they are, at most
+  std::vector<Source> sources_;
+  std::vector<Cluster> clusters_;
+  std::vector<Box> wide_caps_;
+};
+
+}  // namespace raycone

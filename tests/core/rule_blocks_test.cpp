@@ -1,0 +1,182 @@
+#include "core/evaluation/rule_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "core/boundary/caps.h"
+#include "core/boundary/change_bound.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
+#include "io/mesh/read_mesh.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+const std::vector<Rule> kRules{{RuleKind::kThreshold, 0.5}, {RuleKind::kThreshold, 0.25}, {RuleKind::kThreshold, -0.75},
+                               {RuleKind::kAbs, 0.1},       {RuleKind::kNonzero, 0.5},    {RuleKind::kPositive, 0.5},
+                               {RuleKind::kOdd, 0.5}};
+
+// Over the mesh's box and a tenth of its size around it.
+Lattice lattice_around(const TriangleMesh& mesh, std::int64_t count) {
+  const Box box = bounding_box(mesh);
+  const Vec3 size = box.upper - box.lower;
+  const double side = std::max({size.x, size.y, size.z});
+  Lattice lattice;
+  const double h = 1.2 * side / static_cast<double>(count - 1);
+  lattice.spacing = {h, h, h};
+  lattice.origin = box.lower - Vec3{side / 10, side / 10, side / 10};
+  for (int axis = 0; axis < 3; ++axis) {
+    lattice.counts[static_cast<std::size_t>(axis)] = 1 + static_cast<std::int64_t>((size[axis] + side / 5) / h);
+  }
+  return lattice;
+}
+
+// With corners on integers: samples on faces, edges, vertices and in the planes of openings.
+Lattice integers(std::int64_t from, std::int64_t count, double spacing) {
+  return {{0, 0, 0}, {spacing, spacing, spacing}, {from, from, from}, {count, count, count}};
+}
+
+// How many samples are not evaluated one by one, of all rules together; -1 where a rule is wrong somewhere.
+std::int64_t certified(const TriangleMesh& mesh, const Lattice& lattice) {
+  const WindingNumberEvaluator evaluator(mesh);
+  const auto size = static_cast<std::size_t>(whole(lattice).size());
+  std::vector<double> truth(size), values(size);
+  evaluator.evaluate(lattice, whole(lattice), truth);
+  std::int64_t count = 0;
+  for (const Rule& rule : kRules) {
+    evaluator.evaluate_for(rule, lattice, whole(lattice), values);
+    for (std::size_t n = 0; n < size; ++n) {
+      if (holds(rule, values[n]) != holds(rule, truth[n])) return -1;
+      count += values[n] != truth[n];
+    }
+  }
+  return count;
+}
+
+TEST(RuleBlocks, HoldWhereTheWindingNumbersDo) {
+  const TriangleMesh ball = test::sphere(12);
+  TriangleMesh holes = ball;  // twelve of different sizes
+  std::erase_if(holes.triangles, [&](const Triangle& t) { return (t[0] * 7 + t[1] + t[2]) % 23 == 0; });
+  for (const TriangleMesh& mesh :
+       {holes, test::joined(holes, test::reversed(test::moved(holes, {0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}))),
+        test::joined(holes, holes)}) {
+    const std::int64_t count = certified(weld(mesh, {}), lattice_around(mesh, 50));
+    EXPECT_GT(count, 7 * 60'000) << "few are certified";
+  }
+}
+
+TEST(RuleBlocks, HoldOnLatticesThatAreFullOfTies) {
+  EXPECT_GT(certified(test::open_box(), integers(-8, 65, 1.0 / 32)), 100'000);
+  EXPECT_GT(certified(test::moved(test::open_box(), {-1, 1, 1}, {0, 0, 0}), integers(-40, 65, 1.0 / 32)), 100'000);
+  test::Random random(4);
+  for (int i = 0; i < 4; ++i) {
+    TriangleMesh cells = test::random_cells(random, 4);
+    cells.triangles.resize(cells.triangles.size() - 9);
+    EXPECT_GE(certified(weld(cells, {}), integers(-4, 41, 0.125)), 0);
+    EXPECT_GE(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), 0);
+  }
+}
+
+// Cracks: the sides of a box whose edges are cut at different places.
+TEST(RuleBlocks, SeeThroughCracks) {
+  TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+  std::vector<Triangle> cut;
+  for (const Triangle& t : mesh.triangles) {  // each at its own vertex, so that neighbours do not share it
+    const auto v = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]];
+    const double at = 0.3 + 0.01 * static_cast<double>(v - middle);
+    mesh.vertices.push_back((1 - at) * a + at * b);
+    cut.insert(cut.end(), {{t[0], v, t[2]}, {v, t[1], t[2]}});
+  }
+  mesh.triangles = cut;
+  const Lattice lattice = lattice_around(mesh, 64);
+  const std::int64_t all = whole(lattice).size() * static_cast<std::int64_t>(kRules.size());
+  EXPECT_GT(certified(weld(mesh, {}), lattice), all / 2);
+}
+
+TEST(RuleBlocks, HoldOnRealOpenMeshes) {
+  int meshes = 0;
+  for (const char* name : {"meshes__plane_holes.obj", "geometry-central__moebius.obj", "thingi10k/52863.stl",
+                           "trimesh__featuretype.STL", "fast-winding-number-soups__pig-head.ply"}) {
+    const std::filesystem::path path = std::filesystem::path(RAYCONE_SHARED_MESHES) / name;
+    if (!std::filesystem::exists(path)) continue;
+    const TriangleMesh mesh = weld(read_mesh(path, {}).parsed.mesh, {});
+    EXPECT_GE(certified(mesh, lattice_around(mesh, 24)), 0) << name;
+    ++meshes;
+  }
+  if (meshes == 0) GTEST_SKIP() << "no shared meshes";
+}
+
+// ---- What it rests on ------------------------------------------------------------------------------------------
+
+TEST(Caps, HaveTheBoundaryOfTheMesh) {
+  test::Random random(5);
+  for (int i = 0; i < 30; ++i) {
+    const TriangleMesh mesh = weld(i % 2 ? test::lattice_soup(random, 40, 3) : test::soup(random, 20), {});
+    for (const double width : {0.0, 0.3, 100.0}) {
+      const Caps caps = make_caps(Boundary(mesh), width);
+      EXPECT_TRUE(exterior_edges(weld(test::joined(mesh, test::reversed(caps.mesh)), {})).empty());
+      const auto narrow = static_cast<std::ptrdiff_t>(caps.narrow);
+      TriangleMesh wide = caps.mesh;
+      wide.triangles.erase(wide.triangles.begin(), wide.triangles.begin() + narrow);
+      // Edges that are there and back have vanished from the boundary of the caps.
+      EXPECT_LE(exterior_edges(weld(wide, {})).size(), caps.wide_loops.size());
+    }
+  }
+}
+
+TEST(Caps, OfAStripTakeLittleMoreThanItsArea) {
+  // A ribbon along a helix, of width 0.02: the loop is 2 * 400 edges long.
+  TriangleMesh ribbon;
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 0.05 * i;
+    for (const double z : {0.0, 0.02}) ribbon.vertices.push_back({std::cos(angle), std::sin(angle), 0.01 * i + z});
+    const auto v = static_cast<std::uint32_t>(2 * i);
+    if (i > 0) ribbon.triangles.insert(ribbon.triangles.end(), {{v - 2, v, v - 1}, {v - 1, v, v + 1}});
+  }
+  const auto area = [](const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3& a = mesh.vertices[t[0]];
+      const Vec3 n = cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
+      sum += std::sqrt(dot(n, n)) / 2;
+    }
+    return sum;
+  };
+  EXPECT_LT(area(make_caps(Boundary(ribbon), 0.1).mesh), 1.1 * area(ribbon));
+}
+
+// Between two places of a box the winding number changes by integers, and by what the bound says.
+TEST(ChangeBound, HoldsBetweenAllPlaces) {
+  test::Random random(6);
+  int tried = 0;
+  double largest = 0.0;  // part of the bound that was reached
+  for (int i = 0; i < 40; ++i) {
+    const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
+    const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
+    for (int j = 0; j < 20; ++j) {
+      const Vec3 a = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
+      const double size = std::pow(10.0, test::uniform(random, -3, 0));
+      const Vec3 b = a + size * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
+      const double most = bound.in({a, b}, 1e6) * std::sqrt(dot(b - a, b - a));
+      if (!(most < 0.5)) continue;
+      const double change = test::direct_winding_number(mesh, b) - test::direct_winding_number(mesh, a);
+      const double beside_integers = std::abs(change - std::nearbyint(change));
+      EXPECT_LE(beside_integers, most);
+      largest = std::max(largest, beside_integers / most);
+      ++tried;
+    }
+  }
+  EXPECT_GT(tried, 200);
+  EXPECT_GT(largest, 0.2) << "the bound is far off";
+}
+
+}  // namespace
+}  // namespace raycone

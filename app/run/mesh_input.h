@@ -17,8 +17,10 @@ namespace raycone {
 // large for the memory.
 [[nodiscard]] MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
-// All that is done to a mesh before anything is made of it: the one place for it.
-[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options);
+// All that is done to a mesh before anything is made of it: the one place for it. What the user should know about that
+// and about the result is appended to `warnings`, in a fixed order.
+[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
+                                            std::vector<Warning>& warnings);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);

@@ -40,6 +40,9 @@ class MeshRun {
   // Prints what the report has by now; throws InputError with --strict.
   void print_warnings() const;
 
+  // A warning after that: printed at once; throws InputError with --strict.
+  void warn(const Warning& warning);
+
   // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
   // to be increased by the work.
   [[nodiscard]] std::atomic<std::uint64_t>* start_progress(std::optional<std::uint64_t> total);

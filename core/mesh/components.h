@@ -14,7 +14,7 @@ struct Components {
   static constexpr std::uint32_t kUnused = 0xFFFFFFFF;
 };
 
-// Numbered as the faces meet them.
+// Numbered by increasing lowest vertex.
 [[nodiscard]] Components components_of(const TriangleMesh& mesh);
 
 }  // namespace raycone

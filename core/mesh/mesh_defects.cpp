@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,47 +33,53 @@ std::uint64_t count_inconsistent_edges(const TriangleMesh& mesh, const std::vect
 
 // A face by its vertices, and whether they are in increasing order but for a rotation.
 struct FaceKey {
-  std::uint32_t middle, high;
+  std::array<std::uint32_t, 3> corners;
   bool increasing;
-
-  [[nodiscard]] auto corners() const { return std::tie(middle, high); }
 };
 
-// Pairs among faces with one lowest vertex.
-template <class Iterator>
-std::uint64_t cancelling_pairs_among(Iterator begin, Iterator end) {
-  std::sort(begin, end, [](const FaceKey& a, const FaceKey& b) { return a.corners() < b.corners(); });
-  std::uint64_t pairs = 0;
-  while (begin != end) {
-    std::array<std::uint64_t, 2> faces{};
-    const FaceKey& first = *begin;
-    for (; begin != end && begin->corners() == first.corners(); ++begin) ++faces[begin->increasing ? 1 : 0];
-    pairs += std::min(faces[0], faces[1]);
-  }
-  return pairs;
+FaceKey key_of(const Triangle& t) {
+  const auto low = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
+  const std::uint32_t next = t[(low + 1) % 3], last = t[(low + 2) % 3];
+  return {{t[low], std::min(next, last), std::max(next, last)}, next < last};
 }
 
-// Faces are put beside those with the same lowest vertex: sorting all of them would take ten times as long.
+bool has_three_vertices(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
+// Equal for faces of the same vertices, in whatever order.
+std::uint64_t hash_of(const Triangle& t) {
+  const auto mixed = [](std::uint64_t v) {
+    v *= 0x9E3779B97F4A7C15;
+    return v ^ (v >> 32);
+  };
+  return (mixed(t[0]) + mixed(t[1]) + mixed(t[2])) * 0x9E3779B97F4A7C15;
+}
+
+// The faces that may have a twin, and a few others: sorting all of them would take ten times as long.
+std::vector<FaceKey> possible_twins(const TriangleMesh& mesh) {
+  constexpr std::size_t kBitsPerFace = 16;
+  const int shift = 64 - static_cast<int>(std::bit_width(kBitsPerFace * mesh.triangles.size()));
+  std::vector<bool> seen(std::size_t{1} << (64 - shift)), seen_again(seen.size());
+  for (const Triangle& t : mesh.triangles) {
+    const std::size_t bit = hash_of(t) >> shift;
+    if (seen[bit]) seen_again[bit] = true;
+    seen[bit] = true;
+  }
+  std::vector<FaceKey> keys;
+  for (const Triangle& t : mesh.triangles) {
+    if (seen_again[hash_of(t) >> shift] && has_three_vertices(t)) keys.push_back(key_of(t));
+  }
+  return keys;
+}
+
 std::uint64_t count_cancelling_pairs(const TriangleMesh& mesh) {
-  const auto has_three_vertices = [](const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; };
-  std::vector<std::uint32_t> ends(mesh.vertices.size() + 1, 0);  // at first counts
-  for (const Triangle& t : mesh.triangles) {
-    if (has_three_vertices(t)) ++ends[std::min({t[0], t[1], t[2]})];
-  }
-  std::uint32_t total = 0;
-  for (std::uint32_t& end : ends) end = std::exchange(total, total + end);
-  std::vector<FaceKey> faces(total);
-  for (const Triangle& t : mesh.triangles) {
-    if (!has_three_vertices(t)) continue;
-    const auto low = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
-    const std::uint32_t next = t[(low + 1) % 3], last = t[(low + 2) % 3];
-    faces[ends[t[low]]++] = {std::min(next, last), std::max(next, last), next < last};
-  }
+  std::vector<FaceKey> keys = possible_twins(mesh);
+  std::ranges::sort(keys, {}, &FaceKey::corners);
   std::uint64_t pairs = 0;
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : ends) {
-    if (end - begin > 1) pairs += cancelling_pairs_among(faces.begin() + begin, faces.begin() + end);
-    begin = end;
+  for (auto it = keys.begin(); it != keys.end();) {
+    std::array<std::uint64_t, 2> faces{};
+    const auto first = it;
+    for (; it != keys.end() && it->corners == first->corners; ++it) ++faces[it->increasing ? 1 : 0];
+    pairs += std::min(faces[0], faces[1]);
   }
   return pairs;
 }

@@ -26,7 +26,11 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field)
     : run_(run),
       field_(field),
       original_(field.verify > 0 ? mesh : TriangleMesh{}),
-      evaluator_(timed(run.report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), field); })),
+      evaluator_(timed(run.report.seconds.prepare,
+                       [&] {
+                         const std::vector<ExteriorEdge> edges = run.take_edges();
+                         return FieldEvaluator(std::move(mesh), field, &edges);
+                       })),
       samples_(field),
       draw_(field.verify),
       has_rule_(field.has(Field::kInside) || field.has(Field::kDistance)) {

@@ -31,13 +31,15 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   return file;
 }
 
-TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
+TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings,
+                              std::vector<ExteriorEdge>& edges) {
   const bool may_collapse = options.weld.mode == WeldMode::kDistance;
   const std::uint64_t before = may_collapse ? triangles_with_corners(as_read) : 0;
   TriangleMesh mesh = weld(std::move(as_read), options.weld);
   const std::uint64_t after = may_collapse ? triangles_with_corners(mesh) : 0;
   if (after < before) warnings.push_back(weld_collapsed(before - after, options.weld.distance));
-  std::ranges::move(warnings_about(mesh_defects(mesh)), std::back_inserter(warnings));
+  edges = exterior_edges(mesh);
+  std::ranges::move(warnings_about(mesh_defects(mesh, edges)), std::back_inserter(warnings));
   return mesh;
 }
 

@@ -31,7 +31,7 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.warnings = std::move(file.parsed.warnings);
   refuse_to_replace_input(written, report.files_read);
   return timed(report.seconds.prepare,
-               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings); });
+               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings, edges_); });
 }
 
 void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }

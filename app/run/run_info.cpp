@@ -46,12 +46,13 @@ std::string run_info(const InfoCommand& command, const RunLimits& limits) {
   info.vertices = file.parsed.mesh.vertices.size();
   info.skipped_faces = file.parsed.skipped_faces;
   info.warnings = std::move(file.parsed.warnings);
-  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh, info.warnings);
+  std::vector<ExteriorEdge> edges;
+  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh, info.warnings, edges);
   print_warnings(info.warnings, command.run, command.mesh.path);
   info.welded_vertices = mesh.vertices.size();
   info.bounds = bounding_box(mesh);
   info.statistics = mesh_statistics(mesh);
-  info.opposite_duplicate_faces = mesh_defects(mesh).cancelling_pairs;
+  info.opposite_duplicate_faces = mesh_defects(mesh, edges).cancelling_pairs;
   return command.json ? to_json(info) : info_text(info, costed_lattices(info.bounds), limits.threads());
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/boundary/boundary.h"
 #include "core/boundary/boundary_term.h"
@@ -29,6 +30,8 @@ struct EvaluatorOptions {
   RayEngine ray_engine = RayEngine::kScan;
   SimdLevel level = SimdLevel::kBest;
   Summation summation = Summation::kCheapest;
+  // Of the mesh, where known: scaling changes neither the edges nor their order. Used by the constructor alone.
+  const std::vector<ExteriorEdge>* edges = nullptr;
 };
 
 class ScaledMesh {

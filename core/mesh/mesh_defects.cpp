@@ -9,14 +9,12 @@
 #include <limits>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "core/exact/predicates.h"
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/components.h"
 #include "core/mesh/edge_uses.h"
-#include "core/mesh/exterior_edges.h"
 
 namespace raycone {
 namespace {
@@ -230,10 +228,9 @@ class ClosedComponents {
 
 }  // namespace
 
-MeshDefects mesh_defects(const TriangleMesh& welded) {
+MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges) {
   if (welded.triangles.empty()) return {};
   const DefaultFloatingPoint guard;
-  const std::vector<ExteriorEdge> edges = exterior_edges(welded);
   MeshDefects defects;
   defects.inconsistent_edges = count_inconsistent_edges(welded, edges);
   defects.cancelling_pairs = count_cancelling_pairs(welded);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
 
 namespace raycone {
 
@@ -16,9 +18,9 @@ struct MeshDefects {
   bool negative_volume = false;  // the mesh as a whole is closed, and its volume is negative
 };
 
-// Defects of a welded mesh. A volume counts as negative where rounding cannot have made it so: one that is 0, as of a
-// double-sided sheet, never does. The result does not depend on the order of faces. Precondition: all vertices of
-// triangles finite. Uses the threads that ThreadLimit allows; throws ThreadsUnavailable.
-[[nodiscard]] MeshDefects mesh_defects(const TriangleMesh& welded);
+// Defects of a welded mesh with these exterior_edges(). A volume counts as negative where rounding cannot have made it
+// so: one that is 0, as of a double-sided sheet, never does. The result does not depend on the order of faces.
+// Precondition: all vertices of triangles finite. Thread-safe.
+[[nodiscard]] MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges);
 
 }  // namespace raycone

@@ -16,7 +16,10 @@ namespace {
 
 const TriangleMesh kCubeMesh = box_mesh({0, 0, 0}, {1, 1, 1});
 
-MeshDefects defects_of(const TriangleMesh& mesh) { return mesh_defects(weld(mesh, {})); }
+MeshDefects defects_of(const TriangleMesh& mesh) {
+  const TriangleMesh welded = weld(mesh, {});
+  return mesh_defects(welded, exterior_edges(welded));
+}
 
 std::uint64_t reversed_in(const TriangleMesh& mesh) { return defects_of(mesh).reversed_components; }
 

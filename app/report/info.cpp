@@ -85,10 +85,15 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("inconsistent edges", readable(s.inconsistent_edges) + " of two faces in the same direction");
   table.row("non-manifold edges", readable(s.nonmanifold_edges) + " of more than two faces");
   table.row("degenerate faces", readable(s.degenerate_faces) + " of zero area");
-  table.row("duplicate faces", readable(s.duplicate_faces));
+  table.row("duplicate faces",
+            readable(s.duplicate_faces) + ", pairs that cancel " + readable(info.opposite_duplicate_faces));
   table.row("bounds", printed(info.bounds.lower) + " to " + printed(info.bounds.upper));
   table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
+  table.row("surface area", printed(s.surface_area) + " square world units");
   table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
+  std::string names;
+  for (const Warning& warning : info.warnings) names += (names.empty() ? "" : ", ") + warning.name;
+  table.row("warnings", names.empty() ? "none" : names);
   const std::string on_threads = counted(static_cast<std::uint64_t>(threads), "thread");
   std::string heading = "cost on " + on_threads;
   for (const Lattice& lattice : costed.lattices) table.row(std::exchange(heading, ""), cost_of(lattice, info, threads));

@@ -8,6 +8,7 @@
 
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 #include "core/mesh/mesh_statistics.h"
 
 namespace raycone {
@@ -19,7 +20,9 @@ struct MeshInfo {
   std::uint64_t welded_vertices = 0;
   std::uint64_t skipped_faces = 0;  // of one or two corners
   Box bounds;
-  MeshStatistics statistics;  // of the welded mesh
+  MeshStatistics statistics;                   // of the welded mesh
+  std::uint64_t opposite_duplicate_faces = 0;  // pairs of faces that cancel
+  std::vector<Warning> warnings;
 };
 
 // Lattices whose cost the text tells.

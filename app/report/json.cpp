@@ -97,7 +97,11 @@ std::string to_json(const MeshInfo& info) {
                 {"inconsistent_edges", s.inconsistent_edges},
                 {"bounds", Json::array({to_array(info.bounds.lower), to_array(info.bounds.upper)})},
                 {"signed_volume", nullptr},
-                {"skipped_faces", info.skipped_faces}};
+                {"surface_area", s.surface_area},
+                {"skipped_faces", info.skipped_faces},
+                {"opposite_duplicate_faces", info.opposite_duplicate_faces},
+                {"warnings", names_of(info.warnings)},
+                {"warning_lines", lines_of(info.warnings)}};
   if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
   return to_text(document);
 }

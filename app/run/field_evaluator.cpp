@@ -21,12 +21,12 @@ Vec3 point_of(const Lattice& lattice, const LatticeBlock& block, std::size_t num
 
 }  // namespace
 
-FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options)
+FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges)
     : band_(options.band),
       rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
       thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(mesh) : std::nullopt),
-      winding_number_(std::move(mesh), options.engine, options.simd) {}
+      winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

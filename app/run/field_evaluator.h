@@ -17,8 +17,9 @@ namespace raycone {
 
 class FieldEvaluator {
  public:
-  // Prepares what `options` need, but for prepare_points(). `mesh` as for WindingNumberEvaluator.
-  FieldEvaluator(TriangleMesh mesh, const FieldOptions& options);
+  // Prepares what `options` need, but for prepare_points(). `mesh` and `edges` as for
+  // WindingNumberEvaluator.
+  FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges = nullptr);
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 

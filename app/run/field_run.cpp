@@ -1,5 +1,6 @@
 #include "app/run/field_run.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -25,9 +26,14 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field)
     : run_(run),
       field_(field),
       original_(field.verify > 0 ? mesh : TriangleMesh{}),
-      evaluator_(timed(run.report.seconds.prepare, [&] { return FieldEvaluator(std::move(mesh), field); })),
+      evaluator_(timed(run.report.seconds.prepare,
+                       [&] {
+                         const std::vector<ExteriorEdge> edges = run.take_edges();
+                         return FieldEvaluator(std::move(mesh), field, &edges);
+                       })),
       samples_(field),
-      draw_(field.verify) {
+      draw_(field.verify),
+      has_rule_(field.has(Field::kInside) || field.has(Field::kDistance)) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
   run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
 }
@@ -39,12 +45,18 @@ void FieldRun::prepare_points() {
 void FieldRun::evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done) {
   run_.report.tally +=
       timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(lattice, block, samples_, done); });
+  look_for_inside();
   draw_.offer(lattice, block, samples_.numbers());
 }
 
 void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done) {
   run_.report.tally += timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(points, samples_, done); });
   draw_.offer(points, samples_.numbers());
+}
+
+void FieldRun::look_for_inside() {
+  if (!has_rule_ || found_inside_) return;
+  found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
 }
 
 void FieldRun::verify(double band_width) {

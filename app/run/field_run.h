@@ -31,16 +31,23 @@ class FieldRun {
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
   [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
 
+  // Whether a rule was asked for, and held for no sample.
+  [[nodiscard]] bool found_nothing_inside() const { return has_rule_ && !found_inside_; }
+
   // Where it is asked for, verifies what was evaluated. `band_width`: where distances are cut off, world units.
   void verify(double band_width);
 
  private:
+  void look_for_inside();
+
   MeshRun& run_;
   const FieldOptions& field_;
   TriangleMesh original_;  // to verify; empty where that is not asked for
   FieldEvaluator evaluator_;
   FieldSamples samples_;
   SampleDraw draw_;
+  bool has_rule_;
+  bool found_inside_ = false;
 };
 
 // What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.

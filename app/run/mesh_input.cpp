@@ -1,12 +1,16 @@
 #include "app/run/mesh_input.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "app/process/limits.h"
 #include "app/process/messages.h"
+#include "app/run/mesh_warnings.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/mesh/polygons.h"
 #include "core/mesh/weld.h"
 #include "io/files/file_error.h"
@@ -27,8 +31,16 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   return file;
 }
 
-TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options) {
-  return weld(std::move(as_read), options.weld);
+TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings,
+                              std::vector<ExteriorEdge>& edges) {
+  const bool may_collapse = options.weld.mode == WeldMode::kDistance;
+  const std::uint64_t before = may_collapse ? triangles_with_corners(as_read) : 0;
+  TriangleMesh mesh = weld(std::move(as_read), options.weld);
+  const std::uint64_t after = may_collapse ? triangles_with_corners(mesh) : 0;
+  if (after < before) warnings.push_back(weld_collapsed(before - after, options.weld.distance));
+  edges = exterior_edges(mesh);
+  std::ranges::move(warnings_about(mesh_defects(mesh, edges)), std::back_inserter(warnings));
+  return mesh;
 }
 
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh) {

@@ -9,6 +9,7 @@
 #include "app/run/run_limits.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
+#include "core/mesh/exterior_edges.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -17,8 +18,11 @@ namespace raycone {
 // large for the memory.
 [[nodiscard]] MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
-// All that is done to a mesh before anything is made of it: the one place for it.
-[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options);
+// All that is done to a mesh before anything is made of it: the one place for it. What the user should know about that
+// and about the result is appended to `warnings`, in a fixed order. `edges` is set to
+// the exterior edges of the result.
+[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
+                                            std::vector<Warning>& warnings, std::vector<ExteriorEdge>& edges);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);

@@ -30,10 +30,16 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.faces = file.parsed.mesh.triangles.size();
   report.warnings = std::move(file.parsed.warnings);
   refuse_to_replace_input(written, report.files_read);
-  return timed(report.seconds.prepare, [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_); });
+  return timed(report.seconds.prepare,
+               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings, edges_); });
 }
 
 void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }
+
+void MeshRun::warn(const Warning& warning) {
+  report.warnings.push_back(warning);
+  raycone::print_warnings({warning}, options_, report.mesh);
+}
 
 std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {
   return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, files_.path), total).done();

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/options/mesh_options.h"
@@ -22,6 +23,7 @@
 #include "app/run/run_limits.h"
 #include "app/run/written_files.h"
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -37,8 +39,14 @@ class MeshRun {
   // LimitError, and UsageError where one of `written` would replace a file that the mesh refers to.
   [[nodiscard]] TriangleMesh load_mesh(const std::vector<WrittenFile>& written);
 
+  // exterior_edges() of that mesh, once.
+  [[nodiscard]] std::vector<ExteriorEdge> take_edges() { return std::move(edges_); }
+
   // Prints what the report has by now; throws InputError with --strict.
   void print_warnings() const;
+
+  // A warning after that: printed at once; throws InputError with --strict.
+  void warn(const Warning& warning);
 
   // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
   // to be increased by the work.
@@ -57,6 +65,7 @@ class MeshRun {
   const OutputFiles& files_;
   const RunOptions& options_;
   const RunLimits& limits_;
+  std::vector<ExteriorEdge> edges_;
   std::optional<Stopwatch> total_;
   std::optional<Progress> progress_;
 };

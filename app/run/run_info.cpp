@@ -10,6 +10,7 @@
 #include "app/run/mesh_input.h"
 #include "app/run/written_files.h"
 #include "core/data/warning.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/mesh/mesh_statistics.h"
 #include "io/files/file_error.h"
 
@@ -39,16 +40,19 @@ std::string run_info(const InfoCommand& command, const RunLimits& limits) {
   refuse_to_replace_input(written, {command.mesh.path});
   MeshFile file = read_mesh_file(command.mesh, limits);
   for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
-  print_warnings(file.parsed.warnings, command.run, command.mesh.path);
   MeshInfo info;
   info.mesh = command.mesh.path;
   info.faces = file.parsed.mesh.triangles.size();
   info.vertices = file.parsed.mesh.vertices.size();
   info.skipped_faces = file.parsed.skipped_faces;
-  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh);
+  info.warnings = std::move(file.parsed.warnings);
+  std::vector<ExteriorEdge> edges;
+  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh, info.warnings, edges);
+  print_warnings(info.warnings, command.run, command.mesh.path);
   info.welded_vertices = mesh.vertices.size();
   info.bounds = bounding_box(mesh);
   info.statistics = mesh_statistics(mesh);
+  info.opposite_duplicate_faces = mesh_defects(mesh, edges).cancelling_pairs;
   return command.json ? to_json(info) : info_text(info, costed_lattices(info.bounds), limits.threads());
 }
 

@@ -17,6 +17,7 @@
 #include "app/run/grid_reader.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
+#include "app/run/mesh_warnings.h"
 #include "app/run/slabs.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
@@ -129,9 +130,11 @@ RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, co
   report.samples = sample_count(*report.lattice);
   run.print_warnings();
 
+  const bool may_be_empty = !should_have_inside(bounding_box(mesh), *report.lattice);
   FieldRun fields(run, std::move(mesh), command.field);
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), *writer, observe, run);
+  if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
   fields.verify(command.field.band * report.lattice->spacing.x);
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   return run.finish();

@@ -91,7 +91,10 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
 
   check_slice_memory(slice, report.mesh, limits);
   if (values_file) values_file->reserve(report.samples * sizeof(double));
-  const auto evaluator = timed(report.seconds.prepare, [&] { return WindingNumberEvaluator(mesh); });
+  const auto evaluator = timed(report.seconds.prepare, [&] {
+    const std::vector<ExteriorEdge> edges = run.take_edges();
+    return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, &edges);
+  });
   report.exterior_edges = evaluator.exterior_edges();
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   std::vector<double> values(report.samples);

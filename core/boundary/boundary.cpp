@@ -8,7 +8,6 @@
 #include "core/boundary/enclosure.h"
 #include "core/data/rule.h"
 #include "core/exact/predicates.h"
-#include "core/mesh/exterior_edges.h"
 
 namespace raycone {
 namespace {
@@ -42,14 +41,13 @@ bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return on_triangl
 
 }  // namespace
 
-Boundary::Boundary(const TriangleMesh& mesh) {
-  add_chains(mesh);
+Boundary::Boundary(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
+  add_chains(mesh, edges);
   find_plane();
 }
 
 // The steps of edges along the rays are not joined.
-void Boundary::add_chains(const TriangleMesh& mesh) {
-  const std::vector<ExteriorEdge> edges = raycone::exterior_edges(mesh);
+void Boundary::add_chains(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
   edges_ = edges.size();
   const ExteriorEdge* previous = nullptr;
   for (const ExteriorEdge& e : edges) {

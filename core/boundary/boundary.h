@@ -10,6 +10,7 @@
 
 #include "core/boundary/chain.h"
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
 
 namespace raycone {
 
@@ -20,8 +21,9 @@ struct DirectedEdge {
 
 class Boundary {
  public:
-  // Of a welded mesh.
-  explicit Boundary(const TriangleMesh& mesh);
+  // Of a welded mesh with these exterior_edges().
+  Boundary(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
+  explicit Boundary(const TriangleMesh& mesh) : Boundary(mesh, raycone::exterior_edges(mesh)) {}
 
   // Number of undirected edges; 0: the mesh is closed.
   [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
@@ -43,7 +45,7 @@ class Boundary {
   static constexpr double kMostDoubt = 0.125;
 
  private:
-  void add_chains(const TriangleMesh& mesh);
+  void add_chains(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
   void find_plane();
   [[nodiscard]] bool lies_in_plane_of_edges(const Vec3& q) const;
 

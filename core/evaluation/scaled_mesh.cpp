@@ -35,9 +35,9 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
     : scale_(scale),
       inverse_(-scale.exponent()),
       least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
-      options_(options),
+      options_{options.ray_engine, options.level, options.summation},
       mesh_(in_scale(std::move(mesh), scale)),
-      boundary_(mesh_),
+      boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
       term_(boundary_term(mesh_, boundary_, options)) {}
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }

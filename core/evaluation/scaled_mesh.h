@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/boundary/boundary.h"
 #include "core/boundary/boundary_term.h"
@@ -31,6 +32,8 @@ struct EvaluatorOptions {
   RayEngine ray_engine = RayEngine::kScan;
   SimdLevel level = SimdLevel::kBest;
   Summation summation = Summation::kCheapest;
+  // Of the mesh, where known: scaling changes neither the edges nor their order. Used by the constructor alone.
+  const std::vector<ExteriorEdge>* edges = nullptr;
 };
 
 // How winding numbers change from place to place: by integers where rays begin or cease to cross triangles of the mesh,

@@ -34,10 +34,11 @@ struct WindingNumberEvaluator::Implementation : ScaledMeshes {
 };
 
 WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level,
-                                               Summation summation) {
+                                               Summation summation, const std::vector<ExteriorEdge>* edges) {
   check_counts(mesh);
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny; and below
-  implementation_ = std::make_unique<Implementation>(std::move(mesh), EvaluatorOptions{engine, level, summation});
+  implementation_ =
+      std::make_unique<Implementation>(std::move(mesh), EvaluatorOptions{engine, level, summation, edges});
 }
 WindingNumberEvaluator::~WindingNumberEvaluator() = default;
 WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept = default;

@@ -47,13 +47,17 @@ enum class Summation {
   kTriangles,  // the solid angles of all triangles
 };
 
+struct ExteriorEdge;
+
 class WindingNumberEvaluator {
  public:
   // Prepares what depends on the mesh alone, except what prepare_points() does. Preconditions: `mesh` is welded
-  // (core/mesh/weld.h), and the vertices that triangles use are finite. All values of a mesh without triangles are 0.
+  // (core/mesh/weld.h), and the vertices that triangles use are finite. `edges`: exterior_edges(mesh), to spare finding
+  // them again (core/mesh/exterior_edges.h). All values of a mesh without triangles are 0.
   // Throws std::bad_alloc, and std::length_error for more than kMaxTriangles.
   explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
-                                  SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest);
+                                  SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest,
+                                  const std::vector<ExteriorEdge>* edges = nullptr);
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <cmath>
 
 #include "core/exact/predicates.h"
 #include "core/machine/floating_point.h"
+#include "core/mesh/components.h"
 #include "core/mesh/edge_uses.h"
 
 namespace raycone {
@@ -35,27 +36,6 @@ std::uint64_t count_degenerate(const TriangleMesh& mesh) {
   }));
 }
 
-std::uint64_t count_components(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Triangle& t : mesh.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
-  }
-  std::vector<bool> counted(mesh.vertices.size(), false);
-  std::uint64_t components = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const std::uint32_t r = root(t[0]);
-    components += !counted[r];
-    counted[r] = true;
-  }
-  return components;
-}
-
 // Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
 double signed_volume(const TriangleMesh& mesh) {
   using Wide = long double;  // for its exponents, too: no product of three coordinates leaves them
@@ -73,6 +53,20 @@ double signed_volume(const TriangleMesh& mesh) {
   return static_cast<double>(sum / 6);
 }
 
+// Wide for the exponents of squares. Corners are moved to the first one before they are multiplied.
+double surface_area(const TriangleMesh& mesh) {
+  using Wide = long double;
+  Wide sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]], &r = mesh.vertices[t[2]];
+    const Wide ax = Wide(q.x) - p.x, ay = Wide(q.y) - p.y, az = Wide(q.z) - p.z;
+    const Wide bx = Wide(r.x) - p.x, by = Wide(r.y) - p.y, bz = Wide(r.z) - p.z;
+    const Wide x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    sum += std::sqrt(x * x + y * y + z * z);
+  }
+  return static_cast<double>(sum / 2);
+}
+
 }  // namespace
 
 MeshStatistics mesh_statistics(const TriangleMesh& welded) {
@@ -80,7 +74,8 @@ MeshStatistics mesh_statistics(const TriangleMesh& welded) {
   count_edges(welded, statistics);
   statistics.degenerate_faces = count_degenerate(welded);
   statistics.duplicate_faces = count_duplicates(welded);
-  statistics.components = count_components(welded);
+  statistics.components = components_of(welded).count;
+  statistics.surface_area = surface_area(welded);
   if (statistics.closed()) statistics.signed_volume = signed_volume(welded);
   return statistics;
 }

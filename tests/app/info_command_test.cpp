@@ -29,7 +29,8 @@ TEST_F(InfoCommand, JsonDescribesAClosedMesh) {
   EXPECT_EQ(info(kCube), nlohmann::ordered_json::parse(R"({
     "faces": 12, "vertices": 8, "welded_vertices": 8, "exterior_edges": 0, "closed": true, "components": 1,
     "degenerate_faces": 0, "duplicate_faces": 0, "nonmanifold_edges": 0, "inconsistent_edges": 0,
-    "bounds": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], "signed_volume": 1.0, "skipped_faces": 0})"));
+    "bounds": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], "signed_volume": 1.0, "surface_area": 6.0, "skipped_faces": 0,
+    "opposite_duplicate_faces": 0, "warnings": [], "warning_lines": []})"));
 }
 
 TEST_F(InfoCommand, JsonDescribesAnOpenMeshWithFlaws) {

@@ -1,0 +1,75 @@
+#include "app/run/mesh_warnings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "app/options/field_options.h"
+
+namespace raycone {
+namespace {
+
+std::string counted_as(std::uint64_t count, const char* one, const char* several) {
+  return std::to_string(count) + " " + (count == 1 ? one : several);
+}
+
+Warning reversed_warning(const MeshDefects& defects) {
+  const std::string help = "; --orient auto turns ";
+  if (defects.negative_volume) {
+    return {"reversed", "the mesh is closed, but its volume is negative" + help + "it outward"};
+  }
+  return {"reversed", counted_as(defects.reversed_components, "closed component that no other surrounds has",
+                                 "closed components that no other surrounds have") +
+                          " a negative volume" + help + (defects.reversed_components == 1 ? "it" : "them") +
+                          " outward"};
+}
+
+}  // namespace
+
+std::vector<Warning> warnings_about(const MeshDefects& defects) {
+  std::vector<Warning> warnings;
+  if (defects.negative_volume || defects.reversed_components > 0) warnings.push_back(reversed_warning(defects));
+  if (const std::uint64_t edges = defects.inconsistent_edges) {
+    warnings.push_back({"inconsistent", counted_as(edges, "edge", "edges") +
+                                            " between two faces that run along it in the same direction; --orient "
+                                            "auto turns faces to agree"});
+  }
+  if (const std::uint64_t pairs = defects.cancelling_pairs) {
+    warnings.push_back({"opposite-duplicates", counted_as(pairs, "pair", "pairs") +
+                                                   " of faces with the same corners and opposite orientations, which "
+                                                   "cancel; --orient auto keeps one of each"});
+  }
+  return warnings;
+}
+
+std::uint64_t triangles_with_corners(const TriangleMesh& mesh) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(mesh.triangles, [&](const Triangle& t) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    return a != b && b != c && c != a;
+  }));
+}
+
+Warning weld_collapsed(std::uint64_t faces, double distance) {
+  char help[96];
+  std::snprintf(help, sizeof help, " removed by --weld %g, which made corners one; a smaller distance keeps %s",
+                distance, faces == 1 ? "it" : "them");
+  return {"weld-collapsed", counted_as(faces, "face", "faces") + help};
+}
+
+bool should_have_inside(const Box& box, const Lattice& lattice) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = lattice.spacing[axis];
+    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    const double last = lattice.coordinate(axis, lattice.index_max(axis));
+    if (box.lower[axis] == box.upper[axis]) return false;
+    if (first > box.lower[axis] + step || last < box.upper[axis] - step) return false;
+  }
+  return true;
+}
+
+Warning nothing_inside(const Rule& rule) {
+  return {"empty", "no sample is inside by the rule " + name_of(rule) +
+                       "; --orient auto helps where faces are reversed, a finer lattice where the mesh is thin"};
+}
+
+}  // namespace raycone

@@ -1,0 +1,32 @@
+// Warnings about a mesh that is read well, but gives results that its owner may not expect.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/lattice.h"
+#include "core/data/rule.h"
+#include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
+#include "core/mesh/mesh_defects.h"
+
+namespace raycone {
+
+// `reversed`, `inconsistent`, `opposite-duplicates`, in this order, those that apply.
+[[nodiscard]] std::vector<Warning> warnings_about(const MeshDefects& defects);
+
+// The number of triangles that have three corners at different positions: less of it after welding is what a distance
+// took away.
+[[nodiscard]] std::uint64_t triangles_with_corners(const TriangleMesh& mesh);
+
+// `weld-collapsed`: `faces` (not 0) lost their area to `distance`.
+[[nodiscard]] Warning weld_collapsed(std::uint64_t faces, double distance);
+
+// Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
+// own, is not flat), and the lattice reaches around it but for a voxel.
+[[nodiscard]] bool should_have_inside(const Box& box, const Lattice& lattice);
+
+// `empty`
+[[nodiscard]] Warning nothing_inside(const Rule& rule);
+
+}  // namespace raycone

@@ -1,0 +1,35 @@
+#include "core/mesh/components.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace raycone {
+
+Components components_of(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  std::vector<bool> used(mesh.vertices.size(), false);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  // Parents are lower than their children, so that a pass by increasing vertices finds all roots.
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    if (parent[a] == parent[b]) return;
+    const std::uint32_t i = root(a), j = root(b);
+    parent[std::max(i, j)] = std::min(i, j);
+  };
+  for (const Triangle& t : mesh.triangles) {
+    join(t[0], t[1]);
+    join(t[0], t[2]);
+    for (const std::uint32_t v : t) used[v] = true;
+  }
+  Components components{0, std::vector<std::uint32_t>(mesh.vertices.size(), Components::kUnused)};
+  for (std::size_t v = 0; v < parent.size(); ++v) {
+    if (!used[v]) continue;
+    components.of_vertex[v] = parent[v] == v ? components.count++ : components.of_vertex[parent[v]];
+  }
+  return components;
+}
+
+}  // namespace raycone

@@ -1,0 +1,26 @@
+// What makes the winding numbers of a mesh other than its owner expects, although they are right.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
+
+namespace raycone {
+
+struct MeshDefects {
+  std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that run along them in the same direction
+  std::uint64_t cancelling_pairs = 0;    // pairs of faces with the same three vertices and opposite orientations
+  // Components (faces joined through vertices) that are closed, have a negative volume, and lie in no other closed
+  // component: a cavity is none.
+  std::uint64_t reversed_components = 0;
+  bool negative_volume = false;  // the mesh as a whole is closed, and its volume is negative
+};
+
+// Defects of a welded mesh with these exterior_edges(). A volume counts as negative where rounding cannot have made it
+// so: one that is 0, as of a double-sided sheet, never does. The result does not depend on the order of faces.
+// Precondition: all vertices of triangles finite. Thread-safe.
+[[nodiscard]] MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges);
+
+}  // namespace raycone

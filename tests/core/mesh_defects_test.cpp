@@ -1,0 +1,132 @@
+// Reversed components, inconsistent edges and faces that cancel: meshes that have them, and near misses.
+#include "core/mesh/mesh_defects.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/mesh/weld.h"
+#include "tests/support/shapes.h"
+
+namespace raycone::test {
+namespace {
+
+const TriangleMesh kCubeMesh = box_mesh({0, 0, 0}, {1, 1, 1});
+
+MeshDefects defects_of(const TriangleMesh& mesh) {
+  const TriangleMesh welded = weld(mesh, {});
+  return mesh_defects(welded, exterior_edges(welded));
+}
+
+std::uint64_t reversed_in(const TriangleMesh& mesh) { return defects_of(mesh).reversed_components; }
+
+TriangleMesh cube_at(double lower, double upper) { return box_mesh({lower, lower, lower}, {upper, upper, upper}); }
+
+void expect_none(const TriangleMesh& mesh) {
+  const MeshDefects defects = defects_of(mesh);
+  EXPECT_EQ(defects.inconsistent_edges, 0U);
+  EXPECT_EQ(defects.cancelling_pairs, 0U);
+  EXPECT_EQ(defects.reversed_components, 0U);
+  EXPECT_FALSE(defects.negative_volume);
+}
+
+TEST(MeshDefects, AreAbsentFromGoodMeshes) {
+  expect_none({});
+  expect_none(kCubeMesh);
+  expect_none(sphere(20));
+  expect_none(open_box());
+  expect_none(reversed(open_box()));  // open: the volume is that of nothing
+  expect_none(joined(kCubeMesh, cube_at(3, 4)));
+}
+
+TEST(MeshDefects, ClosedMeshOfNegativeVolumeIsReversed) {
+  const MeshDefects defects = defects_of(reversed(kCubeMesh));
+  EXPECT_EQ(defects.reversed_components, 1U);
+  EXPECT_TRUE(defects.negative_volume);
+}
+
+TEST(MeshDefects, OneOfTwoSolidsMayBeReversed) {
+  const MeshDefects defects = defects_of(joined(cube_at(0, 4), reversed(cube_at(5, 6))));
+  EXPECT_EQ(defects.reversed_components, 1U);
+  EXPECT_FALSE(defects.negative_volume);
+  EXPECT_EQ(reversed_in(joined(reversed(cube_at(0, 1)), reversed(cube_at(5, 6)))), 2U);
+}
+
+TEST(MeshDefects, CavityIsNotReversed) {
+  expect_none(joined(cube_at(0, 4), reversed(cube_at(1, 2))));
+  expect_none(joined(cube_at(0, 4), joined(reversed(cube_at(1, 3)), cube_at(1.5, 2.5))));
+  // Nor is it where it touches the wall from within, at no common vertex.
+  expect_none(joined(cube_at(0, 4), reversed(box_mesh({0, 1, 1}, {2, 2, 2}))));
+  expect_none(joined(cube_at(0, 4), reversed(box_mesh({2, 1, 1}, {4, 2, 2}))));
+}
+
+TEST(MeshDefects, ReversedSolidBesideAWallIsReversed) {
+  // The first touches the cube from outside, the others are level with it.
+  EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({4, 1, 1}, {6, 2, 2})))), 1U);
+  EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({-6, 1, 1}, {-5, 2, 2})))), 1U);
+  EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({-6, 0, 0}, {-5, 2, 2})))), 1U);
+}
+
+TEST(MeshDefects, WhollyReversedHollowSolidIsReversedOnce) {
+  const MeshDefects defects = defects_of(reversed(joined(cube_at(0, 4), reversed(cube_at(1, 2)))));
+  EXPECT_EQ(defects.reversed_components, 1U);
+  EXPECT_TRUE(defects.negative_volume);
+}
+
+TEST(MeshDefects, ClosedComponentOfAnOpenMeshMayBeReversed) {
+  EXPECT_EQ(reversed_in(joined(open_box(), reversed(cube_at(5, 6)))), 1U);
+  EXPECT_FALSE(defects_of(joined(open_box(), reversed(cube_at(5, 6)))).negative_volume);
+  EXPECT_EQ(reversed_in(joined(open_box(), reversed(cube_at(0.25, 0.5)))), 1U) << "what is open surrounds nothing";
+}
+
+TEST(MeshDefects, InconsistentAreTwoFacesAlongAnEdge) {
+  EXPECT_EQ(defects_of(fan(2, 2)).inconsistent_edges, 1U);
+  EXPECT_EQ(defects_of(fan(2, 1)).inconsistent_edges, 0U);
+  EXPECT_EQ(defects_of(fan(4, 3)).inconsistent_edges, 0U) << "the same net count, of more faces";
+  TriangleMesh flipped = kCubeMesh;
+  std::swap(flipped.triangles[0][0], flipped.triangles[0][1]);
+  EXPECT_EQ(defects_of(flipped).inconsistent_edges, 3U);
+}
+
+TEST(MeshDefects, OppositeFacesCancelInPairs) {
+  const MeshDefects doubled = defects_of(joined(kCubeMesh, reversed(kCubeMesh)));
+  EXPECT_EQ(doubled.cancelling_pairs, 12U);
+  EXPECT_EQ(doubled.reversed_components, 0U) << "the volume is 0";
+  EXPECT_EQ(doubled.inconsistent_edges, 0U);
+  EXPECT_EQ(defects_of(joined(kCubeMesh, kCubeMesh)).cancelling_pairs, 0U) << "these do not cancel";
+  const Triangle t{0, 1, 2}, turned{1, 2, 0}, opposite{0, 2, 1}, segment{0, 1, 1}, segment_back{1, 0, 1};
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_EQ(defects_of({corners, {t, opposite, turned}}).cancelling_pairs, 1U);
+  EXPECT_EQ(defects_of({corners, {t, opposite, turned, opposite, opposite}}).cancelling_pairs, 2U);
+  EXPECT_EQ(defects_of({corners, {segment, segment_back}}).cancelling_pairs, 0U) << "they have no orientation";
+}
+
+TEST(MeshDefects, AreThoseOfAnyScaleAndSignOfZero) {
+  for (const double scale : {1e-320, 1e-300, 1e-100, 1e100, 1e307}) {
+    const Vec3 factors{scale, scale, scale};
+    EXPECT_EQ(reversed_in(moved(reversed(sphere(8)), factors, {0, 0, 0})), 1U) << scale;
+    expect_none(moved(sphere(8), factors, {0, 0, 0}));
+  }
+  EXPECT_EQ(reversed_in(moved(reversed(kCubeMesh), {1, 1, 1}, {1e12, -1e12, 1e12})), 1U);
+  TriangleMesh zeros = reversed(kCubeMesh);
+  for (Vec3& v : zeros.vertices) v = {v.x == 0 ? -0.0 : v.x, v.y == 0 ? -0.0 : v.y, v.z};
+  EXPECT_EQ(defects_of(joined(kCubeMesh, zeros)).cancelling_pairs, 12U);
+}
+
+TEST(MeshDefects, DoNotDependOnTheOrderOfFaces) {
+  Random random(7);
+  const TriangleMesh mesh =
+      joined(joined(cube_at(0, 4), reversed(cube_at(1, 2))), joined(reversed(cube_at(5, 6)), reversed(sphere(6))));
+  const MeshDefects defects = defects_of(mesh);
+  for (int n = 0; n < 20; ++n) {
+    const MeshDefects other = defects_of(shuffled(mesh, random));
+    EXPECT_EQ(other.reversed_components, defects.reversed_components);
+    EXPECT_EQ(other.cancelling_pairs, defects.cancelling_pairs);
+  }
+}
+
+}  // namespace
+}  // namespace raycone::test

@@ -22,16 +22,6 @@ std::string readable(std::uint64_t number) {
   return digits;
 }
 
-std::string printed(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
-
-std::string printed(const Vec3& point) {
-  return "(" + printed(point.x) + ", " + printed(point.y) + ", " + printed(point.z) + ")";
-}
-
 std::string readable_seconds(double seconds) {
   char text[48];
   if (seconds < 0.1) {
@@ -70,7 +60,22 @@ class Table {
   std::string text_;
 };
 
+std::string intersections_of(const IntersectionInfo& found) {
+  if (found.pairs) return readable(*found.pairs) + " pairs of faces";
+  return "some; --intersections counts them";
+}
+
 }  // namespace
+
+std::string printed_number(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
+}
+
+std::string printed_point(const Vec3& point) {
+  return "(" + printed_number(point.x) + ", " + printed_number(point.y) + ", " + printed_number(point.z) + ")";
+}
 
 std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const MeshStatistics& s = info.statistics;
@@ -85,9 +90,10 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("non-manifold edges", readable(s.nonmanifold_edges) + " of more than two faces");
   table.row("degenerate faces", readable(s.degenerate_faces) + " of zero area");
   table.row("duplicate faces", readable(s.duplicate_faces));
-  table.row("bounds", printed(info.bounds.lower) + " to " + printed(info.bounds.upper));
-  table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
-  table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
+  if (info.intersections) table.row("self-intersections", intersections_of(*info.intersections));
+  table.row("bounds", printed_point(info.bounds.lower) + " to " + printed_point(info.bounds.upper));
+  table.row("size", printed_point(info.bounds.upper - info.bounds.lower) + " world units");
+  table.row("signed volume", s.signed_volume ? printed_number(*s.signed_volume) + " cubic world units" : "none, open");
   const std::string on_threads = threads == 1 ? "1 thread" : std::to_string(threads) + " threads";
   std::string heading = "cost on " + on_threads;
   for (const Lattice& lattice : costed.lattices) table.row(std::exchange(heading, ""), cost_of(lattice, info, threads));

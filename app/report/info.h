@@ -12,6 +12,12 @@
 
 namespace raycone {
 
+// Pairs of faces that intersect, as far as they were looked for.
+struct IntersectionInfo {
+  std::optional<std::uint64_t> pairs;
+  bool any = false;
+};
+
 struct MeshInfo {
   std::string mesh;  // as named on the command line
   std::uint64_t faces = 0;
@@ -19,7 +25,8 @@ struct MeshInfo {
   std::uint64_t welded_vertices = 0;
   std::uint64_t skipped_faces = 0;  // of one or two corners
   Box bounds;
-  MeshStatistics statistics;  // of the welded mesh
+  MeshStatistics statistics;                      // of the welded mesh
+  std::optional<IntersectionInfo> intersections;  // where asked for
 };
 
 // Lattices whose cost the text tells.
@@ -27,6 +34,10 @@ struct CostedLattices {
   std::vector<Lattice> lattices;
   std::optional<std::string> no_more;  // why there are no others
 };
+
+// "0.1", "(0, 1, 0.5)": nine digits.
+[[nodiscard]] std::string printed_number(double number);
+[[nodiscard]] std::string printed_point(const Vec3& point);
 
 // Aligned text for people; the costs are those of `threads` threads.
 [[nodiscard]] std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads);

@@ -59,9 +59,9 @@ bool meets_an_edge(const Segment3& s, const Corners3& t) {
   return std::ranges::any_of(edges_of(t), [&s](const Segment3& edge) { return segments_meet(s, edge); });
 }
 
-// Whether a closed segment meets the closed triangle; either may be of lower dimension.
+// Whether a closed segment meets the closed triangle; either may be of lower dimension: a triangle without area has all
+// points in its plane.
 bool meets(const Segment3& s, const Corners3& t) {
-  if (is_flat(t)) return meets_an_edge(s, t);
   const int from = plane_side(t[0], t[1], t[2], s.from), to = plane_side(t[0], t[1], t[2], s.to);
   if (from * to > 0) return false;
   if (from == 0 && to == 0) return on_triangle(t[0], t[1], t[2], s.from) || meets_an_edge(s, t);
@@ -75,10 +75,26 @@ bool meets(const Segment3& s, const Corners3& t) {
   return least >= 0 || most <= 0;
 }
 
-// Whether all corners of `s` lie strictly on one side of the plane of `t`.
-bool lies_beside(const Corners3& s, const Corners3& t) {
-  const int side = plane_side(t[0], t[1], t[2], s[0]);
-  return side != 0 && plane_side(t[0], t[1], t[2], s[1]) == side && plane_side(t[0], t[1], t[2], s[2]) == side;
+// On which sides of the plane of `t` the corners of `s` lie.
+struct Sides {
+  int least, most;
+  [[nodiscard]] bool is_one() const { return least == most && least != 0; }
+  [[nodiscard]] bool is_none() const { return least == 0 && most == 0; }
+};
+
+Sides sides_of(const Corners3& s, const Corners3& t) {
+  const auto [least, most] = std::minmax(
+      {plane_side(t[0], t[1], t[2], s[0]), plane_side(t[0], t[1], t[2], s[1]), plane_side(t[0], t[1], t[2], s[2])});
+  return {least, most};
+}
+
+// Whether the line of an edge of `s` has all of `t` strictly on its outer side, seen along an axis.
+bool edge_separates(int axis, const Corners3& s, const Corners3& t) {
+  const int whole = orientation_in_plane(axis, s[0], s[1], s[2]);
+  return std::ranges::any_of(edges_of(s), [&](const Segment3& edge) {
+    return std::ranges::all_of(
+        t, [&](const Vec3& p) { return orientation_in_plane(axis, edge.from, edge.to, p) * whole < 0; });
+  });
 }
 
 bool any_edge_meets(const Corners3& s, const Corners3& t) {
@@ -86,7 +102,14 @@ bool any_edge_meets(const Corners3& s, const Corners3& t) {
 }
 
 bool triangles_meet(const Corners3& s, const Corners3& t) {
-  return !lies_beside(s, t) && !lies_beside(t, s) && (any_edge_meets(s, t) || any_edge_meets(t, s));
+  const Sides sides = sides_of(s, t);
+  if (sides.is_one() || sides_of(t, s).is_one()) return false;
+  if (sides.is_none() && !is_flat(s) && !is_flat(t)) {
+    // Convex polygons are apart where an edge's line tells them apart. Flat parts of a mesh have many such pairs.
+    const int axis = axis_of(t);
+    return !edge_separates(axis, s, t) && !edge_separates(axis, t, s);
+  }
+  return any_edge_meets(s, t) || any_edge_meets(t, s);
 }
 
 // Whether b lies beyond or on the way from `apex` to a, on one line with them. Neither is the apex.

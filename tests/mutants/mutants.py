@@ -318,8 +318,9 @@ MUTANTS = [
     Mutant("planes_without_overlap", "an overlap in one plane counts", [
         ("core/intersections/triangle_pair.cpp",
          "return on_triangle(t[0], t[1], t[2], s.from) || meets_an_edge(s, t);", "return false;")]),
-    Mutant("segments_are_triangles", "a triangle without area has no plane", [
-        ("core/intersections/triangle_pair.cpp", "if (is_flat(t)) return meets_an_edge(s, t);\n", "")]),
+    Mutant("sides_touch_unseen", "triangles in one plane that touch count", [
+        ("core/intersections/triangle_pair.cpp", "orientation_in_plane(axis, edge.from, edge.to, p) * whole < 0;",
+         "orientation_in_plane(axis, edge.from, edge.to, p) * whole <= 0;")]),
     Mutant("segments_leave_any_way", "a segment meets a neighbour where it leaves the corner within it", [
         ("core/intersections/triangle_pair.cpp", "if (is_flat(s)) return starts_within(s[1], t) || starts_within(s[2], t);\n",
          "")]),

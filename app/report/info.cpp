@@ -61,7 +61,7 @@ class Table {
 };
 
 std::string intersections_of(const IntersectionInfo& found) {
-  if (found.pairs) return readable(*found.pairs) + " pairs of faces";
+  if (found.pairs) return readable(*found.pairs) + (*found.pairs == 1 ? " pair of faces" : " pairs of faces");
   return "some; --intersections counts them";
 }
 

@@ -17,7 +17,7 @@ constexpr Colour kInconsistent{0, 114, 178};
 constexpr Colour kExterior{213, 94, 0};
 
 // A bar's radius: of the box's diagonal, and at most of the edge's length.
-constexpr double kRadiusOfBox = 1e-3;
+constexpr double kRadiusOfBox = 2e-3;
 constexpr double kRadiusOfEdge = 0.1;
 
 Colour colour_of(const EdgeUse& edge) {

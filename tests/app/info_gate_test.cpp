@@ -149,7 +149,7 @@ TEST_F(InfoGate, SelfIntersectionsAreCountedWhereAskedFor) {
     const CommandResult result = run_raycone(arguments);
     EXPECT_EQ(nlohmann::json::parse(result.out)["self_intersections"], 1) << result.err;
   }
-  EXPECT_NE(run_raycone({"info", crossing_, "--intersections"}).out.find("  self-intersections   1 pairs of faces\n"),
+  EXPECT_NE(run_raycone({"info", crossing_, "--intersections"}).out.find("  self-intersections   1 pair of faces\n"),
             std::string::npos);
   EXPECT_NE(run_raycone({"info", crossing_, "--require", "embedded"})
                 .out.find("  self-intersections   some; --intersections counts them\n"),

@@ -12,10 +12,9 @@
 
 namespace raycone {
 
-// Pairs of faces that intersect, as far as they were looked for.
+// Pairs of faces that intersect.
 struct IntersectionInfo {
-  std::optional<std::uint64_t> pairs;
-  bool any = false;
+  std::optional<std::uint64_t> pairs;  // nothing: there are some, which were not counted
 };
 
 struct MeshInfo {

@@ -68,7 +68,7 @@ class InfoRun {
     info.bounds = bounding_box(mesh);
     info.statistics = mesh_statistics(mesh);
     const FoundIntersections intersections = find_intersections(mesh);
-    if (wants_intersections()) info.intersections = {intersections.pairs, intersections.first.has_value()};
+    if (wants_intersections()) info.intersections = {intersections.pairs};
     print(listing_.entry(info, costed_lattices(info.bounds), limits_.threads()));
     return judge(options.path, unmet_requirements(command_.required, mesh, info.statistics, intersections));
   }

@@ -42,9 +42,9 @@ ExitCode dispatch(const EvaluatingCommand& command) {
 }
 
 ExitCode dispatch(const InfoCommand& command) {
-  within_limits(command.run, command.mesh.path,
-                [&command](const RunLimits& limits) { print(run_info(command, limits)); });
-  return ExitCode::kDone;
+  const std::size_t meshes = command.meshes.size();
+  const std::string name = meshes == 1 ? command.meshes.front().path : std::to_string(meshes) + " meshes";
+  return within_limits(command.run, name, [&command](const RunLimits& limits) { return run_info(command, limits); });
 }
 
 ExitCode dispatch(const BatchCommand& command) { return run_batch(command); }

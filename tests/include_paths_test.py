@@ -13,7 +13,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # docs/architecture.md, "Who may include whom": a folder sees itself, folders above it in its list, and those named
 # here.
 STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/evaluation"]
-BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/crossings"],
+BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings"],
+          "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]
@@ -25,7 +26,7 @@ APP = {"app/text": [],
        "app/command_line": ["app/options"],
        "app/report": ["app/process", "io/mesh", "core/evaluation"],
        "app/picture": ["core/data"],
-       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance"],
+       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance", "core/intersections"],
        "app/batch": ["app/run"],
        "app/manual": ["app/command_line"]}
 

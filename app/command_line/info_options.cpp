@@ -1,21 +1,84 @@
 #include "app/command_line/info_options.h"
 
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
 #include "app/command_line/common_options.h"
+#include "app/process/usage_error.h"
+#include "app/text/parse_value.h"
 
 namespace raycone {
+namespace {
+
+constexpr std::pair<std::string_view, Requirement> kRequirements[] = {
+    {"closed", Requirement::kClosed},     {"oriented", Requirement::kOriented},
+    {"outward", Requirement::kOutward},   {"manifold", Requirement::kManifold},
+    {"embedded", Requirement::kEmbedded}, {"no-duplicates", Requirement::kNoDuplicates}};
+constexpr const char* kListed = "a list of closed, oriented, outward, manifold, embedded and no-duplicates, each once";
+
+std::vector<Requirement> parse_requirements(const std::string& text) {
+  std::vector<Requirement> required;
+  for (const std::string_view word : items_of(text)) {
+    const auto known = std::ranges::find(kRequirements, word, [](const auto& one) { return one.first; });
+    if (known == std::end(kRequirements) || std::ranges::count(required, known->second) > 0) {
+      invalid("--require", text, kListed);
+    }
+    required.push_back(known->second);
+  }
+  return required;
+}
+
+std::vector<MeshOptions> parse_meshes(const Values& values) {
+  std::vector<MeshOptions> meshes;
+  for (const std::string& path : values.texts("MESH")) meshes.push_back(parse_mesh(values.with("MESH", {path})));
+  if (std::ranges::count(meshes, "-", &MeshOptions::path) > 1) {
+    throw UsageError("-: standard input can be read once, expected one -");
+  }
+  return meshes;
+}
+
+InfoFormat parse_info_format(const Values& values) {
+  values.exclude("--json", {"--csv"});
+  return values.given("--json") ? InfoFormat::kJson : values.given("--csv") ? InfoFormat::kCsv : InfoFormat::kText;
+}
+
+}  // namespace
 
 CommandSpec info_spec() {
+  OperandSpec meshes = mesh_operand();
+  meshes.count = OperandCount::kMany;
   return {.name = "info",
-          .description = "Describe a mesh and estimate the cost of evaluating it",
-          .operands = {mesh_operand()},
-          .groups = {mesh_group(), {"Output", {{"--json", "", "Print JSON"}}}, run_group()},
+          .description = "Describe meshes, check them, and estimate the cost of evaluating them",
+          .operands = {meshes},
+          .groups = {mesh_group(),
+                     {"Output",
+                      {{"--json", "", "Print JSON; of several meshes an array"},
+                       {"--csv", "", "Print a table with one row a mesh"},
+                       {"--intersections", "", "Count pairs of faces that intersect"},
+                       {"--require", "closed|oriented|outward|manifold|embedded|no-duplicates[,...]",
+                        "Exit with 2 unless all of these hold for all meshes"},
+                       {"--mark", "FILE.ply", "Write the mesh with its flaws in colour"},
+                       {"--no-clobber", "", "Never replace an existing file (--mark)"}}},
+                     run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",
-                       "raycone info model.glb --up y-to-z --weld 1e-6"},
+                       "raycone info *.stl --csv > meshes.csv",
+                       "raycone info part.stl --require closed,outward,embedded --mark flaws.ply"},
           .later = {{"--normalize"}, {}}};
 }
 
 Command parse_info(const Values& values) {
-  return InfoCommand{parse_mesh(values), parse_run(values), values.given("--json")};
+  InfoCommand command;
+  command.meshes = parse_meshes(values);
+  command.run = parse_run(values);
+  command.format = parse_info_format(values);
+  if (values.given("--require")) command.required = parse_requirements(values.text("--require"));
+  command.intersections = values.given("--intersections");
+  command.no_clobber = values.given("--no-clobber");
+  if (values.given("--mark")) command.mark = values.text("--mark");
+  if (command.mark && command.meshes.size() > 1) throw UsageError("--mark " + *command.mark + ": expected one mesh");
+  if (command.no_clobber && !command.mark) throw UsageError("--no-clobber: expected --mark, no other file is written");
+  return command;
 }
 
 }  // namespace raycone

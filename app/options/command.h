@@ -5,19 +5,12 @@
 #include <variant>
 
 #include "app/options/batch_command.h"
+#include "app/options/info_command.h"
 #include "app/options/lattice_command.h"
-#include "app/options/mesh_options.h"
 #include "app/options/points_command.h"
-#include "app/options/run_options.h"
 #include "app/options/slice_command.h"
 
 namespace raycone {
-
-struct InfoCommand {
-  MeshOptions mesh;
-  RunOptions run;
-  bool json = false;
-};
 
 // --help and --version: their text is a result.
 struct PrintCommand {

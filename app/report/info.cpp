@@ -23,16 +23,6 @@ std::string readable(std::uint64_t number) {
   return digits;
 }
 
-std::string printed(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
-
-std::string printed(const Vec3& point) {
-  return "(" + printed(point.x) + ", " + printed(point.y) + ", " + printed(point.z) + ")";
-}
-
 std::string readable_seconds(double seconds) {
   char text[48];
   if (seconds < 0.1) {
@@ -71,7 +61,22 @@ class Table {
   std::string text_;
 };
 
+std::string intersections_of(const IntersectionInfo& found) {
+  if (found.pairs) return readable(*found.pairs) + (*found.pairs == 1 ? " pair of faces" : " pairs of faces");
+  return "some; --intersections counts them";
+}
+
 }  // namespace
+
+std::string printed_number(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
+}
+
+std::string printed_point(const Vec3& point) {
+  return "(" + printed_number(point.x) + ", " + printed_number(point.y) + ", " + printed_number(point.z) + ")";
+}
 
 std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const MeshStatistics& s = info.statistics;
@@ -87,10 +92,11 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("degenerate faces", readable(s.degenerate_faces) + " of zero area");
   table.row("duplicate faces",
             readable(s.duplicate_faces) + ", pairs that cancel " + readable(info.opposite_duplicate_faces));
-  table.row("bounds", printed(info.bounds.lower) + " to " + printed(info.bounds.upper));
-  table.row("size", printed(info.bounds.upper - info.bounds.lower) + " world units");
-  table.row("surface area", printed(s.surface_area) + " square world units");
-  table.row("signed volume", s.signed_volume ? printed(*s.signed_volume) + " cubic world units" : "none, open");
+  if (info.intersections) table.row("self-intersections", intersections_of(*info.intersections));
+  table.row("bounds", printed_point(info.bounds.lower) + " to " + printed_point(info.bounds.upper));
+  table.row("size", printed_point(info.bounds.upper - info.bounds.lower) + " world units");
+  table.row("surface area", printed_number(s.surface_area) + " square world units");
+  table.row("signed volume", s.signed_volume ? printed_number(*s.signed_volume) + " cubic world units" : "none, open");
   std::string names;
   for (const Warning& warning : info.warnings) names += (names.empty() ? "" : ", ") + warning.name;
   table.row("warnings", names.empty() ? "none" : names);

@@ -13,6 +13,11 @@
 
 namespace raycone {
 
+// Pairs of faces that intersect.
+struct IntersectionInfo {
+  std::optional<std::uint64_t> pairs;  // nothing: there are some, which were not counted
+};
+
 struct MeshInfo {
   std::string mesh;  // as named on the command line
   std::uint64_t faces = 0;
@@ -23,6 +28,7 @@ struct MeshInfo {
   MeshStatistics statistics;                   // of the welded mesh
   std::uint64_t opposite_duplicate_faces = 0;  // pairs of faces that cancel
   std::vector<Warning> warnings;
+  std::optional<IntersectionInfo> intersections;  // where asked for
 };
 
 // Lattices whose cost the text tells.
@@ -30,6 +36,10 @@ struct CostedLattices {
   std::vector<Lattice> lattices;
   std::optional<std::string> no_more;  // why there are no others
 };
+
+// "0.1", "(0, 1, 0.5)": nine digits.
+[[nodiscard]] std::string printed_number(double number);
+[[nodiscard]] std::string printed_point(const Vec3& point);
 
 // Aligned text for people; the costs are those of `threads` threads.
 [[nodiscard]] std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads);

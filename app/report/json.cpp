@@ -1,7 +1,9 @@
 // By nlohmann-json: it escapes names correctly and prints doubles shortest-round-trip.
 #include "app/report/json.h"
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/process/version.h"
 
@@ -51,6 +53,55 @@ Json lines_of(const std::vector<Warning>& warnings) {
   return lines;
 }
 
+Json to_object(const MeshInfo& info) {
+  const MeshStatistics& s = info.statistics;
+  Json document{{"faces", info.faces},
+                {"vertices", info.vertices},
+                {"welded_vertices", info.welded_vertices},
+                {"exterior_edges", s.exterior_edges},
+                {"closed", s.closed()},
+                {"components", s.components},
+                {"degenerate_faces", s.degenerate_faces},
+                {"duplicate_faces", s.duplicate_faces},
+                {"nonmanifold_edges", s.nonmanifold_edges},
+                {"inconsistent_edges", s.inconsistent_edges},
+                {"bounds", Json::array({to_array(info.bounds.lower), to_array(info.bounds.upper)})},
+                {"signed_volume", nullptr},
+                {"surface_area", s.surface_area},
+                {"skipped_faces", info.skipped_faces},
+                {"opposite_duplicate_faces", info.opposite_duplicate_faces},
+                {"warnings", names_of(info.warnings)},
+                {"warning_lines", lines_of(info.warnings)}};
+  if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
+  if (info.intersections) document["self_intersections"] = info.intersections->pairs.value_or(0);
+  return document;
+}
+
+// The names and values of the columns of a table: `bounds` is six, lists are joined by semicolons.
+struct Cell {
+  std::string name, value;
+};
+std::vector<Cell> cells_of(const Json& document) {
+  const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); };
+  std::vector<Cell> cells;
+  for (const auto& [key, value] : document.items()) {
+    if (key == "bounds") {
+      for (const std::size_t end : {0U, 1U}) {
+        for (const std::size_t axis : {0U, 1U, 2U}) {
+          cells.push_back({std::string(1, "xyz"[axis]) + std::to_string(end), value[end][axis].dump()});
+        }
+      }
+    } else if (value.is_array()) {
+      std::string joined;
+      for (const Json& item : value) joined += (joined.empty() ? "" : ";") + text(item);
+      cells.push_back({key, joined});
+    } else {
+      cells.push_back({key, value.is_null() ? "" : text(value)});
+    }
+  }
+  return cells;
+}
+
 // File names may hold any bytes; JSON is UTF-8.
 std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -83,27 +134,24 @@ std::string to_json(const RunReport& report) {
   return to_text(document);
 }
 
-std::string to_json(const MeshInfo& info) {
-  const MeshStatistics& s = info.statistics;
-  Json document{{"faces", info.faces},
-                {"vertices", info.vertices},
-                {"welded_vertices", info.welded_vertices},
-                {"exterior_edges", s.exterior_edges},
-                {"closed", s.closed()},
-                {"components", s.components},
-                {"degenerate_faces", s.degenerate_faces},
-                {"duplicate_faces", s.duplicate_faces},
-                {"nonmanifold_edges", s.nonmanifold_edges},
-                {"inconsistent_edges", s.inconsistent_edges},
-                {"bounds", Json::array({to_array(info.bounds.lower), to_array(info.bounds.upper)})},
-                {"signed_volume", nullptr},
-                {"surface_area", s.surface_area},
-                {"skipped_faces", info.skipped_faces},
-                {"opposite_duplicate_faces", info.opposite_duplicate_faces},
-                {"warnings", names_of(info.warnings)},
-                {"warning_lines", lines_of(info.warnings)}};
-  if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
-  return to_text(document);
+std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }
+
+std::string to_json_item(const MeshInfo& info) {
+  Json document{{"mesh", info.mesh}};
+  document.update(to_object(info));
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+CsvRecord csv_names(const MeshInfo& info) {
+  CsvRecord names{"mesh"};
+  for (const Cell& cell : cells_of(to_object(info))) names.push_back(cell.name);
+  return names;
+}
+
+CsvRecord csv_values(const MeshInfo& info) {
+  CsvRecord values{info.mesh};
+  for (const Cell& cell : cells_of(to_object(info))) values.push_back(cell.value);
+  return values;
 }
 
 }  // namespace raycone

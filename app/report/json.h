@@ -5,10 +5,19 @@
 
 #include "app/report/info.h"
 #include "app/report/run_report.h"
+#include "app/text/csv.h"
 
 namespace raycone {
 
 [[nodiscard]] std::string to_json(const RunReport& report);
 [[nodiscard]] std::string to_json(const MeshInfo& info);
+
+// An object that names its mesh first, to be put into an array; no line feed at the end.
+[[nodiscard]] std::string to_json_item(const MeshInfo& info);
+
+// The same facts as a row of a table behind the mesh's name: the keys of the JSON, `bounds` as x0 to z1, null as
+// nothing, lists joined by semicolons.
+[[nodiscard]] CsvRecord csv_names(const MeshInfo& info);
+[[nodiscard]] CsvRecord csv_values(const MeshInfo& info);
 
 }  // namespace raycone

@@ -1,18 +1,28 @@
 #include "app/run/run_info.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <new>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "app/process/messages.h"
 #include "app/report/info.h"
-#include "app/report/json.h"
+#include "app/run/info_listing.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_input.h"
+#include "app/run/mesh_marks.h"
+#include "app/run/requirements.h"
 #include "app/run/written_files.h"
 #include "core/data/warning.h"
+#include "core/intersections/self_intersections.h"
 #include "core/mesh/mesh_defects.h"
 #include "core/mesh/mesh_statistics.h"
 #include "io/files/file_error.h"
+#include "io/files/output_file.h"
+#include "io/mesh/write_ply.h"
 
 namespace raycone {
 namespace {
@@ -33,27 +43,114 @@ CostedLattices costed_lattices(const Box& bounds) {
   return costed;
 }
 
+// What is made of one mesh: printed, required, marked.
+class InfoRun {
+ public:
+  InfoRun(const InfoCommand& command, const RunLimits& limits)
+      : command_(command),
+        limits_(limits),
+        listing_(command.format, command.meshes.size() > 1, counts_intersections()),
+        output_("-") {
+    if (command.mark) mark_.emplace(*command.mark, command.no_clobber);
+  }
+
+  // Prints the mesh. Returns whether it is what is required.
+  bool describe(const MeshOptions& options) {
+    const std::vector<WrittenFile> written = files_written(command_);
+    MeshFile file = read_mesh_file(options, limits_);
+    for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
+    MeshInfo info;
+    info.mesh = options.path;
+    info.faces = file.parsed.mesh.triangles.size();
+    info.vertices = file.parsed.mesh.vertices.size();
+    info.skipped_faces = file.parsed.skipped_faces;
+    info.warnings = std::move(file.parsed.warnings);
+    std::vector<ExteriorEdge> edges;
+    const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), options, info.warnings, edges);
+    print_warnings(info.warnings, command_.run, options.path);
+    info.welded_vertices = mesh.vertices.size();
+    info.bounds = bounding_box(mesh);
+    info.statistics = mesh_statistics(mesh);
+    const MeshDefects defects = mesh_defects(mesh, edges);
+    info.opposite_duplicate_faces = defects.cancelling_pairs;
+    const FoundIntersections intersections = find_intersections(mesh);
+    if (wants_intersections()) info.intersections = {intersections.pairs};
+    print(listing_.entry(info, costed_lattices(info.bounds), limits_.threads()));
+    return judge(options.path, unmet_requirements(command_.required, mesh, info.statistics, defects, intersections));
+  }
+
+  void finish() {
+    print(listing_.end());
+    output_.commit();
+  }
+
+ private:
+  [[nodiscard]] bool requires_embedded() const {
+    return std::ranges::count(command_.required, Requirement::kEmbedded) > 0;
+  }
+  [[nodiscard]] bool wants_intersections() const { return command_.intersections || requires_embedded(); }
+  // Text for people need not count what is refused anyway, which may take n^2 time.
+  [[nodiscard]] bool counts_intersections() const {
+    return command_.intersections || (requires_embedded() && command_.format != InfoFormat::kText);
+  }
+
+  FoundIntersections find_intersections(const TriangleMesh& mesh) {
+    if (mark_ || counts_intersections()) {
+      const SelfIntersections all = self_intersections(mesh);
+      if (mark_) write_ply(*mark_, marked_mesh(mesh, all.of_triangle));
+      return {all.first, all.pairs};
+    }
+    if (requires_embedded()) {
+      const std::optional<TrianglePair> first = first_self_intersection(mesh);
+      return {first, first ? std::nullopt : std::optional<std::uint64_t>(0)};
+    }
+    return {};
+  }
+
+  // Entries appear as they come: the next mesh may take long.
+  void print(const std::string& text) {
+    output_.write(text.data(), text.size());
+    output_.flush();
+  }
+
+  static bool judge(const std::string& mesh, const std::string& unmet) {
+    if (!unmet.empty()) print_message(mesh + ": not as required: " + unmet);
+    return unmet.empty();
+  }
+
+  const InfoCommand& command_;
+  const RunLimits& limits_;
+  InfoListing listing_;
+  OutputFile output_;
+  std::optional<OutputFile> mark_;
+};
+
+// Its status; what is wrong with this mesh alone is printed.
+ExitCode status_of(InfoRun& run, const MeshOptions& options, const RunLimits& limits) {
+  try {
+    try {
+      return run.describe(options) ? ExitCode::kDone : ExitCode::kInput;
+    } catch (const std::bad_alloc&) {
+      rethrow_as_limit(options.path, &limits);
+    }
+  } catch (const InputError&) {
+    return report_current_exception();
+  } catch (const LimitError&) {
+    return report_current_exception();
+  }
+}
+
 }  // namespace
 
-std::string run_info(const InfoCommand& command, const RunLimits& limits) {
-  const std::vector<WrittenFile> written{{"-", "output"}};
-  refuse_to_replace_input(written, {command.mesh.path});
-  MeshFile file = read_mesh_file(command.mesh, limits);
-  for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
-  MeshInfo info;
-  info.mesh = command.mesh.path;
-  info.faces = file.parsed.mesh.triangles.size();
-  info.vertices = file.parsed.mesh.vertices.size();
-  info.skipped_faces = file.parsed.skipped_faces;
-  info.warnings = std::move(file.parsed.warnings);
-  std::vector<ExteriorEdge> edges;
-  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh, info.warnings, edges);
-  print_warnings(info.warnings, command.run, command.mesh.path);
-  info.welded_vertices = mesh.vertices.size();
-  info.bounds = bounding_box(mesh);
-  info.statistics = mesh_statistics(mesh);
-  info.opposite_duplicate_faces = mesh_defects(mesh, edges).cancelling_pairs;
-  return command.json ? to_json(info) : info_text(info, costed_lattices(info.bounds), limits.threads());
+ExitCode run_info(const InfoCommand& command, const RunLimits& limits) {
+  std::vector<std::string> paths;
+  for (const MeshOptions& mesh : command.meshes) paths.push_back(mesh.path);
+  refuse_to_replace_input(files_written(command), paths);
+  InfoRun run(command, limits);
+  ExitCode worst = ExitCode::kDone;
+  for (const MeshOptions& mesh : command.meshes) worst = std::max(worst, status_of(run, mesh, limits));
+  run.finish();
+  return worst;
 }
 
 }  // namespace raycone

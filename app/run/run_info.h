@@ -1,14 +1,15 @@
-// `raycone info`: what a mesh is, and what evaluation will cost.
+// `raycone info`: what meshes are, whether they are what is required, and what evaluation will cost.
 #pragma once
 
-#include <string>
-
 #include "app/options/command.h"
+#include "app/process/exit_code.h"
 #include "app/run/run_limits.h"
 
 namespace raycone {
 
-// What is to be printed. Warnings about the mesh are printed here. Throws UsageError, InputError, LimitError.
-[[nodiscard]] std::string run_info(const InfoCommand& command, const RunLimits& limits);
+// Prints the meshes as they are read, one in memory at a time. A mesh that cannot be read or exceeds a limit, and one
+// that is not what is required, costs a line on standard error; the others go on. Returns the status of the worst of
+// them. Throws UsageError, OutputError.
+[[nodiscard]] ExitCode run_info(const InfoCommand& command, const RunLimits& limits);
 
 }  // namespace raycone

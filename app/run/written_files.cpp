@@ -41,6 +41,12 @@ std::vector<WrittenFile> files_written(const SliceCommand& command) {
   return written;
 }
 
+std::vector<WrittenFile> files_written(const InfoCommand& command) {
+  std::vector<WrittenFile> written{{"-", "output"}};
+  if (command.mark) written.push_back({*command.mark, "marked mesh"});
+  return written;
+}
+
 std::vector<std::string> inputs_of(const LatticeCommand& command) {
   std::vector<std::string> inputs{command.mesh.path};
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) inputs.push_back(grid->path);

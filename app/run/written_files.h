@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/options/info_command.h"
 #include "app/options/lattice_command.h"
 #include "app/options/points_command.h"
 #include "app/options/run_options.h"
@@ -23,6 +24,7 @@ struct WrittenFile {
 [[nodiscard]] std::vector<WrittenFile> files_written(const LatticeCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const PointsCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const SliceCommand& command);
+[[nodiscard]] std::vector<WrittenFile> files_written(const InfoCommand& command);
 
 // The files that a command names to be read, the mesh first.
 [[nodiscard]] std::vector<std::string> inputs_of(const LatticeCommand& command);

@@ -14,10 +14,9 @@ namespace {
 
 void count_edges(const TriangleMesh& mesh, MeshStatistics& statistics) {
   for_each_edge(mesh, [&](const EdgeUse& use) {
-    const std::uint64_t uses = std::uint64_t{use.forward} + use.backward;
-    statistics.exterior_edges += use.forward != use.backward;
-    statistics.nonmanifold_edges += uses > 2;
-    statistics.inconsistent_edges += uses == 2 && use.forward != use.backward;
+    statistics.exterior_edges += use.is_exterior();
+    statistics.nonmanifold_edges += use.is_nonmanifold();
+    statistics.inconsistent_edges += use.is_inconsistent();
   });
 }
 

@@ -300,4 +300,35 @@ MUTANTS = [
         ("core/distance/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/distance/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
+
+    # --- Self-intersections ---
+    Mutant("neighbours_intersect", "what is shared does not count", [
+        ("core/intersections/triangle_pair.cpp", "switch (shared_first(a, b)) {", "switch (shared_first(a, b) * 0) {")]),
+    Mutant("folds_are_flat", "neighbours that are folded onto each other count", [
+        ("core/intersections/triangle_pair.cpp",
+         "return orientation_in_plane(axis, from, to, s[2]) == orientation_in_plane(axis, from, to, t[2]);",
+         "return ((void)axis, false);")]),
+    Mutant("corners_never_cross", "the edge opposite a shared corner may meet the other triangle", [
+        ("core/intersections/triangle_pair.cpp", "return meets({s[1], s[2]}, t) || meets({t[1], t[2]}, s);", "return false;")]),
+    Mutant("corner_of_one_only", "either triangle may be the one that is left first", [
+        ("core/intersections/triangle_pair.cpp", "return meets({s[1], s[2]}, t) || meets({t[1], t[2]}, s);",
+         "return meets({s[1], s[2]}, t);")]),
+    Mutant("touching_is_apart", "a corner on another triangle counts", [
+        ("core/intersections/triangle_pair.cpp", "if (from * to > 0) return false;", "if (from * to >= 0) return false;")]),
+    Mutant("planes_without_overlap", "an overlap in one plane counts", [
+        ("core/intersections/triangle_pair.cpp",
+         "return on_triangle(t[0], t[1], t[2], s.from) || meets_an_edge(s, t);", "return false;")]),
+    Mutant("sides_touch_unseen", "triangles in one plane that touch count", [
+        ("core/intersections/triangle_pair.cpp", "orientation_in_plane(axis, edge.from, edge.to, p) * whole < 0;",
+         "orientation_in_plane(axis, edge.from, edge.to, p) * whole <= 0;")]),
+    Mutant("segments_leave_any_way", "a segment meets a neighbour where it leaves the corner within it", [
+        ("core/intersections/triangle_pair.cpp", "if (is_flat(s)) return starts_within(s[1], t) || starts_within(s[2], t);\n",
+         "")]),
+    Mutant("duplicates_are_one", "two triangles of the same corners overlap", [
+        ("core/intersections/triangle_pair.cpp", "return !is_flat(a);", "return false;")]),
+    Mutant("boxes_must_overlap", "boxes that touch meet", [
+        ("core/intersections/self_intersections.cpp", "(lower[axis][i] <= high)", "(lower[axis][i] < high)")]),
+    Mutant("first_of_any_thread", "the first pair is that of the tree's order", [
+        ("core/intersections/self_intersections.cpp", "if (found_first.place < first.place) first = found_first;",
+         "first = found_first;")]),
 ]

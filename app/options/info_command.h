@@ -1,0 +1,28 @@
+// `raycone info` as plain values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/options/mesh_options.h"
+#include "app/options/run_options.h"
+
+namespace raycone {
+
+enum class InfoFormat { kText, kJson, kCsv };
+
+// What a mesh may be asked to be (CLI.md, "Surfaces").
+enum class Requirement { kClosed, kOriented, kOutward, kManifold, kEmbedded, kNoDuplicates };
+
+struct InfoCommand {
+  std::vector<MeshOptions> meshes;  // at least one; they differ in their paths only
+  RunOptions run;
+  InfoFormat format = InfoFormat::kText;
+  std::vector<Requirement> required;  // each at most once
+  bool intersections = false;         // counted, even where nothing requires it
+  std::optional<std::string> mark;    // PLY file of the only mesh with its flaws in colour
+  bool no_clobber = false;            // of that file
+};
+
+}  // namespace raycone

@@ -1,0 +1,30 @@
+// What `raycone info` prints of one mesh or several.
+#pragma once
+
+#include <string>
+
+#include "app/options/info_command.h"
+#include "app/report/info.h"
+
+namespace raycone {
+
+// Text: blocks with a blank line between them. JSON: the object, of several meshes an array of objects that name
+// theirs. CSV: a header line and one row a mesh.
+class InfoListing {
+ public:
+  // `with_intersections`: self-intersections are counted, and have a column.
+  InfoListing(InfoFormat format, bool several, bool with_intersections)
+      : format_(format), several_(several), with_intersections_(with_intersections) {}
+
+  // What is to be printed for the next mesh, and at the end.
+  [[nodiscard]] std::string entry(const MeshInfo& info, const CostedLattices& costed, int threads);
+  [[nodiscard]] std::string end();
+
+ private:
+  InfoFormat format_;
+  bool several_;
+  bool with_intersections_;
+  bool begun_ = false;
+};
+
+}  // namespace raycone

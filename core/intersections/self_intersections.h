@@ -1,0 +1,32 @@
+// Triangles of a mesh that intersect each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// Indices of two triangles, the lower one first.
+using TrianglePair = std::array<std::uint32_t, 2>;
+
+struct SelfIntersections {
+  std::uint64_t pairs = 0;
+  std::optional<TrianglePair> first;  // in the order of the search
+  std::vector<bool> of_triangle;      // whether a triangle is in a pair
+};
+
+// The pairs of triangles that meet_beyond_shared() (core/intersections/triangle_pair.h). Exact. The same for any number
+// of threads, and but for `first` for any order of triangles. Takes n log n time where few boxes of triangles meet, and
+// a time in proportion to the pairs of boxes that meet, which may be n^2 / 2; memory in proportion to n. Uses the
+// threads that ThreadLimit allows. Precondition: the vertices that triangles use are finite, at most kMaxTriangles
+// triangles.
+[[nodiscard]] SelfIntersections self_intersections(const TriangleMesh& mesh);
+
+// The `first` of these pairs alone. The search ends with it.
+[[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh);
+
+}  // namespace raycone

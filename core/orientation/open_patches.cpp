@@ -2,177 +2,277 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 
-#include "core/evaluation/winding_number.h"
+#include "core/exact/scale.h"
+#include "core/machine/threads.h"
 #include "core/orientation/canonical_face.h"
+#include "core/orientation/crossing_votes.h"
+#include "core/orientation/dipole_tree.h"
+#include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
+#include "core/orientation/turn_problem.h"
 
 namespace raycone {
 namespace {
 
-// Of a surface of its own vertices: where the winding number is evaluated, no other vertex counts.
-TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
-  std::vector<std::uint32_t> used;
-  for (const Triangle& t : faces) used.insert(used.end(), t.begin(), t.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  TriangleMesh mesh;
-  for (const std::uint32_t v : used) mesh.vertices.push_back(vertices[v]);
-  for (const Triangle& t : faces) {
-    Triangle local;
-    for (std::size_t i = 0; i < 3; ++i) {
-      local[i] = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), t[i]) - used.begin());
-    }
-    if (reversed) std::swap(local[1], local[2]);
-    mesh.triangles.push_back(local);
-  }
-  return mesh;
+// Up to so many surfaces, each acts on every sample for itself. Beyond, only the largest do; others act on what is
+// near, and from afar as dipoles of a tree.
+constexpr std::size_t kFewSurfaces = 1500;
+constexpr std::size_t kLargestSurfaces = 48;
+
+// The vertices of the faces in [0, 1]^3, up to rounding. Others are not moved along, and may be anywhere.
+std::vector<Vec3> in_unit_box(const std::vector<Vec3>& vertices, const Box& box) {
+  double size = 0.0;  // a quarter of it, which cannot overflow
+  for (int axis = 0; axis < 3; ++axis) size = std::max(size, 0.25 * box.upper[axis] - 0.25 * box.lower[axis]);
+  int exponent = 0;
+  std::frexp(size, &exponent);
+  const PowerOfTwo scale(-exponent);
+  const Vec3 corner = 0.25 * box.lower;
+  std::vector<Vec3> moved;
+  moved.reserve(vertices.size());
+  for (const Vec3& p : vertices) moved.push_back(scale(0.25 * p - corner));
+  return moved;
 }
 
-// The sum over samples of weight (rest + sum over surfaces of turn * winding - 1/2)^2, to be made small.
-class TurnProblem {
- public:
-  TurnProblem(std::vector<std::vector<double>> windings, std::vector<double> constant, std::vector<double> weight)
-      : windings_(std::move(windings)), constant_(std::move(constant)), weight_(std::move(weight)) {}
-
-  // From no surface at all: each in turn gets the better sign.
-  [[nodiscard]] std::vector<int> one_after_the_other() const {
-    std::vector<double> rest = constant_;
-    std::vector<int> turn(windings_.size(), 1);
-    for (std::size_t p = 0; p < windings_.size(); ++p) {
-      turn[p] = slope(p, rest) > 0.0 ? -1 : 1;
-      add(p, turn[p], rest);
-    }
-    return turn;
-  }
-
-  // Turns surfaces as long as that makes the sum smaller. Returns the sum.
-  double improve(std::vector<int>& turn) const {
-    std::vector<double> rest = constant_;
-    for (std::size_t p = 0; p < turn.size(); ++p) add(p, turn[p], rest);
-    constexpr int kMaxPasses = 100;
-    bool turned = true;
-    for (int pass = 0; turned && pass < kMaxPasses; ++pass) {
-      turned = false;
-      for (std::size_t p = 0; p < turn.size(); ++p) {
-        // The sum changes by 4 (own - turn slope).
-        const double gain = turn[p] * slope(p, rest) - own(p);
-        if (!(gain > kLeastGain)) continue;
-        add(p, -2 * turn[p], rest);
-        turn[p] = -turn[p];
-        turned = true;
+void add_to(Box& box, const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices) {
+  for (const Triangle& t : faces) {
+    for (const std::uint32_t v : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
+        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
       }
     }
-    double sum = 0.0;
-    for (std::size_t k = 0; k < rest.size(); ++k) sum += weight_[k] * rest[k] * rest[k];
-    return sum;
   }
+}
 
- private:
-  static constexpr double kLeastGain = 1e-9;  // of weights whose sum is 1: rounding gains nothing
-
-  [[nodiscard]] double slope(std::size_t p, const std::vector<double>& rest) const {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < rest.size(); ++k) sum += weight_[k] * rest[k] * windings_[p][k];
-    return sum;
-  }
-  [[nodiscard]] double own(std::size_t p) const {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < weight_.size(); ++k) sum += weight_[k] * windings_[p][k] * windings_[p][k];
-    return sum;
-  }
-  void add(std::size_t p, double factor, std::vector<double>& rest) const {
-    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] += factor * windings_[p][k];
-  }
-
-  std::vector<std::vector<double>> windings_;  // per surface and sample: of the surface as it is
-  std::vector<double> constant_;               // per sample: of what does not turn, less 1/2
-  std::vector<double> weight_;
-};
-
-// A surface that may turn, in the orientation in which its first face runs around its corners by rising coordinates.
+// Turned so that its first face runs around its corners by rising coordinates.
 struct TurningSurface {
-  std::size_t number;  // among all surfaces
-  int sign;            // of the given orientation
-  CanonicalFace first;
+  const std::vector<Triangle>* faces;
+  std::size_t number;   // among the surfaces given
+  CanonicalFace first;  // its sign: that of the orientation given
   std::vector<SurfaceSample> samples;
   double weight = 0.0;  // of its samples
 };
 
-std::size_t samples_per_surface(std::size_t surfaces) {
-  constexpr std::size_t kSamples = 4096, kMost = 256, kLeast = 4;
-  return std::clamp(kSamples / surfaces, kLeast, kMost);
-}
-
-// Large ones first.
-std::vector<TurningSurface> in_order(const std::vector<OpenSurface>& surfaces, const std::vector<Vec3>& vertices) {
-  std::vector<TurningSurface> ordered;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const CanonicalFace first = first_canonical_face(surfaces[i].faces, vertices);
-    TurningSurface turning{i, first.sign, first, {}, 0.0};
-    turning.samples = sample_surface(surfaces[i].faces, vertices, samples_per_surface(surfaces.size()));
-    for (SurfaceSample& sample : turning.samples) {
-      sample.side *= first.sign;
-      turning.weight += sample.weight;
-    }
-    ordered.push_back(std::move(turning));
+class OpenSurfaceTurner {
+ public:
+  OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
+                    const std::vector<Vec3>& vertices)
+      : vertices_(vertices), closed_(closed) {
+    set_order(surfaces);
+    set_samples();
   }
-  std::sort(ordered.begin(), ordered.end(), [](const TurningSurface& a, const TurningSurface& b) {
-    return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
-  });
-  return ordered;
-}
 
-std::vector<double> winding_numbers(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
-                                    bool reversed, const std::vector<Vec3>& points) {
-  std::vector<double> values(points.size(), 0.0);
-  if (faces.empty()) return values;
-  WindingNumberEvaluator(mesh_of(faces, vertices, reversed)).evaluate(points, values);
-  return values;
-}
+  // Per surface, in the order given.
+  std::vector<int> turn() {
+    const std::vector<int> best = surfaces_.size() <= kFewSurfaces ? turn_few() : turn_many();
+    std::vector<int> result(surfaces_.size());
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) result[surfaces_[i].number] = best[i] * surfaces_[i].first.sign;
+    return result;
+  }
+
+ private:
+  // Large ones first.
+  void set_order(const std::vector<OpenSurface>& surfaces) {
+    constexpr std::size_t kSamples = 1024, kMost = 64;
+    const std::size_t each = std::clamp(kSamples / surfaces.size(), surfaces.size() <= kFewSurfaces ? 2UL : 1UL, kMost);
+    surfaces_.resize(surfaces.size());
+    parallel_for(surfaces.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::vector<Triangle>& faces = surfaces[i].faces;
+        TurningSurface& turning = surfaces_[i];
+        turning = {&faces, i, first_canonical_face(faces, vertices_), sample_surface(faces, vertices_, each), 0.0};
+        for (SurfaceSample& sample : turning.samples) {
+          sample.side *= turning.first.sign;
+          sample.face.sign *= turning.first.sign;
+          turning.weight += sample.weight;
+        }
+      }
+    });
+    std::sort(surfaces_.begin(), surfaces_.end(), [](const TurningSurface& a, const TurningSurface& b) {
+      return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
+    });
+  }
+
+  void set_samples() {
+    constexpr std::size_t kOfClosed = 64;
+    for (const TurningSurface& surface : surfaces_) {
+      first_sample_.push_back(samples_.size());
+      samples_.insert(samples_.end(), surface.samples.begin(), surface.samples.end());
+    }
+    first_sample_.push_back(samples_.size());
+    const std::vector<SurfaceSample> of_closed = sample_surface(closed_, vertices_, kOfClosed);
+    samples_.insert(samples_.end(), of_closed.begin(), of_closed.end());
+    for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
+    constant_.assign(samples_.size(), -0.5);
+    if (closed_.empty()) return;
+    std::vector<FieldPoint> points;
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      points.push_back({samples_[k].at, k < first_sample_.back() ? 0 : samples_[k].side});
+    }
+    const std::vector<double> w = SurfaceField(closed_, vertices_, false).winding_numbers(points);
+    for (std::size_t k = 0; k < w.size(); ++k) constant_[k] += w[k];
+  }
+
+  [[nodiscard]] bool is_own(std::size_t surface, std::size_t sample) const {
+    return sample >= first_sample_[surface] && sample < first_sample_[surface + 1];
+  }
+
+  // What a surface does at samples.
+  [[nodiscard]] std::vector<TurnProblem::Effect> effects(std::size_t surface,
+                                                         std::span<const std::uint32_t> samples) const {
+    const SurfaceField field(*surfaces_[surface].faces, vertices_, surfaces_[surface].first.sign < 0);
+    std::vector<FieldPoint> points;
+    for (const std::uint32_t k : samples) points.push_back({samples_[k].at, is_own(surface, k) ? samples_[k].side : 0});
+    const std::vector<double> w = field.winding_numbers(points);
+    std::vector<TurnProblem::Effect> result;
+    for (std::size_t i = 0; i < samples.size(); ++i) result.push_back({samples[i], static_cast<float>(w[i])});
+    return result;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> all_samples() const {
+    std::vector<std::uint32_t> all(samples_.size());
+    for (std::uint32_t k = 0; k < all.size(); ++k) all[k] = k;
+    return all;
+  }
+
+  // With what each surface does at its samples; at most a thousand surfaces at once are in memory beside the problem.
+  [[nodiscard]] TurnProblem problem(const std::vector<std::vector<std::uint32_t>>& samples_of) const {
+    constexpr std::size_t kAtOnce = 1024;
+    TurnProblem result(weight_);
+    for (std::size_t first = 0; first < surfaces_.size(); first += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, surfaces_.size() - first);
+      std::vector<std::vector<TurnProblem::Effect>> of_surface(count);
+      parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) of_surface[i] = effects(first + i, samples_of[first + i]);
+      });
+      for (const auto& its : of_surface) result.add_surface(its);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<int> turn_few() const {
+    const TurnProblem few = problem(std::vector<std::vector<std::uint32_t>>(surfaces_.size(), all_samples()));
+    std::vector<int> best(surfaces_.size(), 1);
+    double least = few.improve(constant_, best);
+    std::vector<int> other = few.one_after_the_other(constant_);
+    if (few.improve(constant_, other) < least) best = other;
+    return best;
+  }
+
+  // From what rays say, and on from there: what is far counts as it is turned at the time.
+  [[nodiscard]] std::vector<int> turn_many() const {
+    DipoleTree tree = far_tree();
+    const TurnProblem near = problem(near_samples(tree));
+    std::vector<int> best = voted();
+    std::vector<double> rest = with_far(tree, best);
+    double least = near.sum(rest, best);
+    constexpr int kMaxRounds = 12;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      std::vector<int> turn = best;
+      near.improve(rest, turn);
+      rest = with_far(tree, turn);
+      const double sum = near.sum(rest, turn);
+      if (!(sum < least)) break;
+      least = sum;
+      best = std::move(turn);
+    }
+    return best;
+  }
+
+  // The largest surfaces are near everywhere. Others are as small as it takes for few to be near a sample.
+  [[nodiscard]] DipoleTree far_tree() const {
+    constexpr std::size_t kTried = 256, kMostNear = 96;
+    std::vector<SurfaceDipole> dipoles(surfaces_.size());
+    parallel_for(surfaces_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign < 0);
+        if (i < kLargestSurfaces) dipoles[i].area = {};
+      }
+    });
+    for (double reach = 1.0;; reach /= 2) {
+      DipoleTree tree(dipoles, reach);
+      std::size_t near = 0;
+      const std::size_t step = samples_.size() / kTried + 1;
+      for (std::size_t k = 0; k < samples_.size(); k += step) {
+        tree.for_each_near(samples_[k].at, [&](std::uint32_t) { ++near; });
+      }
+      if (near <= kMostNear * (samples_.size() / step + 1)) return tree;
+    }
+  }
+
+  // For each surface the samples that it is near.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> near_samples(const DipoleTree& tree) const {
+    std::vector<std::vector<std::uint32_t>> near_surfaces(samples_.size());
+    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        tree.for_each_near(samples_[k].at, [&](std::uint32_t surface) {
+          if (surface >= kLargestSurfaces && !is_own(surface, k)) near_surfaces[k].push_back(surface);
+        });
+      }
+    });
+    std::vector<std::vector<std::uint32_t>> result(surfaces_.size(), std::vector<std::uint32_t>());
+    for (std::size_t i = 0; i < kLargestSurfaces; ++i) result[i] = all_samples();
+    for (std::size_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k)
+        result[i].push_back(static_cast<std::uint32_t>(k));
+    }
+    for (std::uint32_t k = 0; k < samples_.size(); ++k) {
+      for (const std::uint32_t surface : near_surfaces[k]) result[surface].push_back(k);
+    }
+    return result;
+  }
+
+  // constant_ and what surfaces do from afar; what one does to its own samples is not far.
+  [[nodiscard]] std::vector<double> with_far(DipoleTree& tree, const std::vector<int>& turn) const {
+    tree.set_signs(turn);
+    std::vector<double> rest = constant_;
+    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) rest[k] += tree.far_sum(samples_[k].at);
+    });
+    for (std::uint32_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) {
+        rest[k] -= turn[i] * tree.far_part(i, samples_[k].at);
+      }
+    }
+    return rest;
+  }
+
+  [[nodiscard]] std::vector<int> voted() const {
+    std::vector<Triangle> all(closed_);
+    for (const TurningSurface& surface : surfaces_) all.insert(all.end(), surface.faces->begin(), surface.faces->end());
+    const std::vector<double> votes = crossing_votes(all, vertices_, samples_);
+    std::vector<int> turn;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      double sum = 0.0;
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) sum += weight_[k] * votes[k];
+      turn.push_back(sum < 0.0 ? -1 : 1);
+    }
+    return turn;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<Triangle>& closed_;
+  std::vector<TurningSurface> surfaces_;
+  std::vector<SurfaceSample> samples_;  // by surface, then those of the closed faces
+  std::vector<std::size_t> first_sample_;
+  std::vector<double> weight_;
+  std::vector<double> constant_;  // per sample: of the closed faces, less 1/2
+};
 
 }  // namespace
 
 std::vector<int> turn_open_surfaces(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
                                     const std::vector<Vec3>& vertices) {
-  const std::vector<TurningSurface> ordered = in_order(surfaces, vertices);
-  const std::vector<SurfaceSample> of_closed = sample_surface(closed, vertices, samples_per_surface(1));
-  std::vector<Vec3> points;
-  std::vector<double> weight;
-  const auto add_samples = [&](const std::vector<SurfaceSample>& samples) {
-    for (const SurfaceSample& sample : samples) {
-      points.push_back(sample.at);
-      weight.push_back(sample.weight);
-    }
-  };
-  for (const TurningSurface& surface : ordered) add_samples(surface.samples);
-  const std::size_t first_of_closed = points.size();
-  add_samples(of_closed);
-  const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
-  for (double& w : weight) w /= total;
-
-  // On its own samples a surface counts with the mean of both sides: half a turn off the value at the perturbed point.
-  std::vector<double> constant = winding_numbers(closed, vertices, false, points);
-  for (std::size_t k = 0; k < of_closed.size(); ++k) constant[first_of_closed + k] += 0.5 * of_closed[k].side;
-  for (double& c : constant) c -= 0.5;
-  std::vector<std::vector<double>> windings;
-  std::size_t own = 0;
-  for (const TurningSurface& surface : ordered) {
-    std::vector<double> w = winding_numbers(surfaces[surface.number].faces, vertices, surface.sign < 0, points);
-    for (const SurfaceSample& sample : surface.samples) w[own++] += 0.5 * sample.side;
-    windings.push_back(std::move(w));
-  }
-
-  const TurnProblem problem(std::move(windings), std::move(constant), std::move(weight));
-  std::vector<int> best(ordered.size(), 1);
-  double least = problem.improve(best);
-  std::vector<int> other = problem.one_after_the_other();
-  if (const double sum = problem.improve(other); sum < least) best = other;
-  std::vector<int> turn(surfaces.size());
-  for (std::size_t i = 0; i < ordered.size(); ++i) turn[ordered[i].number] = best[i] * ordered[i].sign;
-  return turn;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const OpenSurface& surface : surfaces) add_to(box, surface.faces, vertices);
+  add_to(box, closed, vertices);
+  return OpenSurfaceTurner(surfaces, closed, in_unit_box(vertices, box)).turn();
 }
 
 }  // namespace raycone

@@ -7,7 +7,6 @@
 
 #include "core/exact/predicates.h"
 #include "core/machine/threads.h"
-#include "core/orientation/canonical_face.h"
 
 namespace raycone {
 namespace {
@@ -92,7 +91,7 @@ std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, co
   for (const RankedFace& r : ranked) {
     const Vec3 middle =
         (1.0 / 3.0) * r.face.corners[0] + (1.0 / 3.0) * r.face.corners[1] + (1.0 / 3.0) * r.face.corners[2];
-    samples.push_back({middle, std::max(r.area, least), r.face.sign * side_of_perturbed(r.face, middle)});
+    samples.push_back({middle, std::max(r.area, least), r.face, r.face.sign * side_of_perturbed(r.face, middle)});
   }
   return samples;
 }

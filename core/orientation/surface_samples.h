@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/orientation/canonical_face.h"
 
 namespace raycone {
 
@@ -12,6 +13,7 @@ namespace raycone {
 struct SurfaceSample {
   Vec3 at;
   double weight = 0.0;  // the area that it stands for, positive
+  CanonicalFace face;   // that it lies on
   int side = 0;         // where the perturbed point is (core/exact/predicates.h): 1 before the face, -1 behind it
 };
 

@@ -4,8 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
+#include "core/boundary/sample_tile.h"
+#include "core/machine/threads.h"
 #include "core/orientation/canonical_face.h"
+#include "core/orientation/ray_sums.h"
 
 namespace raycone {
 namespace {
@@ -13,7 +17,7 @@ namespace {
 // Integers can be added in any order.
 constexpr double kAreaUnits = 0x1p60;
 constexpr double kTurnUnits = 0x1p52;
-constexpr std::size_t kLargeSurface = 32;  // faces: from here on the evaluator is faster than a sum over all of them
+constexpr std::size_t kLargeSurface = 32;  // faces: from here on the cone is faster than a sum over all of them
 
 std::int64_t in_units(double value, double units) { return std::llround(value * units); }
 
@@ -30,21 +34,25 @@ double turns_of(const std::array<Vec3, 3>& corners, const Vec3& q) {
   return std::atan2(imaginary, real) / (2.0 * std::numbers::pi);
 }
 
-// A mesh of these faces, and of no other vertices.
+// A mesh of these faces. Of a small part of a mesh, without the other vertices.
 TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+  TriangleMesh mesh{{}, faces};
+  if (reversed) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
+  if (faces.size() > vertices.size() / 16) {
+    mesh.vertices = vertices;
+    return mesh;
+  }
   std::vector<std::uint32_t> used;
   for (const Triangle& t : faces) used.insert(used.end(), t.begin(), t.end());
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  TriangleMesh mesh;
   for (const std::uint32_t v : used) mesh.vertices.push_back(vertices[v]);
-  for (const Triangle& t : faces) {
-    Triangle local;
-    for (std::size_t i = 0; i < 3; ++i) {
-      local[i] = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), t[i]) - used.begin());
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      v = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
     }
-    if (reversed) std::swap(local[1], local[2]);
-    mesh.triangles.push_back(local);
   }
   return mesh;
 }
@@ -81,10 +89,29 @@ SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Ve
   return dipole;
 }
 
+SurfaceField::Large::Large(TriangleMesh its_mesh)
+    : mesh(std::move(its_mesh)), boundary(mesh), cone(boundary, SimdLevel::kBest) {}
+
+std::vector<double> SurfaceField::Large::winding_numbers(std::span<const Vec3> points) const {
+  const std::vector<std::int64_t> crossings = ray_sums(mesh, points);
+  std::vector<double> values(crossings.begin(), crossings.end());
+  if (boundary.exterior_edges() == 0) return values;
+  const std::size_t tiles = (points.size() + kTile - 1) / kTile;
+  parallel_for(tiles, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t begin = first * kTile; begin < std::min(last * kTile, points.size()); begin += kTile) {
+      const std::size_t count = std::min(kTile, points.size() - begin);
+      SampleTile tile;
+      for (std::size_t i = begin; i < begin + count; ++i) tile.add(points[i]);
+      cone.winding_numbers(tile, std::span(crossings).subspan(begin, count), std::span(values).subspan(begin, count));
+    }
+  });
+  return values;
+}
+
 SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed)
     : dipole_(dipole_of(faces, vertices, reversed)) {
   if (faces.size() >= kLargeSurface) {
-    evaluator_.emplace(mesh_of(faces, vertices, reversed));
+    large_ = std::make_unique<const Large>(mesh_of(faces, vertices, reversed));
     return;
   }
   for (const Triangle& t : faces) {
@@ -112,7 +139,7 @@ std::vector<double> SurfaceField::winding_numbers(std::span<const FieldPoint> po
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (is_far(points[i].at)) {
       values[i] = dipole_.at(points[i].at);
-    } else if (!evaluator_) {
+    } else if (!large_) {
       values[i] = of_triangles(points[i].at);
     } else {
       near.push_back(points[i].at);
@@ -120,8 +147,7 @@ std::vector<double> SurfaceField::winding_numbers(std::span<const FieldPoint> po
     }
   }
   if (near.empty()) return values;
-  std::vector<double> of_near(near.size());
-  evaluator_->evaluate(near, of_near);
+  const std::vector<double> of_near = large_->winding_numbers(near);
   for (std::size_t i = 0; i < near.size(); ++i) values[places[i]] = of_near[i] + 0.5 * points[places[i]].side;
   return values;
 }

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "core/boundary/boundary.h"
+#include "core/boundary/cone.h"
 #include "core/data/triangle_mesh.h"
-#include "core/evaluation/winding_number.h"
 
 namespace raycone {
 
@@ -48,10 +49,22 @@ class SurfaceField {
   [[nodiscard]] std::vector<double> winding_numbers(std::span<const FieldPoint> points) const;
 
  private:
+  // A large surface: crossings, and the cone over its boundary.
+  struct Large {
+    explicit Large(TriangleMesh its_mesh);
+    Large(const Large&) = delete;  // cone refers to boundary
+    Large& operator=(const Large&) = delete;
+    [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
+
+    TriangleMesh mesh;
+    Boundary boundary;
+    Cone cone;
+  };
+
   [[nodiscard]] double of_triangles(const Vec3& q) const;
 
-  std::vector<std::array<Vec3, 3>> faces_;           // of a small surface, which is summed face by face
-  std::optional<WindingNumberEvaluator> evaluator_;  // of a large one
+  std::vector<std::array<Vec3, 3>> faces_;  // of a small surface, which is summed face by face
+  std::unique_ptr<const Large> large_;
   SurfaceDipole dipole_;
 };
 

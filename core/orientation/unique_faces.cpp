@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/machine/buckets.h"
@@ -27,13 +29,28 @@ bool is_collapsed(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[
 // Whether the corners, three different numbers, are in rising order but for a rotation.
 bool rises(const Triangle& t) { return ((t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0])) == 2; }
 
+// A counting sort by the lowest corner; few faces share it nearly always.
+void sort_by_corners(std::span<FiledFace> bucket) {
+  constexpr std::size_t kVertices = std::size_t{1} << kVerticesPerBucketLog2;
+  std::array<std::size_t, kVertices + 2> begin{};
+  for (const FiledFace& f : bucket) ++begin[f.lowest % kVertices + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<FiledFace> sorted(bucket.size());
+  for (const FiledFace& f : bucket) sorted[begin[f.lowest % kVertices + 1]++] = f;
+  for (std::size_t v = 0; v < kVertices; ++v) {
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin[v]),
+              sorted.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
+  }
+  std::copy(sorted.begin(), sorted.end(), bucket.begin());
+}
+
 struct SameFaces {
   std::uint32_t first, face;  // places in the mesh
 };
 
 // Each repeated face with the first one of its positions, those too; by first, then face, in a bucket.
 void add_repeated(std::span<FiledFace> bucket, std::vector<SameFaces>& repeated) {
-  std::sort(bucket.begin(), bucket.end());
+  if (bucket.size() > 1) sort_by_corners(bucket);
   for (auto it = bucket.begin(); it != bucket.end();) {
     const auto end = std::find_if(it, bucket.end(), [&](const FiledFace& f) { return f.key() != it->key(); });
     if (end - it > 1) {

@@ -43,7 +43,7 @@ class FaceEdges {
   [[nodiscard]] const std::vector<UnpairedEdge>& unpaired() const { return unpaired_; }
 
  private:
-  struct Traversal;
+  struct FiledEdge;
   struct Bucket;
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;

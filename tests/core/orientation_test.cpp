@@ -15,7 +15,10 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/mesh/weld.h"
+#include "core/orientation/canonical_face.h"
 #include "core/orientation/orient.h"
+#include "core/orientation/surface_field.h"
+#include "core/orientation/surface_samples.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
@@ -138,6 +141,7 @@ TEST(Orient, KeepsTheRelationOfPatchesThatAgreeAsStored) {
   EXPECT_EQ(winding(automatic(broken), {0.1, 0, 0}), 0);
   Random random(1);
   EXPECT_EQ(winding(automatic(welded(doubled(both_outward, random))), {0.1, 0, 0}), 0);
+  EXPECT_EQ(winding(automatic(welded(joined(both_outward, test::reversed(both_outward)))), {0.1, 0, 0}), 0);
 }
 
 // A grandchild keeps its relation to its parent, which was turned over.
@@ -202,7 +206,42 @@ TEST(VolumeSign, IsExact) {
   EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), -1);
 }
 
+TEST(VolumeSign, IsZeroWhereRoundedTermsDoNotCancel) {
+  const DefaultFloatingPoint guard;
+  Random random(8);
+  const TriangleMesh ball = sphere_of(0.1, {0.3, 0.7, 0.9});
+  const TriangleMesh nothing = joined(test::shuffled(ball, random), test::shuffled(test::reversed(ball), random));
+  EXPECT_EQ(volume_sign(nothing.triangles, nothing.vertices), 0);
+}
+
+TEST(Orient, TurnsAFlatClosedPatchByItsCoordinates) {
+  const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {1, 3, 2}}};
+  EXPECT_TRUE(set_of_faces(automatic(flat)) == set_of_faces(automatic(test::reversed(flat))));
+}
+
 // ---- Edges of more than two faces ----
+
+// The upper and the lower half of an octahedron share no edge with two faces: along each, a tetrahedron touches. Both
+// outward within a sphere, they stay so, as the tetrahedra do.
+TEST(Orient, JoinsPatchesThatCloseEachOther) {
+  TriangleMesh mesh = joined(sphere_of(3), {{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}, {}});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size() - 6);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t a = first + i, b = first + (i + 1) % 4, top = first + 4, bottom = first + 5;
+    const Vec3 out = 0.9 * (mesh.vertices[a] + mesh.vertices[b]);
+    const auto up = static_cast<std::uint32_t>(mesh.vertices.size()), down = up + 1;
+    mesh.vertices.push_back(out + Vec3{0, 0, 0.1});
+    mesh.vertices.push_back(out - Vec3{0, 0, 0.1});
+    for (const Triangle& t : {Triangle{a, b, top}, Triangle{b, a, bottom}, Triangle{a, up, b}, Triangle{a, b, down},
+                              Triangle{a, down, up}, Triangle{b, up, down}}) {
+      mesh.triangles.push_back(t);
+    }
+  }
+  ASSERT_TRUE(mesh_statistics(mesh).closed());
+  ASSERT_EQ(winding(mesh, {0.1, 0.1, 0.1}), 2);
+  EXPECT_TRUE(set_of_faces(automatic(mesh)) == set_of_faces(mesh));
+  EXPECT_TRUE(set_of_faces(automatic(test::reversed(mesh))) == set_of_faces(mesh));
+}
 
 TEST(Orient, RestoresCubesThatShareAnEdge) {
   expect_restored(welded(joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 0}, {2, 2, 1}))));
@@ -294,6 +333,26 @@ TEST(Orient, TurnsManySeparateTriangles) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < separate.triangles.size(); ++i) wrong += oriented.triangles[i] != separate.triangles[i];
   EXPECT_EQ(wrong, 0U);
+}
+
+TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
+  const DefaultFloatingPoint guard;
+  // Within the unit box; without its last faces it has a boundary.
+  TriangleMesh bowl = test::moved(test::sphere(8), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
+  bowl.triangles.resize(bowl.triangles.size() * 2 / 3);
+  const std::vector<SurfaceSample> samples = sample_surface(bowl.triangles, bowl.vertices, 20);
+  ASSERT_EQ(samples.size(), 20U);
+  std::vector<FieldPoint> points;
+  for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});
+  const std::vector<double> w = SurfaceField(bowl.triangles, bowl.vertices, false).winding_numbers(points);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    TriangleMesh others = bowl;
+    std::erase_if(others.triangles,
+                  [&](const Triangle& t) { return (canonical_face(t, bowl.vertices) <=> samples[i].face) == 0; });
+    ASSERT_EQ(others.triangles.size() + 1, bowl.triangles.size());
+    // Roundings of the cone; the face itself, from its middle but for rounding, is half a turn to 1e-14.
+    EXPECT_NEAR(w[i], test::direct_winding_number(others, samples[i].at), 1e-12);
+  }
 }
 
 // ---- What has no orientation ----

@@ -31,16 +31,19 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   return file;
 }
 
-TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings,
-                              std::vector<ExteriorEdge>& edges) {
+MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
   const bool may_collapse = options.weld.mode == WeldMode::kDistance;
   const std::uint64_t before = may_collapse ? triangles_with_corners(as_read) : 0;
   TriangleMesh mesh = weld(std::move(as_read), options.weld);
   const std::uint64_t after = may_collapse ? triangles_with_corners(mesh) : 0;
   if (after < before) warnings.push_back(weld_collapsed(before - after, options.weld.distance));
-  edges = exterior_edges(mesh);
-  std::ranges::move(warnings_about(mesh_defects(mesh, edges)), std::back_inserter(warnings));
-  return mesh;
+  OrientedMesh oriented = orient(std::move(mesh), options.orient);
+  if (const std::uint64_t cut = oriented.counts.cut_edges) warnings.push_back(unorientable(cut));
+  MeshToEvaluate result{std::move(oriented.mesh), oriented.counts, {}, {}};
+  result.edges = exterior_edges(result.mesh);
+  result.defects = mesh_defects(result.mesh, result.edges);
+  std::ranges::move(warnings_about(result.defects), std::back_inserter(warnings));
+  return result;
 }
 
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh) {

@@ -10,6 +10,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/orientation/orient.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -18,11 +19,18 @@ namespace raycone {
 // large for the memory.
 [[nodiscard]] MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
-// All that is done to a mesh before anything is made of it: the one place for it. What the user should know about that
-// and about the result is appended to `warnings`, in a fixed order. `edges` is set to
-// the exterior edges of the result.
-[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
-                                            std::vector<Warning>& warnings, std::vector<ExteriorEdge>& edges);
+// A mesh that all is done to that comes before anything is made of it, and what is known of it then.
+struct MeshToEvaluate {
+  TriangleMesh mesh;
+  OrientationCounts orientation;
+  std::vector<ExteriorEdge> edges;
+  MeshDefects defects;
+};
+
+// The one place for all that is done. What the user should know about that and about the result is appended to
+// `warnings`, in a fixed order.
+[[nodiscard]] MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
+                                              std::vector<Warning>& warnings);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);

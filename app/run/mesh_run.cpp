@@ -30,8 +30,11 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.faces = file.parsed.mesh.triangles.size();
   report.warnings = std::move(file.parsed.warnings);
   refuse_to_replace_input(written, report.files_read);
-  return timed(report.seconds.prepare,
-               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings, edges_); });
+  MeshToEvaluate input = timed(report.seconds.prepare,
+                               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings); });
+  report.orientation = input.orientation;
+  edges_ = std::move(input.edges);
+  return std::move(input.mesh);
 }
 
 void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }

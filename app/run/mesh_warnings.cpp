@@ -49,6 +49,11 @@ std::uint64_t triangles_with_corners(const TriangleMesh& mesh) {
   }));
 }
 
+Warning unorientable(std::uint64_t edges) {
+  return {"unorientable",
+          counted_as(edges, "edge was", "edges were") + " cut, because no orientation makes all faces agree"};
+}
+
 Warning weld_collapsed(std::uint64_t faces, double distance) {
   char help[96];
   std::snprintf(help, sizeof help, " removed by --weld %g, which made corners one; a smaller distance keeps %s",

@@ -22,6 +22,9 @@ namespace raycone {
 // `weld-collapsed`: `faces` (not 0) lost their area to `distance`.
 [[nodiscard]] Warning weld_collapsed(std::uint64_t faces, double distance);
 
+// `unorientable`: no orientation makes all faces agree, so `edges` (not 0) were cut.
+[[nodiscard]] Warning unorientable(std::uint64_t edges);
+
 // Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
 // own, is not flat), and the lattice reaches around it but for a voxel.
 [[nodiscard]] bool should_have_inside(const Box& box, const Lattice& lattice);

@@ -18,7 +18,6 @@
 #include "app/run/written_files.h"
 #include "core/data/warning.h"
 #include "core/intersections/self_intersections.h"
-#include "core/mesh/mesh_defects.h"
 #include "core/mesh/mesh_statistics.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
@@ -65,18 +64,18 @@ class InfoRun {
     info.vertices = file.parsed.mesh.vertices.size();
     info.skipped_faces = file.parsed.skipped_faces;
     info.warnings = std::move(file.parsed.warnings);
-    std::vector<ExteriorEdge> edges;
-    const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), options, info.warnings, edges);
+    const MeshToEvaluate input = mesh_to_evaluate(std::move(file.parsed.mesh), options, info.warnings);
+    const TriangleMesh& mesh = input.mesh;
     print_warnings(info.warnings, command_.run, options.path);
     info.welded_vertices = mesh.vertices.size();
     info.bounds = bounding_box(mesh);
     info.statistics = mesh_statistics(mesh);
-    const MeshDefects defects = mesh_defects(mesh, edges);
-    info.opposite_duplicate_faces = defects.cancelling_pairs;
+    info.opposite_duplicate_faces = input.defects.cancelling_pairs;
     const FoundIntersections intersections = find_intersections(mesh);
     if (wants_intersections()) info.intersections = {intersections.pairs};
     print(listing_.entry(info, costed_lattices(info.bounds), limits_.threads()));
-    return judge(options.path, unmet_requirements(command_.required, mesh, info.statistics, defects, intersections));
+    return judge(options.path,
+                 unmet_requirements(command_.required, mesh, info.statistics, input.defects, intersections));
   }
 
   void finish() {

@@ -61,7 +61,8 @@ def with_number(text):
 
 
 # Of each option what makes its value, or None where it takes none.
-MESH = {"--weld": one_of("exact", "none", magnitude), "--scale": number, "--up": one_of("y-to-z")}
+MESH = {"--weld": one_of("exact", "none", magnitude), "--scale": number, "--up": one_of("y-to-z"),
+        "--orient": one_of("keep", "flip", "auto")}
 EVALUATION = {
     "--field": one_of("winding", "inside", "density", "sdf", "winding,inside", "winding,sdf,density,inside"),
     "--rule": one_of("nonzero", "positive", "odd", with_number("threshold=%s"), with_number("abs=%s")),

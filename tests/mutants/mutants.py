@@ -331,4 +331,36 @@ MUTANTS = [
     Mutant("first_of_any_thread", "the first pair is that of the tree's order", [
         ("core/intersections/self_intersections.cpp", "if (found_first.place < first.place) first = found_first;",
          "first = found_first;")]),
+
+    # --- Orientation ---
+    Mutant("closed_relation_not_kept", "patches that agree as stored keep their relation", [
+        ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
+         "as_stored == 2 ? as_stored * turn[parent]")]),
+    Mutant("nesting_on_surface_counts", "vertices on the other surface say nothing about nesting", [
+        ("core/orientation/nesting.cpp", "          if (places[j].on_surface) continue;\n",
+         "")]),
+    Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
+        ("core/orientation/nesting.cpp", "          (places[j].winding == 0 ? misses : hits)[j]",
+         "          if (places[j].winding != 0) hits[j]")]),
+    Mutant("copies_vote_for_the_first", "faces that are there both ways have no opinion", [
+        ("core/orientation/unique_faces.cpp", "votes += as_first ? 1 : -1;",
+         "votes += as_first ? 1 : 0;")]),
+    Mutant("cut_depends_on_order", "where a patch is cut depends on coordinates only", [
+        ("core/orientation/patches.cpp", "    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.first < b.first; });\n",
+         "")]),
+    Mutant("patches_close_nothing", "patches that close each other at an edge are one piece", [
+        ("core/orientation/pieces.cpp", "    while (join()) {\n    }\n",
+         "")]),
+    Mutant("volume_sign_not_exact", "the sign of a volume is exact", [
+        ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles.size()) + 16.0) * 0x1p-52 * terms + 0x1p-900",
+         "0.0")]),
+    Mutant("surface_is_not_the_mean", "on its own samples an open piece counts with the mean of both sides", [
+        ("core/orientation/surface_field.cpp", "of_near[i] + 0.5 * points[places[i]].side",
+         "of_near[i]")]),
+    Mutant("flat_piece_depends_on_order", "the orientation of a flat piece depends on coordinates only", [
+        ("core/orientation/closed_patches.cpp", "return first_canonical_face(surface.faces, vertices).sign;",
+         "return 1;")]),
+    Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
+        ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
+         "*std::min_element(outer")]),
 ]

@@ -1,0 +1,495 @@
+// --orient: what is inside afterwards, whatever the orientation, the order and the number of copies of faces before.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/evaluation/winding_number.h"
+#include "core/exact/volume_sign.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/mesh_statistics.h"
+#include "core/mesh/weld.h"
+#include "core/orientation/canonical_face.h"
+#include "core/orientation/orient.h"
+#include "core/orientation/surface_field.h"
+#include "core/orientation/surface_samples.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::box_mesh;
+using test::joined;
+using test::Random;
+
+TriangleMesh sphere_of(double radius, const Vec3& centre = {}, int rings = 6) {
+  return test::moved(test::sphere(rings), {radius, radius, radius}, centre);
+}
+
+TriangleMesh welded(const TriangleMesh& mesh) { return weld(mesh, {}); }
+
+void reverse(Triangle& t) { std::swap(t[1], t[2]); }
+
+TriangleMesh with_faces_reversed(TriangleMesh mesh, Random& random, double share) {
+  for (Triangle& t : mesh.triangles) {
+    if (test::uniform(random, 0.0, 1.0) < share) reverse(t);
+  }
+  return mesh;
+}
+
+// Each face twice, once reversed, in another order.
+TriangleMesh doubled(TriangleMesh mesh, Random& random) {
+  std::vector<Triangle> back = mesh.triangles;
+  for (Triangle& t : back) reverse(t);
+  mesh.triangles.insert(mesh.triangles.end(), back.begin(), back.end());
+  return test::shuffled(mesh, random);
+}
+
+TriangleMesh automatic(const TriangleMesh& mesh) { return orient(mesh, Orient::kAuto).mesh; }
+
+// The oriented faces by coordinates, sorted, each in the least of its rotations.
+std::vector<std::array<Vec3, 3>> set_of_faces(const TriangleMesh& mesh) {
+  const auto before = [](const auto& a, const auto& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                        [](const Vec3& p, const Vec3& q) { return lexicographic_order(p, q) < 0; });
+  };
+  std::vector<std::array<Vec3, 3>> faces;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const std::array<std::array<Vec3, 3>, 3> rotations{{{a, b, c}, {b, c, a}, {c, a, b}}};
+    faces.push_back(*std::min_element(rotations.begin(), rotations.end(), before));
+  }
+  std::sort(faces.begin(), faces.end(), before);
+  return faces;
+}
+
+double winding(const TriangleMesh& mesh, const Vec3& q) { return std::round(test::direct_winding_number(mesh, q)); }
+
+// Every way in which faces may have been stored, without losing which of them there are.
+std::vector<TriangleMesh> damaged(const TriangleMesh& mesh) {
+  Random random(7);
+  return {test::reversed(mesh),
+          with_faces_reversed(mesh, random, 0.05),
+          with_faces_reversed(mesh, random, 0.5),
+          with_faces_reversed(mesh, random, 0.95),
+          doubled(mesh, random),
+          joined(mesh, with_faces_reversed(mesh, random, 0.3)),
+          test::shuffled(with_faces_reversed(mesh, random, 0.2), random)};
+}
+
+void expect_restored(const TriangleMesh& mesh) {
+  const auto expected = set_of_faces(mesh);
+  EXPECT_TRUE(set_of_faces(automatic(mesh)) == expected);
+  std::size_t way = 0;
+  for (const TriangleMesh& other : damaged(mesh)) {
+    EXPECT_TRUE(set_of_faces(automatic(welded(other))) == expected) << "way " << way;
+    ++way;
+  }
+}
+
+// ---- Keep and flip ----
+
+TEST(Orient, KeepChangesNothing) {
+  const TriangleMesh mesh = test::assorted_triangles();
+  const OrientedMesh kept = orient(mesh, Orient::kKeep);
+  EXPECT_EQ(kept.mesh.triangles, mesh.triangles);
+  EXPECT_EQ(kept.counts.flipped_faces + kept.counts.patches + kept.counts.dropped_duplicates, 0U);
+}
+
+TEST(Orient, FlipReversesEveryFaceAndTwiceNone) {
+  const TriangleMesh mesh = sphere_of(1);
+  const OrientedMesh once = orient(mesh, Orient::kFlip);
+  EXPECT_EQ(once.counts.flipped_faces, mesh.triangles.size());
+  EXPECT_EQ(winding(once.mesh, {0.1, 0.2, 0.3}), -1);
+  EXPECT_EQ(orient(once.mesh, Orient::kFlip).mesh.triangles, mesh.triangles);
+}
+
+// ---- Closed patches ----
+
+TEST(Orient, LeavesARightClosedMeshAsItIs) {
+  const TriangleMesh mesh = joined(sphere_of(1), test::reversed(sphere_of(0.5)));
+  const OrientedMesh oriented = orient(mesh, Orient::kAuto);
+  EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
+  EXPECT_EQ(oriented.mesh.vertices, mesh.vertices);
+  EXPECT_EQ(oriented.counts.flipped_faces, 0U);
+  EXPECT_EQ(oriented.counts.patches, 2U);
+}
+
+TEST(Orient, TurnsAClosedMeshOutwardHoweverItIsStored) { expect_restored(sphere_of(1)); }
+
+TEST(Orient, KeepsAHollowSphereHollow) { expect_restored(joined(sphere_of(1), test::reversed(sphere_of(0.5)))); }
+
+TEST(Orient, AlternatesByNesting) {
+  expect_restored(joined(joined(sphere_of(1), test::reversed(sphere_of(0.7))),
+                         joined(sphere_of(0.5), test::reversed(sphere_of(0.2)))));
+}
+
+TEST(Orient, KeepsTheRelationOfPatchesThatAgreeAsStored) {
+  const TriangleMesh both_outward = joined(sphere_of(1), sphere_of(0.5));
+  EXPECT_EQ(set_of_faces(automatic(both_outward)), set_of_faces(both_outward));
+  EXPECT_EQ(set_of_faces(automatic(test::reversed(both_outward))), set_of_faces(both_outward));
+  // One face of the outer sphere tells that its orientation means nothing; neither does that of doubled faces.
+  TriangleMesh broken = both_outward;
+  reverse(broken.triangles.front());
+  EXPECT_EQ(winding(automatic(broken), {0.1, 0, 0}), 0);
+  Random random(1);
+  EXPECT_EQ(winding(automatic(welded(doubled(both_outward, random))), {0.1, 0, 0}), 0);
+  EXPECT_EQ(winding(automatic(welded(joined(both_outward, test::reversed(both_outward)))), {0.1, 0, 0}), 0);
+}
+
+// A grandchild keeps its relation to its parent, which was turned over.
+TEST(Orient, CarriesRelationsThroughTheNesting) {
+  TriangleMesh outer = sphere_of(1);
+  reverse(outer.triangles.front());
+  const TriangleMesh oriented = automatic(joined(outer, joined(sphere_of(0.7), sphere_of(0.4))));
+  EXPECT_EQ(winding(oriented, {0.8, 0, 0}), 1);
+  EXPECT_EQ(winding(oriented, {0.5, 0, 0}), 0);
+  EXPECT_EQ(winding(oriented, {0.1, 0, 0}), -1);
+}
+
+TEST(Orient, TakesAnArmThroughABodyForNoCavity) {
+  // Its box sticks out along x; that of the second one does not, but its end sticks out of the sphere.
+  expect_restored(joined(sphere_of(1), box_mesh({0.2, -0.1, -0.1}, {2, 0.1, 0.1})));
+  expect_restored(joined(sphere_of(1, {}, 12), box_mesh({-0.1, 0.1, 0.1}, {0.9, 0.9, 0.9})));
+}
+
+TEST(Orient, TakesANeighbourInTheSameBoxForNoCavity) {
+  TriangleMesh wedge{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  expect_restored(joined(wedge, box_mesh({2.5, 2.5, 2.5}, {3, 3, 3})));
+}
+
+TEST(Orient, CountsACavityThatTouchesItsWallAsACavity) {
+  // The octahedron's corners lie on the sides of the box; another corner lies inside.
+  TriangleMesh octahedron{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -0.5}}, {}};
+  for (const std::uint32_t x : {0U, 1U}) {
+    for (const std::uint32_t y : {2U, 3U}) {
+      for (const std::uint32_t z : {4U, 5U}) {
+        octahedron.triangles.push_back((x + y + z) % 2 == 0 ? Triangle{x, y, z} : Triangle{x, z, y});
+      }
+    }
+  }
+  const TriangleMesh box = box_mesh({-1, -1, -1}, {1, 1, 1});
+  Random random(3);
+  const TriangleMesh oriented = automatic(with_faces_reversed(joined(box, octahedron), random, 0.5));
+  EXPECT_EQ(winding(oriented, {0.05, 0.03, 0.02}), 0);
+  EXPECT_EQ(winding(oriented, {0.9, 0.9, 0.8}), 1);
+}
+
+TEST(Orient, DecidesTheVolumeExactly) {
+  // Thin beyond what doubles tell apart from flat.
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double size : {1.0, 1e300, 1e-300}) {
+    TriangleMesh sliver = box_mesh({size, size, 0}, {3 * size, 2 * size, least});
+    expect_restored(sliver);
+  }
+}
+
+TEST(VolumeSign, IsExact) {
+  const DefaultFloatingPoint guard;
+  // Volumes cancel but for one in 2^60 of them.
+  TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh hole = test::reversed(box_mesh({0, 0, 5}, {1, 1, 6}));
+  const TriangleMesh rest = box_mesh({0, 0, 9}, {0x1p-20, 0x1p-20, 9 + 0x1p-20});
+  EXPECT_EQ(volume_sign(mesh.triangles, mesh.vertices), 1);
+  TriangleMesh sum = joined(mesh, hole);
+  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), 0);
+  sum = joined(sum, rest);
+  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), 1);
+  sum = test::reversed(sum);
+  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), -1);
+}
+
+TEST(VolumeSign, IsZeroWhereRoundedTermsDoNotCancel) {
+  const DefaultFloatingPoint guard;
+  Random random(8);
+  const TriangleMesh ball = sphere_of(0.1, {0.3, 0.7, 0.9});
+  const TriangleMesh nothing = joined(test::shuffled(ball, random), test::shuffled(test::reversed(ball), random));
+  EXPECT_EQ(volume_sign(nothing.triangles, nothing.vertices), 0);
+}
+
+TEST(Orient, TurnsAFlatClosedPatchByItsCoordinates) {
+  const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {1, 3, 2}}};
+  EXPECT_TRUE(set_of_faces(automatic(flat)) == set_of_faces(automatic(test::reversed(flat))));
+}
+
+// ---- Edges of more than two faces ----
+
+// The upper and the lower half of an octahedron share no edge with two faces: along each, a tetrahedron touches. Both
+// outward within a sphere, they stay so, as the tetrahedra do.
+TEST(Orient, JoinsPatchesThatCloseEachOther) {
+  TriangleMesh mesh = joined(sphere_of(3), {{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}, {}});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size() - 6);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t a = first + i, b = first + (i + 1) % 4, top = first + 4, bottom = first + 5;
+    const Vec3 out = 0.9 * (mesh.vertices[a] + mesh.vertices[b]);
+    const auto up = static_cast<std::uint32_t>(mesh.vertices.size()), down = up + 1;
+    mesh.vertices.push_back(out + Vec3{0, 0, 0.1});
+    mesh.vertices.push_back(out - Vec3{0, 0, 0.1});
+    for (const Triangle& t : {Triangle{a, b, top}, Triangle{b, a, bottom}, Triangle{a, up, b}, Triangle{a, b, down},
+                              Triangle{a, down, up}, Triangle{b, up, down}}) {
+      mesh.triangles.push_back(t);
+    }
+  }
+  ASSERT_TRUE(mesh_statistics(mesh).closed());
+  ASSERT_EQ(winding(mesh, {0.1, 0.1, 0.1}), 2);
+  EXPECT_TRUE(set_of_faces(automatic(mesh)) == set_of_faces(mesh));
+  EXPECT_TRUE(set_of_faces(automatic(test::reversed(mesh))) == set_of_faces(mesh));
+}
+
+TEST(Orient, RestoresCubesThatShareAnEdge) {
+  expect_restored(welded(joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 0}, {2, 2, 1}))));
+}
+
+TEST(Orient, RestoresCubesThatShareAVertex) {
+  expect_restored(welded(joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 1}, {2, 2, 2}))));
+}
+
+TEST(Orient, KeepsTheInsideOfCubesThatShareASide) {
+  const TriangleMesh cubes = welded(joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 0, 0}, {2, 1, 1})));
+  for (const TriangleMesh& other : damaged(cubes)) {
+    const OrientedMesh oriented = orient(welded(other), Orient::kAuto);
+    EXPECT_EQ(oriented.mesh.triangles.size(), 22U);  // of two sides in one place, one is left
+    for (const Vec3& q : {Vec3{0.4, 0.5, 0.6}, Vec3{1.7, 0.4, 0.3}, Vec3{0.9, 0.1, 0.1}}) {
+      EXPECT_GT(test::direct_winding_number(oriented.mesh, q), 0.5);
+    }
+    for (const Vec3& q : {Vec3{-0.1, 0.5, 0.6}, Vec3{2.1, 0.4, 0.3}, Vec3{1.01, 1.1, 0.5}}) {
+      EXPECT_LT(test::direct_winding_number(oriented.mesh, q), 0.5);
+    }
+  }
+}
+
+TEST(Orient, RestoresCellsThatTouchInEdges) {
+  Random random(11);
+  for (int i = 0; i < 40; ++i) {
+    const TriangleMesh cells = test::random_cells(random, 3);
+    if (cells.triangles.empty()) continue;
+    const TriangleMesh oriented = automatic(with_faces_reversed(cells, random, 0.5));
+    EXPECT_EQ(oriented.triangles.size(), cells.triangles.size());
+    int wrong = 0;
+    for (int x = 0; x < 3; ++x) {
+      for (int y = 0; y < 3; ++y) {
+        for (int z = 0; z < 3; ++z) {
+          const Vec3 q{x + 0.5, y + 0.5, z + 0.5};
+          wrong += (test::direct_winding_number(oriented, q) >= 0.5) != (winding(cells, q) >= 1);
+        }
+      }
+    }
+    EXPECT_EQ(wrong, 0) << "mesh " << i;
+  }
+}
+
+// ---- Open patches ----
+
+TEST(Orient, TurnsAnOpenBowlSoThatItsHollowIsInside) {
+  TriangleMesh half = sphere_of(1);
+  std::erase_if(half.triangles, [&](const Triangle& t) {
+    return half.vertices[t[0]].z + half.vertices[t[1]].z + half.vertices[t[2]].z > 0;
+  });
+  expect_restored(half);
+  expect_restored(test::open_box());
+}
+
+TEST(Orient, TurnsSeparatePiecesOfOneSurfaceAlike) {
+  // The sides of a box that do not meet.
+  TriangleMesh sides;
+  for (const TriangleMesh& whole : {box_mesh({0, 0, 0}, {1, 1, 1})}) {
+    for (const Triangle& t : whole.triangles) {
+      const auto first = static_cast<std::uint32_t>(sides.vertices.size());
+      const Vec3 a = whole.vertices[t[0]], b = whole.vertices[t[1]], c = whole.vertices[t[2]];
+      const Vec3 middle = (1.0 / 3) * (a + b + c);
+      for (const Vec3& p : {a, b, c}) sides.vertices.push_back(middle + 0.9 * (p - middle));
+      sides.triangles.push_back({first, first + 1, first + 2});
+    }
+  }
+  expect_restored(sides);
+}
+
+TEST(Orient, TurnsAHoleyHollowSphere) {
+  Random random(5);
+  TriangleMesh outer = sphere_of(1, {}, 10), inner = test::reversed(sphere_of(0.6, {}, 10));
+  outer.triangles.erase(outer.triangles.begin() + 100, outer.triangles.begin() + 104);
+  inner.triangles.erase(inner.triangles.begin() + 50, inner.triangles.begin() + 54);
+  expect_restored(joined(outer, inner));
+}
+
+TEST(Orient, TurnsManySeparateTriangles) {
+  // More than the number of surfaces that each act on every sample.
+  Random random(13);
+  TriangleMesh ball = sphere_of(1, {}, 24), separate;
+  for (const Triangle& t : ball.triangles) {
+    const auto first = static_cast<std::uint32_t>(separate.vertices.size());
+    for (const std::uint32_t v : t)
+      separate.vertices.push_back(ball.vertices[v] + 1e-3 * test::uniform_point(random, {{}, {1, 1, 1}}));
+    separate.triangles.push_back({first, first + 1, first + 2});
+  }
+  const TriangleMesh oriented = automatic(with_faces_reversed(separate, random, 0.5));
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < separate.triangles.size(); ++i) wrong += oriented.triangles[i] != separate.triangles[i];
+  EXPECT_EQ(wrong, 0U);
+}
+
+TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
+  const DefaultFloatingPoint guard;
+  // Within the unit box; without its last faces it has a boundary.
+  TriangleMesh bowl = test::moved(test::sphere(8), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
+  bowl.triangles.resize(bowl.triangles.size() * 2 / 3);
+  const std::vector<SurfaceSample> samples = sample_surface(bowl.triangles, bowl.vertices, 20);
+  ASSERT_EQ(samples.size(), 20U);
+  std::vector<FieldPoint> points;
+  for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});
+  const std::vector<double> w = SurfaceField(bowl.triangles, bowl.vertices, false).winding_numbers(points);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    TriangleMesh others = bowl;
+    std::erase_if(others.triangles,
+                  [&](const Triangle& t) { return (canonical_face(t, bowl.vertices) <=> samples[i].face) == 0; });
+    ASSERT_EQ(others.triangles.size() + 1, bowl.triangles.size());
+    // Roundings of the cone; the face itself, from its middle but for rounding, is half a turn to 1e-14.
+    EXPECT_NEAR(w[i], test::direct_winding_number(others, samples[i].at), 1e-12);
+  }
+}
+
+// ---- What has no orientation ----
+
+TEST(Orient, CutsAMoebiusStripAcross) {
+  TriangleMesh strip;
+  constexpr int kParts = 40;
+  const double pi = std::acos(-1.0);
+  for (int i = 0; i < kParts; ++i) {
+    const double turn = 2 * pi * i / kParts;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 1 + side * std::cos(turn / 2);
+      strip.vertices.push_back({r * std::cos(turn), r * std::sin(turn), side * std::sin(turn / 2)});
+    }
+  }
+  for (std::uint32_t i = 0; i < kParts; ++i) {
+    const bool last = i + 1 == kParts;
+    const std::uint32_t a = 2 * i, b = 2 * i + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    strip.triangles.push_back({a, b, c});
+    strip.triangles.push_back({b, d, c});
+  }
+  const OrientedMesh oriented = orient(strip, Orient::kAuto);
+  EXPECT_EQ(oriented.counts.cut_edges, 1U);  // the fewest
+  EXPECT_EQ(oriented.counts.patches, 1U);
+  Random random(2);
+  EXPECT_EQ(set_of_faces(automatic(test::shuffled(strip, random))), set_of_faces(oriented.mesh));
+}
+
+TEST(Orient, LeavesFacesWithEqualCornersAlone) {
+  TriangleMesh mesh = sphere_of(1);
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.triangles.push_back({2, 2, 2});
+  const OrientedMesh oriented = orient(mesh, Orient::kAuto);
+  EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
+  const TriangleMesh nothing{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}};
+  EXPECT_EQ(automatic(nothing).triangles, nothing.triangles);
+  EXPECT_TRUE(automatic({}).triangles.empty());
+}
+
+TEST(Orient, FindsCopiesOfVerticesThatWereNotWelded) {
+  TriangleMesh loose;
+  for (const TriangleMesh ball = sphere_of(1); const Triangle& t : ball.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.vertices.size());
+    for (const std::uint32_t v : t) loose.vertices.push_back(ball.vertices[v]);
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  Random random(4);
+  const OrientedMesh oriented = orient(with_faces_reversed(loose, random, 0.5), Orient::kAuto);
+  EXPECT_EQ(oriented.counts.patches, 1U);
+  EXPECT_EQ(set_of_faces(oriented.mesh), set_of_faces(loose));
+}
+
+TEST(Orient, CountsWhatItDid) {
+  Random random(6);
+  TriangleMesh mesh = sphere_of(1);
+  mesh.triangles.push_back(mesh.triangles[3]);
+  reverse(mesh.triangles[5]);
+  const OrientedMesh oriented = orient(mesh, Orient::kAuto);
+  EXPECT_EQ(oriented.counts.flipped_faces, 1U);
+  EXPECT_EQ(oriented.counts.dropped_duplicates, 1U);
+  EXPECT_EQ(oriented.counts.patches, 1U);
+  EXPECT_EQ(oriented.counts.cut_edges, 0U);
+  // A copy that is stored as it should be is left: nothing is flipped.
+  EXPECT_EQ(orient(welded(doubled(sphere_of(1), random)), Orient::kAuto).counts.flipped_faces, 0U);
+}
+
+// ---- Any mesh ----
+
+// Every kind of defect: faces that share edges, that are there often, that have no area.
+TEST(Orient, DependsOnNeitherOrderNorThreads) {
+  Random random(17);
+  for (int i = 0; i < 60; ++i) {
+    const TriangleMesh mesh = i % 3 == 0   ? test::soup(random, 1 + i)
+                              : i % 3 == 1 ? test::lattice_soup(random, 1 + 3 * i, 3)
+                                           : test::random_cells(random, 3);
+    if (mesh.triangles.empty()) continue;
+    const OrientedMesh expected = orient(mesh, Orient::kAuto);
+    for (int j = 0; j < 3; ++j) {
+      const tbb::global_control one(tbb::global_control::max_allowed_parallelism, j == 0 ? 1 : 8);
+      const OrientedMesh other = orient(test::shuffled(mesh, random), Orient::kAuto);
+      ASSERT_TRUE(set_of_faces(other.mesh) == set_of_faces(expected.mesh)) << "mesh " << i;
+      EXPECT_EQ(other.counts.flipped_faces, expected.counts.flipped_faces);
+      EXPECT_EQ(other.counts.dropped_duplicates, expected.counts.dropped_duplicates);
+      EXPECT_EQ(other.counts.patches, expected.counts.patches);
+      EXPECT_EQ(other.counts.cut_edges, expected.counts.cut_edges);
+    }
+  }
+}
+
+TEST(Orient, IsTheSameAtEveryMagnitude) {
+  const TriangleMesh mesh = joined(joined(sphere_of(1), test::open_box()), sphere_of(0.5, {3, 0, 0}));
+  Random random(19);
+  const TriangleMesh turned = with_faces_reversed(mesh, random, 0.5);
+  const std::vector<Triangle> expected = automatic(turned).triangles;
+  for (const double size : {0x1p1000, 0x1p-1000, 0x1p-40}) {
+    EXPECT_EQ(automatic(test::moved(turned, {size, size, size}, {})).triangles, expected) << size;
+  }
+  for (const double huge : {1e308, 1e300}) {
+    const TriangleMesh wide{{{-huge, 0, 0}, {huge, 0, 1e-300}, {0, huge, 0}, {0, 0, huge}}, {{0, 1, 2}, {3, 1, 0}}};
+    EXPECT_EQ(automatic(wide).triangles.size(), 2U);
+  }
+}
+
+// The least sum over all choices of signs, by the definition of the winding number on both sides of each face.
+TEST(Orient, FindsTheBestOrientationOfAFewOpenPatches) {
+  Random random(23);
+  int best = 0;
+  constexpr int kMeshes = 30;
+  for (int i = 0; i < kMeshes; ++i) {
+    const TriangleMesh mesh = test::soup(random, 6);
+    const auto sum_of = [&](const TriangleMesh& turned) {
+      double sum = 0;
+      for (std::size_t f = 0; f < turned.triangles.size(); ++f) {
+        const Triangle& t = turned.triangles[f];
+        const Vec3 a = turned.vertices[t[0]], b = turned.vertices[t[1]], c = turned.vertices[t[2]];
+        const Vec3 normal = cross(b - a, c - a), middle = (1.0 / 3) * (a + b + c);
+        TriangleMesh others = turned;
+        others.triangles.erase(others.triangles.begin() + static_cast<std::ptrdiff_t>(f));
+        const double mean = test::direct_winding_number(others, middle);
+        sum += std::sqrt(dot(normal, normal)) * (mean - 0.5) * (mean - 0.5);
+      }
+      return sum;
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned choice = 0; choice < 64; ++choice) {
+      TriangleMesh turned = mesh;
+      for (std::size_t f = 0; f < 6; ++f) {
+        if (choice >> f & 1) reverse(turned.triangles[f]);
+      }
+      least = std::min(least, sum_of(turned));
+    }
+    const double found = sum_of(automatic(mesh));
+    best += found < least * 1.0001;
+    EXPECT_LT(found, 1.1 * least + 1e-3) << "mesh " << i;
+  }
+  EXPECT_GE(best, kMeshes * 8 / 10);
+}
+
+}  // namespace
+}  // namespace raycone

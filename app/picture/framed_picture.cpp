@@ -122,7 +122,7 @@ void draw_axis_across(Coverage& ink, const PageLayout& layout, const PlotAxis& a
   const double baseline = bottom + (kTickLength + kTickGap + 1.0) * t;
   for (const Tick& tick : layout.across.marks) {
     const double x = pixel_at(layout.left, layout.width, axis.position_of(tick.value));
-    add_stroke(ink, {{x, bottom}, {x, bottom + kTickLength * t}}, stroke);
+    add_stroke(ink, {{x, bottom + stroke}, {x, bottom + kTickLength * t}}, stroke);  // round ends stay off the plot
     add_text(ink, tick.text, x - text_width(tick.text, t) / 2, baseline, t);
   }
   const std::string label = axis.name + layout.across.offset;
@@ -138,7 +138,7 @@ void draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis& 
   const double number_right = left - (kTickLength + kTickGap) * t;
   for (const Tick& tick : layout.upwards.marks) {
     const double y = pixel_at(layout.top, layout.height, 1.0 - axis.position_of(tick.value));
-    add_stroke(ink, {{left - kTickLength * t, y}, {left, y}}, stroke);
+    add_stroke(ink, {{left - kTickLength * t, y}, {left - stroke, y}}, stroke);
     add_text(ink, tick.text, number_right - text_width(tick.text, t), y + t / 2, t);
   }
   const std::string label = axis.name + layout.upwards.offset;
@@ -178,7 +178,8 @@ Image framed_picture(const Image& plot, const PlaneView& view, const Legend& leg
 }
 
 double framed_picture_bytes(const PlaneView& view) {
-  const auto [shorter, longer] = std::minmax(static_cast<double>(view.width), static_cast<double>(view.height));
+  const auto shorter = static_cast<double>(std::min(view.width, view.height));
+  const auto longer = static_cast<double>(std::max(view.width, view.height));
   constexpr double kMostMargins = 30.0;  // of axes and legend, in heights of digits
   const double page = longer * std::min(longer, shorter + kMostMargins * text_height(view));
   constexpr double kRowSums = 3 * sizeof(double) + 2 * 24;  // while shrinking

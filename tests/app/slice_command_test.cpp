@@ -92,20 +92,20 @@ TEST_F(Slice, AlongAnObliquePlaneIsThatAlongTheAxisIfTheyAreTheSame) {
 }
 
 TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {
-  const std::vector<std::string> common{"--bounds", "-1,0,0,2,1,1", "--size", "4", "--at", "0.5", "--values", values_};
-  const auto row = [&](const std::vector<std::string>& more) {
+  const std::vector<std::string> common{"--bounds", "-1,0,0,3,2,1", "--size", "4", "--at", "0.5", "--values", values_};
+  const auto lower_row = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = common;
     words.insert(words.end(), more.begin(), more.end());
     const CommandResult result = slice(words);
     EXPECT_EQ(result.status, 0) << result.err;
     const std::vector<double> two_rows = values(2, 4);
-    return std::vector<double>(two_rows.begin(), two_rows.begin() + 4);
+    return std::vector<double>(two_rows.begin() + 4, two_rows.end());
   };
-  // x = -1, 0, 1, 2 at y = 1, on the cube's upper face, which is outside.
-  EXPECT_EQ(row({"--field", "inside"}), (std::vector<double>{0, 0, 0, 0}));
-  EXPECT_EQ(row({"--field", "sdf"}), (std::vector<double>{1, 0, 0, 1}));
-  EXPECT_EQ(row({"--field", "inside", "--rule", "threshold=0"}), (std::vector<double>{1, 1, 1, 1}));
-  EXPECT_EQ(row({"--field", "sdf", "--rule", "threshold=0"}), (std::vector<double>{-1, 0, 0, -1}));
+  // x = -0.5, 0.5, 1.5, 2.5 at y = 0.5.
+  EXPECT_EQ(lower_row({"--field", "inside"}), (std::vector<double>{0, 1, 0, 0}));
+  EXPECT_EQ(lower_row({"--field", "sdf"}), (std::vector<double>{0.5, -0.5, 0.5, 1.5}));
+  EXPECT_EQ(lower_row({"--field", "inside", "--rule", "threshold=0"}), (std::vector<double>{1, 1, 1, 1}));
+  EXPECT_EQ(lower_row({"--field", "sdf", "--rule", "threshold=0"}), (std::vector<double>{-0.5, -0.5, -0.5, -1.5}));
   EXPECT_NE(read_text(picture_).find("signed distance by threshold=0 at z = 0.5"), std::string::npos);
 }
 

@@ -125,7 +125,7 @@ class Carrier {
   void carry(Box& box) { carry_members<2>(box); }
   void carry(ReadMeshOptions& options) { carry_members<3>(options); }
   void carry(Weld& weld) { carry_members<2>(weld); }
-  void carry(MeshOptions& options) { carry_members<3>(options); }
+  void carry(MeshOptions& options) { carry_members<4>(options); }
   void carry(RunOptions& options) { carry_members<6>(options); }
   void carry(Rule& rule) { carry_members<2>(rule); }
   void carry(FieldOptions& options) { carry_members<7>(options); }

@@ -15,6 +15,9 @@ constexpr std::array kStatusNames{"ok", "invalid", "timeout", "memory", "crashed
 // The columns between `exit` and `output`.
 constexpr std::size_t kFirstFigure = 3;
 constexpr std::size_t kFigures = 10;
+// The columns at the end.
+constexpr std::size_t kFirstOrientationFigure = 16;
+constexpr std::size_t kOrientationFigures = 3;
 
 std::string seconds_text(double seconds) {
   char text[48];
@@ -28,6 +31,10 @@ CsvRecord to_fields(const MeshFigures& f) {
           std::to_string(f.on_surface), seconds_text(f.read_s),
           seconds_text(f.prepare_s),    seconds_text(f.evaluate_s),
           seconds_text(f.write_s),      std::to_string(f.peak_memory_bytes)};
+}
+
+CsvRecord orientation_fields(const MeshFigures& f) {
+  return {std::to_string(f.flipped_faces), std::to_string(f.dropped_duplicates), std::to_string(f.patches)};
 }
 
 // Reads the fields of a record one after the other; `valid` is false once one of them is no number.
@@ -61,7 +68,9 @@ std::optional<MeshFigures> figures_from(const CsvRecord& record) {
   }
   for (double* const seconds : {&f.read_s, &f.prepare_s, &f.evaluate_s, &f.write_s}) *seconds = fields.number();
   f.peak_memory_bytes = fields.count();
-  if (!fields.valid()) return std::nullopt;
+  FigureReader last(record, kFirstOrientationFigure);
+  for (std::uint64_t* const count : {&f.flipped_faces, &f.dropped_duplicates, &f.patches}) *count = last.count();
+  if (!fields.valid() || !last.valid()) return std::nullopt;
   return f;
 }
 
@@ -70,9 +79,25 @@ std::optional<MeshFigures> figures_from(const CsvRecord& record) {
 std::string name_of(MeshStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
 
 const CsvRecord& result_columns() {
-  static const CsvRecord columns{
-      "mesh",   "status",    "exit",       "faces",   "exterior_edges",    "samples", "degenerate", "on_surface",
-      "read_s", "prepare_s", "evaluate_s", "write_s", "peak_memory_bytes", "output",  "sha256",     "message"};
+  static const CsvRecord columns{"mesh",
+                                 "status",
+                                 "exit",
+                                 "faces",
+                                 "exterior_edges",
+                                 "samples",
+                                 "degenerate",
+                                 "on_surface",
+                                 "read_s",
+                                 "prepare_s",
+                                 "evaluate_s",
+                                 "write_s",
+                                 "peak_memory_bytes",
+                                 "output",
+                                 "sha256",
+                                 "message",
+                                 "flipped_faces",
+                                 "dropped_duplicates",
+                                 "patches"};
   return columns;
 }
 
@@ -81,6 +106,8 @@ CsvRecord to_record(const ResultRow& row) {
   const CsvRecord figures = row.figures ? to_fields(*row.figures) : CsvRecord(kFigures);
   record.insert(record.end(), figures.begin(), figures.end());
   record.insert(record.end(), {row.output, row.sha256, row.message});
+  const CsvRecord orientation = row.figures ? orientation_fields(*row.figures) : CsvRecord(kOrientationFigures);
+  record.insert(record.end(), orientation.begin(), orientation.end());
   return record;
 }
 

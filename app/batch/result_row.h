@@ -26,6 +26,9 @@ struct MeshFigures {
   double evaluate_s = 0.0;
   double write_s = 0.0;
   std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t flipped_faces = 0;  // these three: by --orient
+  std::uint64_t dropped_duplicates = 0;
+  std::uint64_t patches = 0;
 
   [[nodiscard]] double seconds() const { return read_s + prepare_s + evaluate_s + write_s; }
 };

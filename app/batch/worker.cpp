@@ -98,8 +98,19 @@ class Connection {
 
 MeshFigures figures_of(const RunReport& report) {
   const Seconds& seconds = report.seconds;
-  return {report.faces, report.exterior_edges, report.samples,   report.tally.degenerate, report.tally.on_surface,
-          seconds.read, seconds.prepare,       seconds.evaluate, seconds.write,           report.peak_memory_bytes};
+  return {report.faces,
+          report.exterior_edges,
+          report.samples,
+          report.tally.degenerate,
+          report.tally.on_surface,
+          seconds.read,
+          seconds.prepare,
+          seconds.evaluate,
+          seconds.write,
+          report.peak_memory_bytes,
+          report.orientation.flipped_faces,
+          report.orientation.dropped_duplicates,
+          report.orientation.patches};
 }
 
 // "FILE: 3 faces skipped; 1 triangle ..."

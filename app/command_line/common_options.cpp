@@ -21,6 +21,14 @@ Weld parse_weld(const Values& values) {
   return {WeldMode::kDistance, *distance};
 }
 
+Orient parse_orient(const Values& values) {
+  const std::map<std::string, Orient> ways{
+      {"", Orient::kKeep}, {"keep", Orient::kKeep}, {"flip", Orient::kFlip}, {"auto", Orient::kAuto}};
+  const auto way = ways.find(values.text("--orient"));
+  if (way == ways.end()) invalid("--orient", values.text("--orient"), "keep, flip or auto");
+  return way->second;
+}
+
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
   if (formats.only) return *formats.only;
   const bool named = values.given("--format");
@@ -42,6 +50,7 @@ OptionGroup mesh_group() {
   return {"Mesh",
           {{"--mesh-format", "obj|ply|stl|off|gltf|glb", "Format of the mesh on standard input"},
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
+           {"--orient", "keep|flip|auto", "Turn no face, all, or those that make the mesh agree and face outward"},
            {"--scale", "S", "Multiply all coordinates by S"},
            {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"}}};
 }
@@ -58,6 +67,7 @@ MeshOptions parse_mesh(const Values& values) {
   mesh.reading.y_up_to_z_up = values.given("--up");
   if (values.given("--up") && values.text("--up") != "y-to-z") invalid("--up", values.text("--up"), "y-to-z");
   mesh.weld = parse_weld(values);
+  mesh.orient = parse_orient(values);
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/mesh/weld.h"
+#include "core/orientation/orient.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -12,6 +13,7 @@ struct MeshOptions {
   std::string path;  // "-": standard input
   ReadMeshOptions reading;
   Weld weld;
+  Orient orient = Orient::kKeep;
 };
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 
 #include "core/data/lattice.h"
 #include "core/evaluation/winding_number.h"
+#include "core/orientation/orient.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -38,6 +39,7 @@ struct RunReport {
   std::string output;
   std::uint64_t vertices = 0;  // as read, before welding
   std::uint64_t faces = 0;
+  OrientationCounts orientation;
   std::uint64_t exterior_edges = 0;
   std::uint64_t samples = 0;
   std::optional<Lattice> lattice;  // absent for points

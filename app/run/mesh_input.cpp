@@ -27,8 +27,14 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   return file;
 }
 
-TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options) {
-  return weld(std::move(as_read), options.weld);
+OrientedMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<std::string>& warnings) {
+  OrientedMesh oriented = orient(weld(std::move(as_read), options.weld), options.orient);
+  if (const std::uint64_t cut = oriented.counts.cut_edges) {
+    const std::string edges = cut == 1 ? " edge was" : " edges were";
+    warnings.push_back("unorientable: " + std::to_string(cut) + edges +
+                       " cut, because no orientation makes all faces agree");
+  }
+  return oriented;
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh) {

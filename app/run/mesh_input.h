@@ -8,6 +8,7 @@
 #include "app/options/run_options.h"
 #include "app/run/run_limits.h"
 #include "core/data/triangle_mesh.h"
+#include "core/orientation/orient.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -16,8 +17,10 @@ namespace raycone {
 // large for the memory.
 [[nodiscard]] MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
-// All that is done to a mesh before anything is made of it: the one place for it.
-[[nodiscard]] TriangleMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options);
+// All that is done to a mesh before anything is made of it: the one place for it. What is worth a warning is added to
+// `warnings`.
+[[nodiscard]] OrientedMesh mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
+                                            std::vector<std::string>& warnings);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void print_warnings(const std::vector<std::string>& warnings, const RunOptions& options, const std::string& mesh);

@@ -30,7 +30,10 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.faces = file.parsed.mesh.triangles.size();
   report.warnings = std::move(file.parsed.warnings);
   refuse_to_replace_input(written, report.files_read);
-  return timed(report.seconds.prepare, [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_); });
+  OrientedMesh oriented = timed(report.seconds.prepare,
+                                [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings); });
+  report.orientation = oriented.counts;
+  return std::move(oriented.mesh);
 }
 
 void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }

@@ -38,13 +38,13 @@ std::string run_info(const InfoCommand& command, const RunLimits& limits) {
   refuse_to_replace_input(written, {command.mesh.path});
   MeshFile file = read_mesh_file(command.mesh, limits);
   for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
-  print_warnings(file.parsed.warnings, command.run, command.mesh.path);
   MeshInfo info;
   info.mesh = command.mesh.path;
   info.faces = file.parsed.mesh.triangles.size();
   info.vertices = file.parsed.mesh.vertices.size();
   info.skipped_faces = file.parsed.skipped_faces;
-  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh);
+  const TriangleMesh mesh = mesh_to_evaluate(std::move(file.parsed.mesh), command.mesh, file.parsed.warnings).mesh;
+  print_warnings(file.parsed.warnings, command.run, command.mesh.path);
   info.welded_vertices = mesh.vertices.size();
   info.bounds = bounding_box(mesh);
   info.statistics = mesh_statistics(mesh);

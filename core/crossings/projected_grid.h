@@ -27,6 +27,10 @@ class ProjectedGrid {
   template <class Doubtful>
   [[nodiscard]] int crossings(const Vec3& q, const Doubtful& doubtful) const;
 
+  // Calls visit(i) once for each triangle i that the ray {q + t x, t >= 0} may cross or that may hold q. Thread-safe.
+  template <class Visit>
+  void for_each_candidate(const Vec3& q, const Visit& visit) const;
+
   // Where a ray lies along a Z-curve through the projection, in [0, kMortonCodes): rays of neighbouring codes share
   // triangles.
   static constexpr std::size_t kMortonCodes = std::size_t{1} << 16;
@@ -78,6 +82,10 @@ class ProjectedGrid {
   [[nodiscard]] std::vector<std::uint32_t> in_morton_order(const TriangleMesh& mesh) const;
   [[nodiscard]] Filter filter_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
   [[nodiscard]] const Cell& cell_at(double y, double z) const;
+  // Whether the ray may meet the mesh's box.
+  [[nodiscard]] bool is_before(const Local& p) const {
+    return p.y >= lower_.y && p.y <= upper_.y && p.z >= lower_.z && p.z <= upper_.z && p.x <= upper_.x;
+  }
 
   Vec3 centre_;
   PowerOfTwo unit_;
@@ -100,10 +108,22 @@ inline const ProjectedGrid::Cell& ProjectedGrid::cell_at(double y, double z) con
   }
 }
 
+template <class Visit>
+void ProjectedGrid::for_each_candidate(const Vec3& q, const Visit& visit) const {
+  const Local p = local(q);
+  if (!is_before(p)) return;
+  const auto x = static_cast<float>(std::max(p.x, -2.0));
+  const Cell& cell = cell_at(p.y, p.z);
+  for (const Entry& entry : std::span(entries_.data() + cell.first_entry, cell.entries)) {
+    if (entry.upper_x < x) break;
+    visit(triangles_[entry.triangle]);
+  }
+}
+
 template <class Doubtful>
 int ProjectedGrid::crossings(const Vec3& q, const Doubtful& doubtful) const {
   const Local p = local(q);
-  if (!(p.y >= lower_.y && p.y <= upper_.y && p.z >= lower_.z && p.z <= upper_.z && p.x <= upper_.x)) return 0;
+  if (!is_before(p)) return 0;
   const auto x = static_cast<float>(std::max(p.x, -2.0));
   const __m128 xs = _mm_set_ps(x, 0, 0, 0);
   const __m128 ys = _mm_set1_ps(static_cast<float>(p.y)), zs = _mm_set1_ps(static_cast<float>(p.z));

@@ -1,5 +1,5 @@
-// Doubles as integers of any size (GMP), for definitions that verification rests on. Only direct_sum.cpp and
-// direct_distance.cpp include this.
+// Doubles as integers of any size (GMP): for definitions that verification rests on, and for the sign of a volume. Only
+// direct_sum.cpp, direct_distance.cpp and volume_sign.cpp include this.
 #pragma once
 
 #include <gmpxx.h>

@@ -1,0 +1,27 @@
+// How closed patches are turned.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/orientation/nesting.h"
+
+namespace raycone {
+
+// A closed patch, or several open ones that close each other.
+struct ClosedPatch {
+  ClosedSurface surface;  // turned to agree
+  // 1: all of its faces agree as stored, and with `surface`; -1: agree as stored, the other way round; 0: do not agree,
+  // or have no opinion.
+  int stored = 0;
+};
+
+// For each patch 1 where it stays as its surface is, -1 where it is reversed: outward outside all others, and within
+// another one as orient() says. Outward is what makes the volume positive; where it is 0, the first face by coordinates
+// decides. The innermost of those around a patch is the one that most others are around; of several, the one with the
+// first face by coordinates. Exact. Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
+[[nodiscard]] std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches,
+                                                   const std::vector<Vec3>& vertices);
+
+}  // namespace raycone

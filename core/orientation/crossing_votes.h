@@ -1,0 +1,18 @@
+// What rays say about which side of a face is outside.
+#pragma once
+
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/orientation/surface_samples.h"
+
+namespace raycone {
+
+// For each sample: positive where its face seems to face outward, negative where inward; between -4 and 4. Along each
+// axis, a side from which a ray crosses an even number of other faces counts as outside, so far as the face is across
+// the axis: of closed surfaces, all rays are right, whatever the orientation of the faces that they cross. Coordinates
+// in [0, 1]. Exact but for the last rounding. Uses the threads that ThreadLimit allows.
+[[nodiscard]] std::vector<double> crossing_votes(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+                                                 const std::vector<SurfaceSample>& samples);
+
+}  // namespace raycone

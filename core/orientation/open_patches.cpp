@@ -1,0 +1,278 @@
+#include "core/orientation/open_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/exact/scale.h"
+#include "core/machine/threads.h"
+#include "core/orientation/canonical_face.h"
+#include "core/orientation/crossing_votes.h"
+#include "core/orientation/dipole_tree.h"
+#include "core/orientation/surface_field.h"
+#include "core/orientation/surface_samples.h"
+#include "core/orientation/turn_problem.h"
+
+namespace raycone {
+namespace {
+
+// Up to so many surfaces, each acts on every sample for itself. Beyond, only the largest do; others act on what is
+// near, and from afar as dipoles of a tree.
+constexpr std::size_t kFewSurfaces = 1500;
+constexpr std::size_t kLargestSurfaces = 48;
+
+// The vertices of the faces in [0, 1]^3, up to rounding. Others are not moved along, and may be anywhere.
+std::vector<Vec3> in_unit_box(const std::vector<Vec3>& vertices, const Box& box) {
+  double size = 0.0;  // a quarter of it, which cannot overflow
+  for (int axis = 0; axis < 3; ++axis) size = std::max(size, 0.25 * box.upper[axis] - 0.25 * box.lower[axis]);
+  int exponent = 0;
+  std::frexp(size, &exponent);
+  const PowerOfTwo scale(-exponent);
+  const Vec3 corner = 0.25 * box.lower;
+  std::vector<Vec3> moved;
+  moved.reserve(vertices.size());
+  for (const Vec3& p : vertices) moved.push_back(scale(0.25 * p - corner));
+  return moved;
+}
+
+void add_to(Box& box, const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices) {
+  for (const Triangle& t : faces) {
+    for (const std::uint32_t v : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
+        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
+      }
+    }
+  }
+}
+
+// Turned so that its first face runs around its corners by rising coordinates.
+struct TurningSurface {
+  const std::vector<Triangle>* faces;
+  std::size_t number;   // among the surfaces given
+  CanonicalFace first;  // its sign: that of the orientation given
+  std::vector<SurfaceSample> samples;
+  double weight = 0.0;  // of its samples
+};
+
+class OpenSurfaceTurner {
+ public:
+  OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
+                    const std::vector<Vec3>& vertices)
+      : vertices_(vertices), closed_(closed) {
+    set_order(surfaces);
+    set_samples();
+  }
+
+  // Per surface, in the order given.
+  std::vector<int> turn() {
+    const std::vector<int> best = surfaces_.size() <= kFewSurfaces ? turn_few() : turn_many();
+    std::vector<int> result(surfaces_.size());
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) result[surfaces_[i].number] = best[i] * surfaces_[i].first.sign;
+    return result;
+  }
+
+ private:
+  // Large ones first.
+  void set_order(const std::vector<OpenSurface>& surfaces) {
+    constexpr std::size_t kSamples = 1024, kMost = 64;
+    const std::size_t each = std::clamp(kSamples / surfaces.size(), surfaces.size() <= kFewSurfaces ? 2UL : 1UL, kMost);
+    surfaces_.resize(surfaces.size());
+    parallel_for(surfaces.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::vector<Triangle>& faces = surfaces[i].faces;
+        TurningSurface& turning = surfaces_[i];
+        turning = {&faces, i, first_canonical_face(faces, vertices_), sample_surface(faces, vertices_, each), 0.0};
+        for (SurfaceSample& sample : turning.samples) {
+          sample.side *= turning.first.sign;
+          sample.face.sign *= turning.first.sign;
+          turning.weight += sample.weight;
+        }
+      }
+    });
+    std::sort(surfaces_.begin(), surfaces_.end(), [](const TurningSurface& a, const TurningSurface& b) {
+      return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
+    });
+  }
+
+  void set_samples() {
+    constexpr std::size_t kOfClosed = 64;
+    for (const TurningSurface& surface : surfaces_) {
+      first_sample_.push_back(samples_.size());
+      samples_.insert(samples_.end(), surface.samples.begin(), surface.samples.end());
+    }
+    first_sample_.push_back(samples_.size());
+    const std::vector<SurfaceSample> of_closed = sample_surface(closed_, vertices_, kOfClosed);
+    samples_.insert(samples_.end(), of_closed.begin(), of_closed.end());
+    for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
+    constant_.assign(samples_.size(), -0.5);
+    if (closed_.empty()) return;
+    std::vector<FieldPoint> points;
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      points.push_back({samples_[k].at, k < first_sample_.back() ? 0 : samples_[k].side});
+    }
+    const std::vector<double> w = SurfaceField(closed_, vertices_, false).winding_numbers(points);
+    for (std::size_t k = 0; k < w.size(); ++k) constant_[k] += w[k];
+  }
+
+  [[nodiscard]] bool is_own(std::size_t surface, std::size_t sample) const {
+    return sample >= first_sample_[surface] && sample < first_sample_[surface + 1];
+  }
+
+  // What a surface does at samples.
+  [[nodiscard]] std::vector<TurnProblem::Effect> effects(std::size_t surface,
+                                                         std::span<const std::uint32_t> samples) const {
+    const SurfaceField field(*surfaces_[surface].faces, vertices_, surfaces_[surface].first.sign < 0);
+    std::vector<FieldPoint> points;
+    for (const std::uint32_t k : samples) points.push_back({samples_[k].at, is_own(surface, k) ? samples_[k].side : 0});
+    const std::vector<double> w = field.winding_numbers(points);
+    std::vector<TurnProblem::Effect> result;
+    for (std::size_t i = 0; i < samples.size(); ++i) result.push_back({samples[i], static_cast<float>(w[i])});
+    return result;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> all_samples() const {
+    std::vector<std::uint32_t> all(samples_.size());
+    for (std::uint32_t k = 0; k < all.size(); ++k) all[k] = k;
+    return all;
+  }
+
+  // With what each surface does at its samples; at most a thousand surfaces at once are in memory beside the problem.
+  [[nodiscard]] TurnProblem problem(const std::vector<std::vector<std::uint32_t>>& samples_of) const {
+    constexpr std::size_t kAtOnce = 1024;
+    TurnProblem result(weight_);
+    for (std::size_t first = 0; first < surfaces_.size(); first += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, surfaces_.size() - first);
+      std::vector<std::vector<TurnProblem::Effect>> of_surface(count);
+      parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) of_surface[i] = effects(first + i, samples_of[first + i]);
+      });
+      for (const auto& its : of_surface) result.add_surface(its);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<int> turn_few() const {
+    const TurnProblem few = problem(std::vector<std::vector<std::uint32_t>>(surfaces_.size(), all_samples()));
+    std::vector<int> best(surfaces_.size(), 1);
+    double least = few.improve(constant_, best);
+    std::vector<int> other = few.one_after_the_other(constant_);
+    if (few.improve(constant_, other) < least) best = other;
+    return best;
+  }
+
+  // From what rays say, and on from there: what is far counts as it is turned at the time.
+  [[nodiscard]] std::vector<int> turn_many() const {
+    DipoleTree tree = far_tree();
+    const TurnProblem near = problem(near_samples(tree));
+    std::vector<int> best = voted();
+    std::vector<double> rest = with_far(tree, best);
+    double least = near.sum(rest, best);
+    constexpr int kMaxRounds = 12;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      std::vector<int> turn = best;
+      near.improve(rest, turn);
+      rest = with_far(tree, turn);
+      const double sum = near.sum(rest, turn);
+      if (!(sum < least)) break;
+      least = sum;
+      best = std::move(turn);
+    }
+    return best;
+  }
+
+  // The largest surfaces are near everywhere. Others are as small as it takes for few to be near a sample.
+  [[nodiscard]] DipoleTree far_tree() const {
+    constexpr std::size_t kTried = 256, kMostNear = 96;
+    std::vector<SurfaceDipole> dipoles(surfaces_.size());
+    parallel_for(surfaces_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign < 0);
+        if (i < kLargestSurfaces) dipoles[i].area = {};
+      }
+    });
+    for (double reach = 1.0;; reach /= 2) {
+      DipoleTree tree(dipoles, reach);
+      std::size_t near = 0;
+      const std::size_t step = samples_.size() / kTried + 1;
+      for (std::size_t k = 0; k < samples_.size(); k += step) {
+        tree.for_each_near(samples_[k].at, [&](std::uint32_t) { ++near; });
+      }
+      if (near <= kMostNear * (samples_.size() / step + 1)) return tree;
+    }
+  }
+
+  // For each surface the samples that it is near.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> near_samples(const DipoleTree& tree) const {
+    std::vector<std::vector<std::uint32_t>> near_surfaces(samples_.size());
+    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        tree.for_each_near(samples_[k].at, [&](std::uint32_t surface) {
+          if (surface >= kLargestSurfaces && !is_own(surface, k)) near_surfaces[k].push_back(surface);
+        });
+      }
+    });
+    std::vector<std::vector<std::uint32_t>> result(surfaces_.size(), std::vector<std::uint32_t>());
+    for (std::size_t i = 0; i < kLargestSurfaces; ++i) result[i] = all_samples();
+    for (std::size_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k)
+        result[i].push_back(static_cast<std::uint32_t>(k));
+    }
+    for (std::uint32_t k = 0; k < samples_.size(); ++k) {
+      for (const std::uint32_t surface : near_surfaces[k]) result[surface].push_back(k);
+    }
+    return result;
+  }
+
+  // constant_ and what surfaces do from afar; what one does to its own samples is not far.
+  [[nodiscard]] std::vector<double> with_far(DipoleTree& tree, const std::vector<int>& turn) const {
+    tree.set_signs(turn);
+    std::vector<double> rest = constant_;
+    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) rest[k] += tree.far_sum(samples_[k].at);
+    });
+    for (std::uint32_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) {
+        rest[k] -= turn[i] * tree.far_part(i, samples_[k].at);
+      }
+    }
+    return rest;
+  }
+
+  [[nodiscard]] std::vector<int> voted() const {
+    std::vector<Triangle> all(closed_);
+    for (const TurningSurface& surface : surfaces_) all.insert(all.end(), surface.faces->begin(), surface.faces->end());
+    const std::vector<double> votes = crossing_votes(all, vertices_, samples_);
+    std::vector<int> turn;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      double sum = 0.0;
+      for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) sum += weight_[k] * votes[k];
+      turn.push_back(sum < 0.0 ? -1 : 1);
+    }
+    return turn;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<Triangle>& closed_;
+  std::vector<TurningSurface> surfaces_;
+  std::vector<SurfaceSample> samples_;  // by surface, then those of the closed faces
+  std::vector<std::size_t> first_sample_;
+  std::vector<double> weight_;
+  std::vector<double> constant_;  // per sample: of the closed faces, less 1/2
+};
+
+}  // namespace
+
+std::vector<int> turn_open_surfaces(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
+                                    const std::vector<Vec3>& vertices) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const OpenSurface& surface : surfaces) add_to(box, surface.faces, vertices);
+  add_to(box, closed, vertices);
+  return OpenSurfaceTurner(surfaces, closed, in_unit_box(vertices, box)).turn();
+}
+
+}  // namespace raycone

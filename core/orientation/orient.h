@@ -1,0 +1,43 @@
+// Meshes as they come are turned until their faces agree.
+#pragma once
+
+#include <cstdint>
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+enum class Orient {
+  kKeep,  // faces as they are stored
+  kFlip,  // every face reversed
+  kAuto,  // consistent, and outward
+};
+
+struct OrientationCounts {
+  std::uint64_t flipped_faces = 0;       // of those that are left, how many were stored the other way round
+  std::uint64_t dropped_duplicates = 0;  // of the same three positions as a face that is left
+  std::uint64_t patches = 0;             // sets of faces that were turned together
+  std::uint64_t cut_edges = 0;           // where two faces cannot agree, as on a Moebius strip
+};
+
+struct OrientedMesh {
+  TriangleMesh mesh;
+  OrientationCounts counts;  // all 0 but with kFlip and kAuto
+};
+
+// The mesh with its faces turned. Vertices stay as they are, faces in their order and with their first corner. kAuto:
+//
+//   Of faces with the same three positions, one is left. Faces with two equal corners stay as they are.
+//   Patches are joined across edges that exactly two faces share, and turned to agree; where they cannot, they are cut.
+//   A closed patch has no boundary, as a sum of directed edges. Outside all others it is turned outward. Within another
+//   one it is turned the other way than the innermost of those around it; if the faces of both agreed as stored, the
+//   two keep their relation instead. Open patches are turned so that the winding number comes closest to 0 before the
+//   faces and 1 behind them.
+//
+// docs/method.md, "Orientation", has the rules. The result does not depend on the order of faces and vertices, nor on
+// the number of threads; it uses those that ThreadLimit allows. Preconditions: the vertices that triangles use are
+// finite, and no coordinate is -0 (core/mesh/weld.h). Throws std::bad_alloc, and std::length_error for more than
+// kMaxTriangles.
+[[nodiscard]] OrientedMesh orient(TriangleMesh mesh, Orient how);
+
+}  // namespace raycone

@@ -1,0 +1,25 @@
+// Patches that close each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/orientation/face_edges.h"
+#include "core/orientation/patches.h"
+
+namespace raycone {
+
+// Patches joined where the faces at an edge cancel but for those of two patches, as where two solids touch along it.
+struct Pieces {
+  std::vector<std::uint32_t> of_patch;
+  std::vector<std::int8_t> sign;        // per patch: how it is turned within its piece
+  std::vector<std::uint8_t> is_closed;  // per piece: its boundary, as a sum of directed edges, is 0
+
+  [[nodiscard]] std::size_t size() const { return is_closed.size(); }
+};
+
+// Where the wishes of edges contradict each other, patches are not joined. The result does not depend on the order of
+// faces, but for the numbers of pieces and for which of the two orientations is 1.
+[[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceEdges& edges);
+
+}  // namespace raycone

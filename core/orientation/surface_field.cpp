@@ -1,0 +1,129 @@
+#include "core/orientation/surface_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/orientation/canonical_face.h"
+
+namespace raycone {
+namespace {
+
+// Integers can be added in any order.
+constexpr double kAreaUnits = 0x1p60;
+constexpr double kTurnUnits = 0x1p52;
+constexpr std::size_t kLargeSurface = 32;  // faces: from here on the evaluator is faster than a sum over all of them
+
+std::int64_t in_units(double value, double units) { return std::llround(value * units); }
+
+double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+// Van Oosterom and Strackee 1983, eq. 8. On the face: the mean of both sides.
+double turns_of(const std::array<Vec3, 3>& corners, const Vec3& q) {
+  const Vec3 a = corners[0] - q, b = corners[1] - q, c = corners[2] - q;
+  constexpr double kOnFace = 1e-9;  // of the imaginary part beside the real one: far above rounding
+  const double la = length(a), lb = length(b), lc = length(c);
+  const double real = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  const double imaginary = dot(a, cross(b, c));
+  if (real < 0.0 && std::abs(imaginary) < -kOnFace * real) return 0.0;
+  return std::atan2(imaginary, real) / (2.0 * std::numbers::pi);
+}
+
+// A mesh of these faces, and of no other vertices.
+TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+  std::vector<std::uint32_t> used;
+  for (const Triangle& t : faces) used.insert(used.end(), t.begin(), t.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  TriangleMesh mesh;
+  for (const std::uint32_t v : used) mesh.vertices.push_back(vertices[v]);
+  for (const Triangle& t : faces) {
+    Triangle local;
+    for (std::size_t i = 0; i < 3; ++i) {
+      local[i] = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), t[i]) - used.begin());
+    }
+    if (reversed) std::swap(local[1], local[2]);
+    mesh.triangles.push_back(local);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+double SurfaceDipole::at(const Vec3& q) const {
+  const Vec3 r = centre - q;
+  const double distance = length(r);
+  if (!(distance > 0.0)) return 0.0;
+  return dot(area, r) / (4.0 * std::numbers::pi * distance * distance * distance);
+}
+
+SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+  Box box{vertices[faces.front()[0]], vertices[faces.front()[0]]};
+  std::array<__int128, 3> area{};
+  for (const Triangle& t : faces) {
+    const CanonicalFace face = canonical_face(t, vertices);
+    const Vec3 twice = cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
+    for (int axis = 0; axis < 3; ++axis) {
+      area[static_cast<std::size_t>(axis)] +=
+          (reversed ? -face.sign : face.sign) * in_units(0.5 * twice[axis], kAreaUnits);
+      for (const Vec3& corner : face.corners) {
+        box.lower[axis] = std::min(box.lower[axis], corner[axis]);
+        box.upper[axis] = std::max(box.upper[axis], corner[axis]);
+      }
+    }
+  }
+  SurfaceDipole dipole;
+  dipole.centre = 0.5 * box.lower + 0.5 * box.upper;
+  dipole.area = {static_cast<double>(area[0]) / kAreaUnits, static_cast<double>(area[1]) / kAreaUnits,
+                 static_cast<double>(area[2]) / kAreaUnits};
+  dipole.radius = 0.5 * length(box.upper - box.lower);
+  return dipole;
+}
+
+SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed)
+    : dipole_(dipole_of(faces, vertices, reversed)) {
+  if (faces.size() >= kLargeSurface) {
+    evaluator_.emplace(mesh_of(faces, vertices, reversed));
+    return;
+  }
+  for (const Triangle& t : faces) {
+    const CanonicalFace face = canonical_face(t, vertices);
+    faces_.push_back(face.corners);
+    if ((face.sign < 0) != reversed) std::swap(faces_.back()[1], faces_.back()[2]);
+  }
+}
+
+bool SurfaceField::is_far(const Vec3& q) const {
+  const Vec3 r = q - dipole_.centre;
+  return dot(r, r) > kFar * kFar * dipole_.radius * dipole_.radius;
+}
+
+double SurfaceField::of_triangles(const Vec3& q) const {
+  std::int64_t sum = 0;
+  for (const auto& corners : faces_) sum += in_units(turns_of(corners, q), kTurnUnits);
+  return static_cast<double>(sum) / kTurnUnits;
+}
+
+std::vector<double> SurfaceField::winding_numbers(std::span<const FieldPoint> points) const {
+  std::vector<double> values(points.size());
+  std::vector<Vec3> near;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_far(points[i].at)) {
+      values[i] = dipole_.at(points[i].at);
+    } else if (!evaluator_) {
+      values[i] = of_triangles(points[i].at);
+    } else {
+      near.push_back(points[i].at);
+      places.push_back(i);
+    }
+  }
+  if (near.empty()) return values;
+  std::vector<double> of_near(near.size());
+  evaluator_->evaluate(near, of_near);
+  for (std::size_t i = 0; i < near.size(); ++i) values[places[i]] = of_near[i] + 0.5 * points[places[i]].side;
+  return values;
+}
+
+}  // namespace raycone

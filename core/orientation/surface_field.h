@@ -1,0 +1,58 @@
+// Winding numbers of one open surface at samples, for the choice of its orientation: near exact, from afar a dipole.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/evaluation/winding_number.h"
+
+namespace raycone {
+
+// What a surface looks like from afar (Barill, Dickson, Schmidt, Levin, Jacobson 2018, first order).
+struct SurfaceDipole {
+  Vec3 centre;
+  Vec3 area;            // vector area
+  double radius = 0.0;  // of a sphere about the centre that holds the surface
+
+  // Winding number, turns; good from afar.
+  [[nodiscard]] double at(const Vec3& q) const;
+};
+
+// About the middle of the surface's box; `reversed`: of the faces the other way round. Coordinates in [0, 1]. Does not
+// depend on the order of faces, whose areas are added up as integers.
+[[nodiscard]] SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+                                      bool reversed);
+
+// A point, and where it lies on the surface itself: 0 not there, else as SurfaceSample::side.
+struct FieldPoint {
+  Vec3 at;
+  int side = 0;
+};
+
+// Exact up to rounding nearby; does not depend on the order of faces.
+class SurfaceField {
+ public:
+  // As for dipole_of().
+  SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed);
+
+  [[nodiscard]] const SurfaceDipole& dipole() const { return dipole_; }
+  // Beyond this many radii from its centre a surface is a dipole: it is then off by some percent of itself.
+  static constexpr double kFar = 3.0;
+  [[nodiscard]] bool is_far(const Vec3& q) const;
+
+  // The winding number at each point, turns; where it is far, that of the dipole. On the surface itself it is the mean
+  // of both sides. Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
+  [[nodiscard]] std::vector<double> winding_numbers(std::span<const FieldPoint> points) const;
+
+ private:
+  [[nodiscard]] double of_triangles(const Vec3& q) const;
+
+  std::vector<std::array<Vec3, 3>> faces_;           // of a small surface, which is summed face by face
+  std::optional<WindingNumberEvaluator> evaluator_;  // of a large one
+  SurfaceDipole dipole_;
+};
+
+}  // namespace raycone

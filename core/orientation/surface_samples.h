@@ -1,0 +1,27 @@
+// Points that stand for surfaces.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/orientation/canonical_face.h"
+
+namespace raycone {
+
+// A point on a face, up to rounding.
+struct SurfaceSample {
+  Vec3 at;
+  double weight = 0.0;  // the area that it stands for, positive
+  CanonicalFace face;   // that it lies on
+  int side = 0;         // where the perturbed point is (core/exact/predicates.h): 1 before the face, -1 behind it
+};
+
+// At most `count` samples, the middles of faces. Larger faces are taken rather than smaller ones: those whose area,
+// divided by a number in (0, 1) that the corners' coordinates give, is largest (priority sampling; Duffield, Lund,
+// Thorup 2007). Their order depends on coordinates only. None where all areas are 0. Uses the threads that ThreadLimit
+// allows; needs DefaultFloatingPoint.
+[[nodiscard]] std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces,
+                                                        const std::vector<Vec3>& vertices, std::size_t count);
+
+}  // namespace raycone

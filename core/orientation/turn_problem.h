@@ -1,0 +1,48 @@
+// Signs that make a sum of squares small.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace raycone {
+
+// The sum over samples k of weight[k] (rest[k] + sum over surfaces p of turn[p] w(p, k))^2, where most w(p, k) are 0 or
+// left out. All of it is summed in one fixed order.
+class TurnProblem {
+ public:
+  struct Effect {
+    std::uint32_t sample;
+    float winding;  // w; its rounding is far below what decides
+  };
+
+  explicit TurnProblem(std::vector<double> weight) : weight_(std::move(weight)), begin_(1, 0) {}
+
+  // The effects of the next surface.
+  void add_surface(std::span<const Effect> effects);
+  [[nodiscard]] std::size_t surfaces() const { return begin_.size() - 1; }
+
+  // Starting from no surface at all, each in turn gets the sign that makes the sum smaller.
+  [[nodiscard]] std::vector<int> one_after_the_other(std::vector<double> rest) const;
+
+  [[nodiscard]] double sum(std::vector<double> rest, const std::vector<int>& turn) const;
+
+  // Turns single surfaces, as long as that makes the sum smaller. Returns the sum.
+  double improve(std::vector<double> rest, std::vector<int>& turn) const;
+
+ private:
+  [[nodiscard]] std::span<const Effect> effects(std::size_t surface) const {
+    return std::span(effects_).subspan(begin_[surface], begin_[surface + 1] - begin_[surface]);
+  }
+  [[nodiscard]] double sum_of(const std::vector<double>& rest) const;
+  [[nodiscard]] double slope(std::size_t surface, const std::vector<double>& rest) const;
+  void add(std::size_t surface, int factor, std::vector<double>& rest) const;
+
+  std::vector<double> weight_;
+  std::vector<Effect> effects_;  // by surface
+  std::vector<std::size_t> begin_;
+  std::vector<double> own_;  // per surface: the sum of weight w^2
+};
+
+}  // namespace raycone

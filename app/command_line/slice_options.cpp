@@ -146,7 +146,7 @@ CommandSpec slice_spec() {
                        {"--origin", "X,Y,Z", "Point on that plane (default: the middle of the box)"},
                        {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to show (default: the bounding box of the mesh)"},
                        {"--padding", "P|Nv", "Widen the box by P, or the picture by N pixels, on every side"},
-                       {"--size", "N", "Pixels along the longer side (default: 1024)"}}},
+                       {"--size", "N", "Pixels along the longer side, with axes and legend (default: 1024)"}}},
                      {"Field",
                       {{"--field", "winding|inside|sdf", "Winding number (default), inside, or signed distance"},
                        {"--rule", "threshold=T|abs=T|nonzero|positive|odd",

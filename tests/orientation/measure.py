@@ -3,7 +3,7 @@
 
     /usr/bin/python3 tests/orientation/measure.py [--all] [--meshes DIR] [--build DIR] [--only TEXT] [--keep DIR]
 
-Takes the closed, consistently oriented meshes of DIR (../shared/meshes) with at most 20 000 faces (--all: with any
+Takes the closed, consistently oriented meshes of DIR (../shared/meshes) with at most 6 000 faces (--all: with any
 number), damages each in eight ways, and compares `raycone points --field inside --orient auto` with the original. The
 baseline, raycone_raycast_voting, turns the same meshes. --only: meshes whose names contain TEXT; --keep: leaves the
 damaged meshes there. It needs numpy, and the targets raycone, raycone_dump_mesh and raycone_raycast_voting.
@@ -23,7 +23,7 @@ import numpy as np
 REPOSITORY = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = REPOSITORY / "docs" / "orientation.md"
 EXTENSIONS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}
-POINTS, MOST_FACES = 10_000, 20_000
+POINTS, MOST_FACES = 10_000, 6_000
 
 # --- Meshes: vertices (n, 3), no two equal, and faces (m, 3)
 
@@ -321,6 +321,7 @@ def worst(rows):
 
 def write_tables(rows, soup):
     text = PAGE.read_text(encoding="utf-8")
+    rows = sorted(rows, key=lambda row: row["mesh"])
     undamaged = [row for row in rows if row["damage"] == "none"]
     kept = sum(row["auto"] == 1 for row in undamaged)
     missed = sorted({row["mesh"] for row in rows if row["damage"] not in ("none", *REMOVED) and row["auto"] < 1})
@@ -360,13 +361,15 @@ def main():
         names = [str(path.relative_to(options.meshes)) for path in paths]
         rows = []
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            for found in pool.map(lambda pair: measure(tools, *pair), zip(names, paths)):
+            runs = [pool.submit(measure, tools, *pair) for pair in zip(names, paths)]
+            for run in concurrent.futures.as_completed(runs):
+                found = run.result()
                 rows.extend(found)
+                if options.rows:
+                    options.rows.write_text(json.dumps(rows, indent=1))
                 bad = [(row["damage"], row["auto"]) for row in found if row["auto"] < 1]
                 print(found[0]["mesh"], found[0]["faces"], bad or "all 100 %", file=sys.stderr, flush=True)
         soup = soup_time(tools)
-    if options.rows:
-        options.rows.write_text(json.dumps(rows, indent=1))
     if not options.only:
         write_tables(rows, soup)
 

@@ -29,8 +29,8 @@
 
 namespace {
 
-constexpr int kFewestRays = 20;        // of a patch, to either side
-constexpr double kRaysInAll = 40'000;  // shared out by area
+constexpr int kFewestRays = 10;        // of a patch, to either side
+constexpr double kRaysInAll = 20'000;  // shared out by area
 
 using Vec = std::array<double, 3>;
 using Face = std::array<std::int32_t, 3>;

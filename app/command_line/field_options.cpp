@@ -63,6 +63,12 @@ OptionGroup field_group() {
 // Exact is all there is: 0, the default, is accepted for scripts that state it.
 OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
 
+Rule parse_rule(const Values& values) {
+  const std::optional<Rule> rule = rule_from_name(values.text("--rule"));
+  if (!rule) invalid("--rule", values.text("--rule"), kRules);
+  return *rule;
+}
+
 FieldOptions parse_field(const Values& values) {
   if (values.given("--tolerance")) {
     const std::optional<double> tolerance = number_from(values.text("--tolerance"));
@@ -72,11 +78,7 @@ FieldOptions parse_field(const Values& values) {
   }
   FieldOptions options;
   if (values.given("--field")) options.fields = parse_fields(values);
-  if (values.given("--rule")) {
-    const std::optional<Rule> rule = rule_from_name(values.text("--rule"));
-    if (!rule) invalid("--rule", values.text("--rule"), kRules);
-    options.rule = *rule;
-  }
+  if (values.given("--rule")) options.rule = parse_rule(values);
   if (values.text("--band") == "all") not_available("--band all");
   if (values.given("--band")) options.band = values.positive("--band");
   if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));

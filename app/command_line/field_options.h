@@ -9,6 +9,8 @@ namespace raycone {
 
 [[nodiscard]] OptionGroup field_group();
 [[nodiscard]] OptionGroup unlisted_field_group();
+// What --rule says. Precondition: it is given.
+[[nodiscard]] Rule parse_rule(const Values& values);
 [[nodiscard]] FieldOptions parse_field(const Values& values);
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/command_line/common_options.h"
+#include "app/command_line/field_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
@@ -90,6 +91,21 @@ SliceRequest parse_request(const Values& values, const Values& up) {
   return request;
 }
 
+// One field to look at. Those of open issues are refused by name.
+FieldOptions parse_slice_field(const Values& values) {
+  const std::string name = values.given("--field") ? values.text("--field") : "winding";
+  if (name == "label") not_available("--field label");
+  const std::optional<Field> field = field_from_name(name);
+  if (!field || field == Field::kDensity) invalid("--field", name, "winding, inside or sdf");
+  if (field == Field::kWinding && values.given("--rule")) {
+    throw UsageError("--rule " + values.text("--rule") + ": has no effect on --field winding");
+  }
+  FieldOptions options;
+  options.fields = {*field};
+  if (values.given("--rule")) options.rule = parse_rule(values);
+  return options;
+}
+
 // --up has two meanings here, told apart by their values: how the mesh is turned, as with all commands, and which
 // direction is up in the picture. The last one of either counts.
 struct UpOptions {
@@ -119,7 +135,7 @@ OptionGroup mesh_group_with_both_ups() {
 CommandSpec slice_spec() {
   OptionGroup output = output_group("png");
   output.options.push_back({"--values", "OUT.npy", "Write numbers too: float64, (height, width), row 0 at the top"});
-  output.options.push_back({"--no-legend", "", "Leave out the colour bar"});
+  output.options.push_back({"--no-legend", "", "Draw the plane alone, pixel by pixel: no axes, no legend"});
   return {.name = "slice",
           .description = "Draw a picture of one cross-section",
           .operands = {mesh_operand()},
@@ -131,12 +147,17 @@ CommandSpec slice_spec() {
                        {"--origin", "X,Y,Z", "Point on that plane (default: the middle of the box)"},
                        {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to show (default: the bounding box of the mesh)"},
                        {"--padding", "P|Nv", "Widen the box by P, or the picture by N pixels, on every side"},
-                       {"--size", "N", "Pixels along the longer side (default: 1024)"}}},
+                       {"--size", "N", "Pixels along the longer side, with axes and legend (default: 1024)"}}},
+                     {"Field",
+                      {{"--field", "winding|inside|sdf", "Winding number (default), inside, or signed distance"},
+                       {"--rule", "threshold=T|abs=T|nonzero|positive|odd",
+                        "What counts as inside (default: threshold=0.5)"}}},
                      output,
                      run_group()},
           .examples = {"raycone slice bunny.obj -o bunny.png",
                        "raycone slice bunny.obj -o foot.png --axis y --at 10% --padding 0.02",
                        "raycone slice part.stl -o cut.png --normal 1,1,0 --origin 0,0,5 --up 0,0,1",
+                       "raycone slice part.stl -o thickness.png --field sdf",
                        "raycone slice part.stl -o part.png --size 4096 --values part.npy"},
           .later = {{"--normalize"}, {}}};
 }
@@ -147,11 +168,12 @@ Command parse_slice(const Values& values) {
   SliceCommand command;
   command.mesh = parse_mesh(up.mesh);
   command.run = parse_run(values);
+  command.field = parse_slice_field(values);
   command.slice = parse_request(values, up.picture);
   command.output = parse_output_files(values);
   refuse_idle_depfile(values, command.output);
   check_format(values, command.output.path);
-  command.legend = !values.given("--no-legend");
+  command.framed = !values.given("--no-legend");
   if (values.given("--values")) command.values = values.text("--values");
   if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
   if (command.values && command.values == command.output.report) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "app/options/field_options.h"
 #include "app/options/lattice_request.h"
 #include "app/options/mesh_options.h"
 #include "app/options/output_options.h"
@@ -40,8 +41,9 @@ struct SliceCommand {
   MeshOptions mesh;
   RunOptions run;
   OutputFiles output;
+  FieldOptions field;  // one field, without diagnostics
   SliceRequest slice;
-  bool legend = true;
+  bool framed = true;                 // with axes and legend
   std::optional<std::string> values;  // file for the numbers
 };
 

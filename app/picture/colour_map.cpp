@@ -16,8 +16,8 @@ constexpr double kDarkest = 0.37;
 constexpr double kMostChroma = 0.14;
 constexpr double kPositionOfMostChroma = 0.62;
 
-constexpr double kHueBelow = 248.0;  // degrees: blue
-constexpr double kHueAbove = 35.0;   // red
+constexpr double kHueOutside = 248.0;  // degrees: blue
+constexpr double kHueInside = 35.0;    // red
 
 constexpr std::size_t kColours = 4097;  // an odd number has the centre among them
 
@@ -41,13 +41,13 @@ Rgb from_oklab(double lightness, double a, double b) {
           srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-// `position`: from -1, the lower end, to 1.
+// `position`: from -1, farthest outside, to 1.
 Rgb colour_at(double position) {
   const double outwards = std::abs(position);
   const double lightness = kLightest + (kDarkest - kLightest) * outwards;
   const double from_most = (outwards - kPositionOfMostChroma) / kPositionOfMostChroma;
   const double chroma = kMostChroma * (1.0 - from_most * from_most);
-  const double hue = (position < 0.0 ? kHueBelow : kHueAbove) * std::numbers::pi / 180.0;
+  const double hue = (position < 0.0 ? kHueOutside : kHueInside) * std::numbers::pi / 180.0;
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
@@ -55,7 +55,7 @@ Rgb colour_at(double position) {
 
 ColourRange colour_range(std::span<const double> values) {
   std::vector<double> distances(values.size());
-  std::ranges::transform(values, distances.begin(), [](double w) { return std::abs(w - ColourRange::kCentre); });
+  std::ranges::transform(values, distances.begin(), [](double w) { return std::abs(w - ColourRange{}.centre); });
   const std::size_t outliers = distances.size() / kOutliersPer;
   const auto kept = distances.end() - 1 - static_cast<std::ptrdiff_t>(outliers);
   std::ranges::nth_element(distances, kept);
@@ -69,6 +69,14 @@ ColourRange colour_range(std::span<const double> values) {
   return range;
 }
 
+ColourRange distance_colour_range(std::span<const double> distances) {
+  double largest = 0.0;
+  for (const double distance : distances) {
+    if (std::isfinite(distance)) largest = std::max(largest, std::abs(distance));
+  }
+  return {.centre = 0.0, .half_width = largest > 0.0 ? largest : 1.0, .inside_below = true};
+}
+
 ColourMap::ColourMap(const ColourRange& range) : range_(range), colours_(kColours) {
   for (std::size_t i = 0; i < kColours; ++i) {
     colours_[i] = colour_at(2.0 * static_cast<double>(i) / static_cast<double>(kColours - 1) - 1.0);
@@ -77,7 +85,8 @@ ColourMap::ColourMap(const ColourRange& range) : range_(range), colours_(kColour
 
 Rgb ColourMap::operator()(double value) const {
   const double position = std::clamp((value - range_.least()) / (range_.most() - range_.least()), 0.0, 1.0);
-  return colours_[static_cast<std::size_t>(std::lround(position * static_cast<double>(kColours - 1)))];
+  const double inwards = range_.inside_below ? 1.0 - position : position;
+  return colours_[static_cast<std::size_t>(std::lround(inwards * static_cast<double>(kColours - 1)))];
 }
 
 }  // namespace raycone

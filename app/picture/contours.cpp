@@ -45,10 +45,14 @@ void trace(const Square& square, double level,
   connect(corner_0_is_cut_off ? 1 : 2, corner_0_is_cut_off ? 2 : 3);
 }
 
-void trace_all_levels(const Square& square, const std::function<void(const PictureSegment&, double)>& line) {
+void trace_all_levels(const Square& square, const Levels& levels,
+                      const std::function<void(const PictureSegment&, double)>& line) {
   const auto [least, most] = std::ranges::minmax(square, {}, &Corner::value);
-  const double first = std::floor(least.value - 0.5) + 1.5;  // the first level above the least value
-  for (double level = first; level <= most.value; level += 1.0) trace(square, level, line);
+  for (double n = std::floor((least.value - levels.offset) / levels.step) + 1.0;; n += 1.0) {
+    const double level = levels.offset + n * levels.step;
+    if (!(level <= most.value)) return;
+    trace(square, level, line);
+  }
 }
 
 }  // namespace
@@ -75,7 +79,7 @@ Raster<std::uint8_t> squares_on(std::span<const PictureSegment> curve, std::int6
 }
 
 void trace_contours(std::span<const double> values, std::int64_t width, std::int64_t height,
-                    const Raster<std::uint8_t>& cut,
+                    const Raster<std::uint8_t>& cut, const Levels& levels,
                     const std::function<void(const PictureSegment& piece, double level)>& line) {
   const auto corner = [&](std::int64_t column, std::int64_t row) {
     return Corner{{static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5},
@@ -85,7 +89,8 @@ void trace_contours(std::span<const double> values, std::int64_t width, std::int
     for (std::int64_t column = 0; column + 1 < width; ++column) {
       if (cut.at(column, row) != 0) continue;
       trace_all_levels(
-          {corner(column, row), corner(column + 1, row), corner(column + 1, row + 1), corner(column, row + 1)}, line);
+          {corner(column, row), corner(column + 1, row), corner(column + 1, row + 1), corner(column, row + 1)}, levels,
+          line);
     }
   }
 }

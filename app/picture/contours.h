@@ -15,10 +15,16 @@ namespace raycone {
 [[nodiscard]] Raster<std::uint8_t> squares_on(std::span<const PictureSegment> curve, std::int64_t width,
                                               std::int64_t height);
 
-// The lines where the values (row by row from the top, at pixel centres) are an integer and a half. Values jump at the
+// offset + n * step for all integers n. Precondition: step > 0.
+struct Levels {
+  double offset = 0.5;
+  double step = 1.0;
+};
+
+// The lines where the values (row by row from the top, at pixel centres) have one of the levels. Values jump at the
 // surface: the squares `cut` by it have no contour. `line` is called with each piece and its level.
 void trace_contours(std::span<const double> values, std::int64_t width, std::int64_t height,
-                    const Raster<std::uint8_t>& cut,
+                    const Raster<std::uint8_t>& cut, const Levels& levels,
                     const std::function<void(const PictureSegment& piece, double level)>& line);
 
 }  // namespace raycone

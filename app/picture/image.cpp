@@ -2,7 +2,9 @@
 #include "app/picture/image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "app/picture/clip.h"
 
@@ -28,6 +30,30 @@ std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double part) {
   return static_cast<std::uint8_t>(std::lround(below + part * (above - below)));
 }
 
+std::uint8_t rounded(double channel) { return static_cast<std::uint8_t>(std::lround(std::min(channel, 255.0))); }
+
+// What a pixel adds to one of fewer pixels along a side.
+struct Share {
+  std::int64_t from;
+  std::int64_t to;
+  double part;
+};
+
+// By rising `to`.
+std::vector<Share> shares_of(std::int64_t count, std::int64_t fewer) {
+  std::vector<Share> shares;
+  const double scale = static_cast<double>(fewer) / static_cast<double>(count);
+  for (std::int64_t from = 0; from < count; ++from) {
+    // In integers, so that a border of either is never on the wrong side by rounding.
+    const std::int64_t to = from * fewer / count;
+    const std::int64_t behind = (from + 1) * fewer - (to + 1) * count;  // in units of 1 / count
+    const double over = behind > 0 ? static_cast<double>(behind) / static_cast<double>(count) : 0.0;
+    shares.push_back({from, to, scale - over});
+    if (over > 0.0) shares.push_back({from, to + 1, over});
+  }
+  return shares;
+}
+
 }  // namespace
 
 void add_stroke(Coverage& coverage, const PictureSegment& segment, double width) {
@@ -47,16 +73,35 @@ void add_stroke(Coverage& coverage, const PictureSegment& segment, double width)
   }
 }
 
-void add_round_rectangle(Coverage& coverage, const PictureSegment& diagonal, double radius) {
-  const PicturePoint middle{(diagonal.a.x + diagonal.b.x) / 2, (diagonal.a.y + diagonal.b.y) / 2};
-  const double half_width = std::abs(diagonal.b.x - diagonal.a.x) / 2 - radius;
-  const double half_height = std::abs(diagonal.b.y - diagonal.a.y) / 2 - radius;
-  for (std::int64_t row = 0; row < coverage.height(); ++row) {
-    for (std::int64_t column = 0; column < coverage.width(); ++column) {
-      const double dx = std::abs(static_cast<double>(column) + 0.5 - middle.x) - half_width;
-      const double dy = std::abs(static_cast<double>(row) + 0.5 - middle.y) - half_height;
-      const double outside = std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
-      cover(coverage.at(column, row), outside + std::min(std::max(dx, dy), 0.0) - radius);
+Image shrunk(const Image& image, std::int64_t width, std::int64_t height) {
+  const std::vector<Share> columns = shares_of(image.width(), width);
+  const std::vector<Share> rows = shares_of(image.height(), height);
+  Image result(width, height);
+  std::vector<std::array<double, 3>> sums(static_cast<std::size_t>(width));
+  const auto add_row = [&](const Share& row) {
+    for (const Share& share : columns) {
+      const Rgb& pixel = image.at(share.from, row.from);
+      const double part = share.part * row.part;
+      std::array<double, 3>& sum = sums[static_cast<std::size_t>(share.to)];
+      sum = {sum[0] + part * pixel.red, sum[1] + part * pixel.green, sum[2] + part * pixel.blue};
+    }
+  };
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    add_row(rows[n]);
+    if (n + 1 < rows.size() && rows[n + 1].to == rows[n].to) continue;
+    for (std::int64_t at = 0; at < width; ++at) {
+      std::array<double, 3>& sum = sums[static_cast<std::size_t>(at)];
+      result.at(at, rows[n].to) = {rounded(sum[0]), rounded(sum[1]), rounded(sum[2])};
+      sum = {};
+    }
+  }
+  return result;
+}
+
+void paste(Image& image, const Image& part, PixelOffset offset) {
+  for (std::int64_t row = 0; row < part.height(); ++row) {
+    for (std::int64_t column = 0; column < part.width(); ++column) {
+      image.at(offset.column + column, offset.row + row) = part.at(column, row);
     }
   }
 }

@@ -61,14 +61,17 @@ using Coverage = Raster<std::uint8_t>;
 // Adds a stroke of the given width with round ends. Parts outside are clipped; what is not finite is left out.
 void add_stroke(Coverage& coverage, const PictureSegment& segment, double width);
 
-// Adds a filled rectangle with round corners.
-void add_round_rectangle(Coverage& coverage, const PictureSegment& diagonal, double radius);
-
 // Where a smaller picture lies in a larger one: the place of its top left pixel.
 struct PixelOffset {
   std::int64_t column = 0;
   std::int64_t row = 0;
 };
+
+// Each pixel of the result is the mean of what it covers of `image`. Precondition: neither side grows.
+[[nodiscard]] Image shrunk(const Image& image, std::int64_t width, std::int64_t height);
+
+// Precondition: `part` at `offset` is within `image`.
+void paste(Image& image, const Image& part, PixelOffset offset);
 
 // `opacity`: 0 to 1, of the colour where it covers fully. Precondition: `coverage` at `offset` is within the image.
 void blend(Image& image, const Coverage& coverage, const Rgb& colour, double opacity = 1.0, PixelOffset offset = {});

@@ -13,6 +13,7 @@ struct PlaneView {
   Vec3 right;   // orthonormal
   Vec3 up;
   Vec3 normal;         // right x up: towards the viewer
+  Vec3 origin;         // axes that are none of the world's count from here
   double pixel = 1.0;  // side of a pixel, world units
   std::int64_t width = 1;
   std::int64_t height = 1;

@@ -9,12 +9,19 @@
 
 namespace raycone {
 
-// Colours of winding numbers `values` at the pixels of `view`, row by row from the top, with contour lines at the
-// half-integers, the curve where the plane cuts `mesh`, and a colour bar where `legend` is wanted and has room.
-[[nodiscard]] Image slice_picture(const PlaneView& view, std::span<const double> values, const TriangleMesh& mesh,
-                                  bool legend);
+// What values are, which decides about colours, contours and legend.
+enum class PictureField {
+  kWinding,   // contours at the half-integers
+  kInside,    // 0 or 1
+  kDistance,  // signed, negative inside; contours at round distances
+};
 
-// Bytes per pixel that it takes, its result included.
-inline constexpr double kSlicePictureBytes = 8 + 3 + 1 + 1 + 1;
+// Colours of `values` at the pixels of `view`, row by row from the top, with contour lines and the curve where the
+// plane cuts `mesh`. `framed`: with axes and legend around it, where there is room for them (framed_picture.h).
+[[nodiscard]] Image slice_picture(const PlaneView& view, std::span<const double> values, const TriangleMesh& mesh,
+                                  PictureField field, bool framed);
+
+// An upper bound of the bytes that it takes, its result included.
+[[nodiscard]] double slice_picture_bytes(const PlaneView& view, bool framed);
 
 }  // namespace raycone

@@ -165,6 +165,7 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   PlaneView& view = slice.view;
   set_directions(view, plane);
   const Vec3 origin = plane.origin.value_or(box.lower + 0.5 * (box.upper - box.lower));
+  view.origin = origin;
   const std::vector<Vec3> outline = cut(padded, origin, view.normal);
   if (outline.empty()) throw UsageError("--origin, --normal: the plane misses the box, see --bounds and --padding");
   const auto along_right = [&](const Vec3& p) { return dot(p - origin, view.right); };

@@ -91,6 +91,38 @@ TEST_F(Slice, AlongAnObliquePlaneIsThatAlongTheAxisIfTheyAreTheSame) {
   EXPECT_EQ(values(8, 16), expected);
 }
 
+TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {
+  const std::vector<std::string> common{"--bounds", "-1,0,0,3,2,1", "--size", "4", "--at", "0.5", "--values", values_};
+  const auto lower_row = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = common;
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = slice(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::vector<double> two_rows = values(2, 4);
+    return std::vector<double>(two_rows.begin() + 4, two_rows.end());
+  };
+  // x = -0.5, 0.5, 1.5, 2.5 at y = 0.5.
+  EXPECT_EQ(lower_row({"--field", "inside"}), (std::vector<double>{0, 1, 0, 0}));
+  EXPECT_EQ(lower_row({"--field", "sdf"}), (std::vector<double>{0.5, -0.5, 0.5, 1.5}));
+  EXPECT_EQ(lower_row({"--field", "inside", "--rule", "threshold=0"}), (std::vector<double>{1, 1, 1, 1}));
+  EXPECT_EQ(lower_row({"--field", "sdf", "--rule", "threshold=0"}), (std::vector<double>{-0.5, -0.5, -0.5, -1.5}));
+  EXPECT_NE(read_text(picture_).find("signed distance by threshold=0 at z = 0.5"), std::string::npos);
+}
+
+TEST_F(Slice, HasAxesAndLegendWithinItsSizeAndTheSamplesBesideThem) {
+  const std::vector<std::string> common{"--bounds", "0,0,0,2,1,1", "--size", "400", "--values", values_};
+  ASSERT_EQ(slice(common).status, 0);
+  const PictureSize framed = size_of_png(read_text(picture_));
+  EXPECT_EQ(framed.width, 400U);
+  EXPECT_EQ(values(200, 400).size(), 80'000U);
+  std::vector<std::string> plain = common;
+  plain.push_back("--no-legend");
+  ASSERT_EQ(slice(plain).status, 0);
+  const PictureSize size = size_of_png(read_text(picture_));
+  EXPECT_EQ(size.width, 400U);
+  EXPECT_EQ(size.height, 200U);
+}
+
 TEST_F(Slice, IsTheSameForAnyNumberOfThreads) {
   const std::string teapot = RAYCONE_DATA "/meshes/teapot.obj";
   const std::vector<std::string> words{"slice", teapot, "-o", "-", "--size", "90", "--normal", "1,2,3", "--quiet"};
@@ -111,6 +143,10 @@ TEST_F(Slice, RefusesWhatItCannotDo) {
                                              {"--normal", "1,0,0", "--axis", "x"},
                                              {"--size", "0"},
                                              {"--format", "vdb"},
+                                             {"--field", "density"},
+                                             {"--field", "label"},
+                                             {"--field", "inside,sdf"},
+                                             {"--rule", "odd"},
                                              {"--values", picture_}}) {
     const CommandResult result = slice(wrong);
     EXPECT_EQ(result.status, 1) << wrong.front() << ' ' << wrong.back();

@@ -99,13 +99,15 @@ OPTIONS = {
         "--normal": lambda: numbers(3),
         "--origin": lambda: numbers(3),
         "--no-legend": None,
+        "--field": one_of("winding", "inside", "sdf"),
+        "--rule": one_of("odd", "abs=0.5"),
     },
 }
 ALWAYS = {
     "lattice": lambda: choose([["--resolution", choose(["1", "2", "8", "16", "1,1,1", "2,3,4", "1,7,1"])], ["--voxel-size", spacing()]]),
     "points": lambda: ["points.csv"],
     "points of a sample": lambda: ["--sample", choose(["uniform=50", "near=50:" + magnitude(), "uniform=10,near=10:0.1"])],
-    "slice": lambda: ["--size", choose(["64", "70"])],
+    "slice": lambda: ["--size", choose(["64", "70", "330"])],
 }
 OUTPUTS = {
     "lattice": ["out.vdb", "out.csv", "out.npy", "out.vti"],

@@ -1,0 +1,132 @@
+// Ticks of axes, and pictures with axes and legend around them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/picture/framed_picture.h"
+#include "app/picture/slice_picture.h"
+#include "app/picture/ticks.h"
+
+namespace raycone::test {
+namespace {
+
+std::vector<std::string> texts(const Ticks& ticks) {
+  std::vector<std::string> result;
+  for (const Tick& tick : ticks.marks) result.push_back(tick.text);
+  return result;
+}
+
+Ticks at_most(std::size_t count, double from, double to) {
+  return round_ticks(from, to, [&](const Ticks& ticks) { return ticks.marks.size() <= count; });
+}
+
+using Words = std::vector<std::string>;
+
+TEST(RoundTicks, AreRoundNumbersWithinTheRange) {
+  EXPECT_EQ(texts(at_most(7, -0.5, 1.5)), (Words{"-0.5", "0", "0.5", "1", "1.5"}));
+  EXPECT_EQ(texts(at_most(7, 1.5, -0.5)), (Words{"-0.5", "0", "0.5", "1", "1.5"}));
+  EXPECT_EQ(texts(at_most(6, 0.0, 1e-9)), (Words{"0", "2e-10", "4e-10", "6e-10", "8e-10", "1e-9"}));
+  EXPECT_EQ(texts(at_most(4, -1e9, 2e9)), (Words{"-1e9", "0", "1e9", "2e9"}));
+  EXPECT_EQ(texts(at_most(4, 10.0, 43.0)), (Words{"10", "20", "30", "40"}));
+}
+
+TEST(RoundTicks, FarFromZeroCountFromAnOffset) {
+  const Ticks ticks = at_most(3, 1e9 - 1.0, 1e9 + 1.0);
+  EXPECT_EQ(ticks.offset, " - 1e9");
+  EXPECT_EQ(texts(ticks), (Words{"-1", "0", "1"}));
+  EXPECT_EQ(ticks.marks.front().value, 1e9 - 1.0);
+  EXPECT_EQ(at_most(3, -123456789.0, -123456787.0).offset, " + 123457000");
+  EXPECT_EQ(at_most(5, 0.0, 1e7).offset, "");
+}
+
+TEST(RoundTicks, AreOneWhereNoTwoFitAndNoneWhereDoubleHasNoRoom) {
+  EXPECT_EQ(at_most(0, 0.0, 10.0).marks.size(), 1U);
+  EXPECT_TRUE(at_most(9, 3.0, 3.0).marks.empty());
+  EXPECT_TRUE(at_most(9, -1.7e308, 1.7e308).marks.empty());   // the range overflows
+  EXPECT_LE(at_most(9, 1e17, 1e17 + 64.0).marks.size(), 1U);  // neighbours would be rounded
+  EXPECT_FALSE(at_most(9, 0.0, 1e308).marks.empty());
+  EXPECT_FALSE(at_most(9, 0.0, 5e-324 * 1000).marks.empty());
+}
+
+PlaneView view_of(std::int64_t width, std::int64_t height) {
+  PlaneView view;
+  view.right = {1.0, 0.0, 0.0};
+  view.up = {0.0, 1.0, 0.0};
+  view.normal = {0.0, 0.0, 1.0};
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
+Image picture_of(const PlaneView& view, bool framed) {
+  const std::vector<double> values(static_cast<std::size_t>(view.width * view.height), 1.0);
+  return slice_picture(view, values, {}, PictureField::kWinding, framed);
+}
+
+TEST(FramedPicture, IsAsLongAsThePlainOne) {
+  for (const auto& [width, height] : std::vector<std::pair<std::int64_t, std::int64_t>>{
+           {320, 320}, {800, 321}, {333, 1200}, {1000, 1}, {1, 1000}, {2000, 2000}}) {
+    const PlaneView view = view_of(width, height);
+    const Image page = picture_of(view, true);
+    EXPECT_EQ(std::max(page.width(), page.height()), std::max(width, height)) << width << " x " << height;
+    const Image plain = picture_of(view, false);
+    EXPECT_EQ(plain.width(), width);
+    EXPECT_EQ(plain.height(), height);
+    const double page_bytes = static_cast<double>(page.pixels().size_bytes());
+    EXPECT_LE(page_bytes, framed_picture_bytes(view));
+  }
+}
+
+TEST(FramedPicture, IsThePlainOneWhereThereIsNoRoom) {
+  const Image page = picture_of(view_of(kLeastFramedSize - 1, 200), true);
+  EXPECT_EQ(page.width(), kLeastFramedSize - 1);
+  EXPECT_EQ(page.height(), 200);
+}
+
+// The legend and the numbers lie beside the plot, never on it.
+TEST(FramedPicture, HasTheWholePlotInOneColour) {
+  const PlaneView view = view_of(640, 640);
+  const Rgb colour = picture_of(view, false).at(0, 0);
+  const Image page = picture_of(view, true);
+  std::int64_t left = page.width(), right = -1, top = page.height(), bottom = -1, count = 0;
+  for (std::int64_t row = 0; row < page.height(); ++row) {
+    for (std::int64_t column = 0; column < page.width() * 4 / 5; ++column) {  // the legend's bar has the colour, too
+      if (page.at(column, row) != colour) continue;
+      left = std::min(left, column);
+      right = std::max(right, column);
+      top = std::min(top, row);
+      bottom = std::max(bottom, row);
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, (right - left + 1) * (bottom - top + 1));
+  EXPECT_GT(bottom - top, 500);  // of 640; the axis below takes the rest
+}
+
+TEST(ShrunkImage, HasTheMeanOfWhatPixelsCover) {
+  Image image(3, 1);
+  image.at(0, 0) = {255, 0, 90};
+  image.at(1, 0) = {0, 0, 90};
+  image.at(2, 0) = {0, 30, 90};
+  const Image two = shrunk(image, 2, 1);
+  EXPECT_EQ(two.at(0, 0), (Rgb{170, 0, 90}));
+  EXPECT_EQ(two.at(1, 0), (Rgb{0, 20, 90}));
+  const Image one = shrunk(image, 1, 1);
+  EXPECT_EQ(one.at(0, 0), (Rgb{85, 10, 90}));
+}
+
+TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
+  const PlaneView view = view_of(2, 1);
+  const std::vector<double> values{-1.0, 1.0};
+  const Image image = slice_picture(view, values, {}, PictureField::kDistance, false);
+  EXPECT_GT(image.at(0, 0).red, image.at(0, 0).blue);
+  EXPECT_LT(image.at(1, 0).red, image.at(1, 0).blue);
+}
+
+}  // namespace
+}  // namespace raycone::test

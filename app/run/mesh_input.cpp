@@ -10,7 +10,6 @@
 #include "app/process/limits.h"
 #include "app/process/messages.h"
 #include "app/run/mesh_warnings.h"
-#include "core/mesh/mesh_defects.h"
 #include "core/mesh/polygons.h"
 #include "core/mesh/weld.h"
 #include "io/files/file_error.h"

@@ -10,6 +10,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/orientation/orient.h"
 #include "io/mesh/read_mesh.h"
 

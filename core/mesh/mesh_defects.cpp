@@ -162,8 +162,8 @@ class ClosedComponents {
 
   // By increasing y of their points.
   [[nodiscard]] std::vector<Candidate> negative_ones() const {
-    constexpr std::uint32_t kNone = Components::kUnused;
-    std::vector<std::uint32_t> number(components_.count, kNone);
+    constexpr std::uint32_t kAbsent = Components::kUnused;
+    std::vector<std::uint32_t> number(components_.count, kAbsent);
     std::vector<Candidate> candidates;
     for (std::uint32_t c = 0; c < components_.count; ++c) {
       if (!volumes_[c].is_negative()) continue;
@@ -174,7 +174,7 @@ class ClosedComponents {
     if (candidates.empty()) return candidates;
     for (const Triangle& t : mesh_.triangles) {
       const std::uint32_t n = number[component_of(t)];
-      if (n == kNone) continue;
+      if (n == kAbsent) continue;
       for (const std::uint32_t v : t) {
         Vec3& least = candidates[n].point;
         if (lexicographic_order(mesh_.vertices[v], least) < 0) least = mesh_.vertices[v];

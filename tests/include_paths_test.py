@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/evaluation"]
 BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings"],
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
+          "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]
@@ -22,9 +23,10 @@ OF_CORE = {"core/data", "core/machine"}  # what io may see of core
 # app: what each folder sees, and with it all that those see. The files in app/ itself are the top: they see everything.
 APP = {"app/text": [],
        "app/process": ["app/text", "io/files", "core/machine"],
-       "app/options": ["app/process", "io/fields", "io/points", "core/evaluation", "core/sampling"],
+       "app/options": ["app/process", "io/fields", "io/points", "core/evaluation", "core/orientation",
+                       "core/sampling"],
        "app/command_line": ["app/options"],
-       "app/report": ["app/process", "io/mesh", "core/evaluation"],
+       "app/report": ["app/process", "io/mesh", "core/evaluation", "core/orientation"],
        "app/picture": ["core/data"],
        "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance", "core/intersections"],
        "app/batch": ["app/run"],

@@ -115,9 +115,10 @@ CsvRecord to_record(const ResultRow& row) {
   return record;
 }
 
-std::optional<ResultRow> row_from(const CsvRecord& record) {
-  const bool former = record.size() == kFormerColumns;
-  if (!former && record.size() != result_columns().size()) return std::nullopt;
+std::optional<ResultRow> row_from(CsvRecord record) {
+  // Of the version before: no warnings with names, and no face was turned.
+  if (record.size() == kFormerColumns) record.insert(record.end(), {"", "0", "0", "0"});
+  if (record.size() != result_columns().size()) return std::nullopt;
   const auto status = std::ranges::find(kStatusNames, record[1]);
   const std::optional<std::int64_t> exit = integer_from(record[2]);
   if (status == kStatusNames.end() || !exit) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<ResultRow> row_from(const CsvRecord& record) {
   row.output = record[kBehindFigures];
   row.sha256 = record[kBehindFigures + 1];
   row.message = record[kBehindFigures + 2];
-  if (!former) row.warnings = record[kBehindFigures + 3];
+  row.warnings = record[kBehindFigures + 3];
   if (row.status == MeshStatus::kOk && !row.figures) return std::nullopt;
   return row;
 }

@@ -51,6 +51,6 @@ struct ResultRow {
 
 [[nodiscard]] CsvRecord to_record(const ResultRow& row);
 // Nothing where it is no row, also of former columns.
-[[nodiscard]] std::optional<ResultRow> row_from(const CsvRecord& record);
+[[nodiscard]] std::optional<ResultRow> row_from(CsvRecord record);
 
 }  // namespace raycone

@@ -95,7 +95,7 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   if (info.intersections) table.row("self-intersections", intersections_of(*info.intersections));
   table.row("bounds", printed_point(info.bounds.lower) + " to " + printed_point(info.bounds.upper));
   table.row("size", printed_point(info.bounds.upper - info.bounds.lower) + " world units");
-  table.row("surface area", printed_number(s.surface_area) + " square world units");
+  table.row("area", printed_number(s.surface_area) + " square world units");
   table.row("signed volume", s.signed_volume ? printed_number(*s.signed_volume) + " cubic world units" : "none, open");
   std::string names;
   for (const Warning& warning : info.warnings) names += (names.empty() ? "" : ", ") + warning.name;

@@ -123,6 +123,7 @@ TABLE = [
     *(Row(words.replace("out/a", "old"), "--no-clobber", CHANGES) for words in (LATTICE, POINTS, SLICE)),
     Row("lattice cubes.obj -o - --resolution 2", "--no-clobber", HARMLESS),
     Row(BATCH, "--no-clobber", HARMLESS),
+    Row("info cubes.obj", "--no-clobber", REFUSED),
     *(Row(words, option, CHANGES)
       for words in (LATTICE, POINTS, SLICE) for option in ("--report out/r.json", "--depfile out/a.d")),
     *(Row(words, "--depfile out/a.d", REFUSED)

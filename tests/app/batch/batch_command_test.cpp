@@ -268,7 +268,7 @@ TEST_F(Batch, WarnsOncePerMeshAndObeysStrict) {
   const std::string mesh = put("a.obj", std::string(kTriangle) + "f 1 2\n");
   const CommandResult result = run();
   EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.err.find("raycone: warning: " + mesh + ": 1 face"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("raycone: warning: " + mesh + ": skipped-faces: 1 face"), std::string::npos) << result.err;
   EXPECT_NE(rows().at("a.obj").message.find("1 face"), std::string::npos);
   EXPECT_EQ(run({"--strict", "--quiet"}).status, 5);
   EXPECT_EQ(rows().at("a.obj").exit, 2);

@@ -107,11 +107,11 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
   const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
   const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
-  // Caps and their tree take about as long as so many edges at samples.
+  // Caps and their tree take about as long as so many edges at samples. Soups have hardly a block that is decided.
   constexpr double kWorthCaps = 0x1p20;
   const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
-  const bool by_rule = rule && !mesh.is_closed() && work > kWorthCaps;
-  const bool counts = mesh.counts_crossings() || diagnostics || by_rule;
+  const bool by_rule = rule && !mesh.is_closed() && mesh.counts_crossings() && work > kWorthCaps;
+  const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   if (mesh.options().ray_engine == RayEngine::kScan) {
     scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);

@@ -146,7 +146,7 @@ class RuleBlocks {
   // Whether certificates are found often enough; where not, few blocks still look for them. Values depend on it, the
   // sides that they are on do not.
   [[nodiscard]] bool worth_it(std::size_t n) const {
-    constexpr std::size_t kFewBlocks = 16;
+    constexpr std::size_t kFewBlocks = 64;
     return n % kFewBlocks == 0 || in_vain_ <= tried_ - tried_ / 8;
   }
 

@@ -301,6 +301,19 @@ MUTANTS = [
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/distance/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 
+    # --- Rules on lattices ---
+    Mutant("blocks_do_not_change", "a block is decided only if the bound of the change allows it", [
+        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.change + mesh_.doubt()",
+         "const double needed = 0 * candidate.change + mesh_.doubt()")]),
+    Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
+        ("core/evaluation/rule_blocks.cpp", "return closed ? values_[index] - cap_crossings_[index] : values_[index];",
+         "return closed ? values_[index] : values_[index];")]),
+    Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
+        ("core/boundary/change_bound.cpp", "sum += source.length / square;", "sum += 0.3 * source.length / square;")]),
+    Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
+        ("core/boundary/change_bound.cpp", "if (source.area > 0.0) sum += source.area",
+         "if (source.area > 1.0) sum += source.area")]),
+
     # --- Self-intersections ---
     Mutant("neighbours_intersect", "what is shared does not count", [
         ("core/intersections/triangle_pair.cpp", "switch (shared_first(a, b)) {", "switch (shared_first(a, b) * 0) {")]),

@@ -79,7 +79,7 @@ MUTANTS = [
     Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
         ("core/crossings/lattice_sums.cpp", "  for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);\n", "")]),
     Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [
-        ("core/evaluation/rows.cpp", "  across.evaluate(mesh, values);\n", "")]),
+        ("core/evaluation/rows.cpp", "  tiles.finish();\n", "")]),
     Mutant("level_edges_dropped", "only an edge along the rays has no argument anywhere", [
         ("core/boundary/boundary.cpp", "return a.y == b.y && a.z == b.z;", "return a.z == b.z;")]),
 

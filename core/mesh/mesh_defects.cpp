@@ -1,20 +1,21 @@
 #include "core/mesh/mesh_defects.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "core/exact/predicates.h"
-#include "core/exact/scale.h"
+#include "core/exact/volume_sign.h"
 #include "core/machine/floating_point.h"
+#include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/mesh/edge_uses.h"
+#include "core/mesh/opposite_faces.h"
 
 namespace raycone {
 namespace {
@@ -29,59 +30,6 @@ std::uint64_t count_inconsistent_edges(const TriangleMesh& mesh, const std::vect
   return count;
 }
 
-// A face by its vertices, and whether they are in increasing order but for a rotation.
-struct FaceKey {
-  std::array<std::uint32_t, 3> corners;
-  bool increasing;
-};
-
-FaceKey key_of(const Triangle& t) {
-  const auto low = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
-  const std::uint32_t next = t[(low + 1) % 3], last = t[(low + 2) % 3];
-  return {{t[low], std::min(next, last), std::max(next, last)}, next < last};
-}
-
-bool has_three_vertices(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
-
-// Equal for faces of the same vertices, in whatever order.
-std::uint64_t hash_of(const Triangle& t) {
-  const auto mixed = [](std::uint64_t v) {
-    v *= 0x9E3779B97F4A7C15;
-    return v ^ (v >> 32);
-  };
-  return (mixed(t[0]) + mixed(t[1]) + mixed(t[2])) * 0x9E3779B97F4A7C15;
-}
-
-// The faces that may have a twin, and a few others: sorting all of them would take ten times as long.
-std::vector<FaceKey> possible_twins(const TriangleMesh& mesh) {
-  constexpr std::size_t kBitsPerFace = 16;
-  const int shift = 64 - static_cast<int>(std::bit_width(kBitsPerFace * mesh.triangles.size()));
-  std::vector<bool> seen(std::size_t{1} << (64 - shift)), seen_again(seen.size());
-  for (const Triangle& t : mesh.triangles) {
-    const std::size_t bit = hash_of(t) >> shift;
-    if (seen[bit]) seen_again[bit] = true;
-    seen[bit] = true;
-  }
-  std::vector<FaceKey> keys;
-  for (const Triangle& t : mesh.triangles) {
-    if (seen_again[hash_of(t) >> shift] && has_three_vertices(t)) keys.push_back(key_of(t));
-  }
-  return keys;
-}
-
-std::uint64_t count_cancelling_pairs(const TriangleMesh& mesh) {
-  std::vector<FaceKey> keys = possible_twins(mesh);
-  std::ranges::sort(keys, {}, &FaceKey::corners);
-  std::uint64_t pairs = 0;
-  for (auto it = keys.begin(); it != keys.end();) {
-    std::array<std::uint64_t, 2> faces{};
-    const auto first = it;
-    for (; it != keys.end() && it->corners == first->corners; ++it) ++faces[it->increasing ? 1 : 0];
-    pairs += std::min(faces[0], faces[1]);
-  }
-  return pairs;
-}
-
 // Six times a signed volume, and what rounding may have done to it.
 struct Volume {
   double sum = 0.0;
@@ -94,10 +42,12 @@ struct Volume {
     faces += other.faces;
     return *this;
   }
-  // Each product is off by a few units in the last place, each addition by one of the sum so far.
-  [[nodiscard]] bool is_negative() const {
-    const double rounding = (static_cast<double>(faces) + 16.0) * std::numeric_limits<double>::epsilon();
-    return sum < -(rounding * terms + 0x1p-1000);
+  // Each product is off by a few units in the last place, each addition by one of the sum so far; what underflows is
+  // below 2^-1070 a term. 0 where that leaves the sign in doubt, or where something overflows.
+  [[nodiscard]] int sure_sign() const {
+    const double rounding = (static_cast<double>(faces) + 16.0) * std::numeric_limits<double>::epsilon() * terms;
+    const double trust = rounding + 0x1p-900;
+    return static_cast<int>(sum > trust) - static_cast<int>(sum < -trust);
   }
 };
 
@@ -111,28 +61,57 @@ Volume volume_of(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& from) 
           1};
 }
 
+// Of a closed mesh of one component, in any order: only its sure sign is used.
+Volume volume_of(const TriangleMesh& mesh) {
+  constexpr std::size_t kGrain = std::size_t{1} << 14;
+  constexpr std::size_t kAhead = 16;  // triangles: their vertices may be anywhere in memory
+  const Vec3 from = mesh.vertices[mesh.triangles.front()[0]];
+  Volume whole;
+  std::mutex adding;
+  parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Volume part;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + kAhead < end) {
+        for (const std::uint32_t v : mesh.triangles[i + kAhead]) __builtin_prefetch(&mesh.vertices[v]);
+      }
+      const Triangle& t = mesh.triangles[i];
+      part += volume_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], from);
+    }
+    const std::lock_guard lock(adding);
+    whole += part;
+  });
+  return whole;
+}
+
 // The closed components of a mesh, and which of them are reversed.
 class ClosedComponents {
  public:
-  ClosedComponents(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges)
-      : mesh_(mesh),
-        scale_(-largest_exponent(mesh)),
-        components_(components_of(mesh)),
-        open_(components_.count, false) {
+  // `opposite`: opposite_faces(mesh).
+  ClosedComponents(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const Components& components,
+                   const std::vector<std::uint32_t>& opposite)
+      : mesh_(mesh), opposite_(opposite), components_(components), open_(components.count, false) {
     for (const ExteriorEdge& edge : edges) open_[components_.of_vertex[edge.from]] = true;
+    if (std::ranges::count(open_, false) == 0) return;
     add_volumes();
+    set_signs();
   }
 
   [[nodiscard]] std::uint64_t count_reversed() const {
+    const auto negative = static_cast<std::uint64_t>(std::ranges::count(signs_, -1));
+    if (negative == 0 || components_.count == 1) return negative;
     std::vector<Candidate> candidates = negative_ones();
-    if (components_.count > 1 && !candidates.empty()) drop_surrounded(candidates);
+    drop_surrounded(candidates);
     return candidates.size();
   }
 
+  // Precondition: no component is open.
   [[nodiscard]] bool whole_is_negative() const {
+    if (std::ranges::count(signs_, -1) == 0) return false;
+    if (std::ranges::count(signs_, 1) == 0) return true;
     Volume whole;
     for (const Volume& volume : volumes_) whole += volume;
-    return whole.is_negative();
+    if (const int sign = whole.sure_sign(); sign != 0) return sign < 0;
+    return volume_sign(mesh_.triangles, mesh_.vertices) < 0;
   }
 
  private:
@@ -147,16 +126,48 @@ class ClosedComponents {
 
   // Each from a vertex of its own: a component far from the origin keeps its digits.
   void add_volumes() {
-    std::vector<Vec3> from(components_.count);
-    std::vector<bool> begun(components_.count, false);
     volumes_.resize(components_.count);
+    if (components_.count == 1) {
+      volumes_[0] = volume_of(mesh_);
+      return;
+    }
+    std::vector<Vec3> from(components_.count);
     for (const Triangle& t : mesh_.triangles) {
       const std::uint32_t component = component_of(t);
       if (open_[component]) continue;
-      const Vec3 a = scale_(mesh_.vertices[t[0]]);
-      if (!begun[component]) from[component] = a;
-      begun[component] = true;
-      volumes_[component] += volume_of(a, scale_(mesh_.vertices[t[1]]), scale_(mesh_.vertices[t[2]]), from[component]);
+      const Vec3& a = mesh_.vertices[t[0]];
+      Volume& volume = volumes_[component];
+      if (volume.faces == 0) from[component] = a;
+      volume += volume_of(a, mesh_.vertices[t[1]], mesh_.vertices[t[2]], from[component]);
+    }
+  }
+
+  void set_signs() {
+    signs_.assign(components_.count, 0);
+    std::vector<bool> in_doubt(components_.count, false);
+    for (std::uint32_t c = 0; c < components_.count; ++c) {
+      signs_[c] = volumes_[c].sure_sign();
+      in_doubt[c] = !open_[c] && signs_[c] == 0;
+    }
+    if (std::ranges::count(in_doubt, true) > 0) set_signs_exactly(in_doubt);
+  }
+
+  // Faces that cancel are left out: nearly all doubt is about double-sided surfaces, where they are all.
+  void set_signs_exactly(const std::vector<bool>& in_doubt) {
+    std::vector<std::pair<std::uint32_t, Triangle>> faces;  // with their components
+    auto left_out = opposite_.begin();
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const std::uint32_t component = component_of(mesh_.triangles[i]);
+      const bool cancels = left_out != opposite_.end() && *left_out == i;
+      if (cancels) ++left_out;
+      if (!cancels && in_doubt[component]) faces.emplace_back(component, mesh_.triangles[i]);
+    }
+    std::ranges::sort(faces);
+    for (auto it = faces.begin(); it != faces.end();) {
+      const std::uint32_t component = it->first;
+      std::vector<Triangle> triangles;
+      for (; it != faces.end() && it->first == component; ++it) triangles.push_back(it->second);
+      signs_[component] = volume_sign(triangles, mesh_.vertices);
     }
   }
 
@@ -166,12 +177,11 @@ class ClosedComponents {
     std::vector<std::uint32_t> number(components_.count, kAbsent);
     std::vector<Candidate> candidates;
     for (std::uint32_t c = 0; c < components_.count; ++c) {
-      if (!volumes_[c].is_negative()) continue;
+      if (signs_[c] >= 0) continue;
       number[c] = static_cast<std::uint32_t>(candidates.size());
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
       candidates.push_back({c, {kInfinity, kInfinity, kInfinity}});
     }
-    if (candidates.empty()) return candidates;
     for (const Triangle& t : mesh_.triangles) {
       const std::uint32_t n = number[component_of(t)];
       if (n == kAbsent) continue;
@@ -220,10 +230,11 @@ class ClosedComponents {
   }
 
   const TriangleMesh& mesh_;
-  PowerOfTwo scale_;
-  Components components_;
+  const std::vector<std::uint32_t>& opposite_;
+  const Components& components_;
   std::vector<bool> open_;
   std::vector<Volume> volumes_;
+  std::vector<int> signs_;
 };
 
 }  // namespace
@@ -231,10 +242,18 @@ class ClosedComponents {
 MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges) {
   if (welded.triangles.empty()) return {};
   const DefaultFloatingPoint guard;
+  Components components;
+  std::vector<std::uint32_t> opposite;
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (n == 0) components = components_of(welded);
+      if (n == 1) opposite = opposite_faces(welded);
+    }
+  });
   MeshDefects defects;
   defects.inconsistent_edges = count_inconsistent_edges(welded, edges);
-  defects.cancelling_pairs = count_cancelling_pairs(welded);
-  const ClosedComponents closed(welded, edges);
+  defects.cancelling_pairs = opposite.size() / 2;
+  const ClosedComponents closed(welded, edges, components, opposite);
   defects.reversed_components = closed.count_reversed();
   defects.negative_volume = edges.empty() && closed.whole_is_negative();
   return defects;

@@ -48,6 +48,23 @@ TEST(MeshDefects, ClosedMeshOfNegativeVolumeIsReversed) {
   EXPECT_TRUE(defects.negative_volume);
 }
 
+// Around a square on a slope whose corners are off it by a rounding error or two: volumes of 0 but for such.
+TriangleMesh sliver(double height) {
+  return {{{0, 0, 0.1}, {1, 0, 0.4}, {1, 1, 0.9 + height}, {0, 1, 0.6}}, {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {1, 3, 2}}};
+}
+
+TEST(MeshDefects, SignOfATinyVolumeIsExact) {
+  // The diagonal through the raised corner is above the other one: the front of the upper faces is up.
+  for (const double height : {0x1p-50, 0x1p-40, -0x1p-50, -0x1p-40}) {
+    const auto below = static_cast<std::uint64_t>(height < 0);
+    EXPECT_EQ(reversed_in(sliver(height)), below) << height;
+    EXPECT_EQ(reversed_in(reversed(sliver(height))), 1 - below) << height;
+    EXPECT_EQ(reversed_in(joined(cube_at(5, 6), sliver(height))), below) << height;
+    EXPECT_EQ(defects_of(sliver(height)).negative_volume, height < 0) << height;
+  }
+  EXPECT_EQ(reversed_in(joined(sliver(0x1p-50), reversed(sliver(0x1p-50)))), 0U) << "they cancel";
+}
+
 TEST(MeshDefects, OneOfTwoSolidsMayBeReversed) {
   const MeshDefects defects = defects_of(joined(cube_at(0, 4), reversed(cube_at(5, 6))));
   EXPECT_EQ(defects.reversed_components, 1U);

@@ -137,7 +137,7 @@ OrientedMesh turned_to_agree(TriangleMesh mesh) {
   const UniqueFaces unique = unique_faces(mesh, first_equal_vertices(mesh.vertices));
   const FaceEdges edges(unique.corners, mesh.vertices.size());
   const Patches patches = find_patches(unique.corners, edges, mesh.vertices);
-  const Pieces pieces = find_pieces(patches, edges);
+  const Pieces pieces = find_pieces(patches, edges, unique.vote);
   const std::vector<int> turn_of_piece =
       turn_pieces(faces_of_pieces(unique, patches, pieces), pieces, scaled_vertices(mesh));
   std::vector<std::int8_t> turn(patches.sign);

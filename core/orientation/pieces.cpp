@@ -27,13 +27,14 @@ class PieceFinder {
     pieces_.is_closed.assign(patches.size(), 1);
   }
 
-  Pieces find() {
+  Pieces find(const std::vector<std::int8_t>& vote) {
+    join_as_stored(vote);
     while (join()) {
     }
     for (const UnpairedEdge& edge : edges_.unpaired()) {
       for (const NetUse& use : net_uses(edge)) pieces_.is_closed[use.piece] = 0;
     }
-    open_cut_patches();
+    for_each_cut_patch([this](std::uint32_t patch) { pieces_.is_closed[pieces_.of_patch[patch]] = 0; });
     return std::move(pieces_);
   }
 
@@ -56,6 +57,50 @@ class PieceFinder {
     return uses;
   }
 
+  // How the faces of a patch are stored.
+  enum class Stored : std::uint8_t { kWithoutOpinion, kAsPatch, kReversed, kMixed };
+
+  [[nodiscard]] std::vector<Stored> stored_patches(const std::vector<std::int8_t>& vote) const {
+    std::vector<Stored> stored(patches_.size());
+    for (std::size_t patch = 0; patch < patches_.size(); ++patch) {
+      bool as_patch = false, reversed = false, neither = false;
+      for (const std::uint32_t face : patches_[patch]) {
+        const int sign = vote[face] * patches_.sign[face];
+        (sign > 0 ? as_patch : sign < 0 ? reversed : neither) = true;
+      }
+      stored[patch] = as_patch + reversed + neither > 1 ? Stored::kMixed
+                      : as_patch                        ? Stored::kAsPatch
+                      : reversed                        ? Stored::kReversed
+                                                        : Stored::kWithoutOpinion;
+    }
+    for_each_cut_patch([&](std::uint32_t patch) { stored[patch] = Stored::kMixed; });
+    return stored;
+  }
+
+  // Where one edge of a set of patches does not cancel, or one patch is mixed, the file is not to be trusted: none of
+  // the set is joined here. Patches without an opinion, as the walls that cells share, neither join nor hinder.
+  void join_as_stored(const std::vector<std::int8_t>& vote) {
+    const std::vector<Stored> stored = stored_patches(vote);
+    const auto sign = [&](std::uint32_t patch) { return stored[patch] == Stored::kReversed ? -1 : 1; };
+    std::vector<std::uint8_t> hinders(patches_.size(), 0);
+    std::vector<std::vector<PieceLink>> links(patches_.size());
+    for (std::uint32_t patch = 0; patch < patches_.size(); ++patch) hinders[patch] = stored[patch] == Stored::kMixed;
+    for (const UnpairedEdge& edge : edges_.unpaired()) {
+      std::vector<NetUse> uses = net_uses(edge);
+      std::erase_if(uses, [&](const NetUse& use) { return stored[use.piece] == Stored::kWithoutOpinion; });
+      int sum = 0;
+      for (std::size_t i = 0; i < uses.size(); ++i) {
+        sum += sign(uses[i].piece) * uses[i].net;
+        if (i == 0) continue;
+        const std::uint32_t a = uses[i - 1].piece, b = uses[i].piece;
+        links[a].push_back({b, sign(a) * sign(b)});
+        links[b].push_back({a, sign(a) * sign(b)});
+      }
+      if (sum != 0) hinders[uses.front().piece] = 1;
+    }
+    join_linked(links, hinders);
+  }
+
   // What becomes one piece, turned so; false where there is nothing to join.
   bool join() {
     std::vector<std::vector<PieceLink>> links(pieces_.size());
@@ -67,6 +112,11 @@ class PieceFinder {
       links[uses[0].piece].push_back({uses[1].piece, relation});
       links[uses[1].piece].push_back({uses[0].piece, relation});
     }
+    return join_linked(links, std::vector<std::uint8_t>(pieces_.size(), 0));
+  }
+
+  // False where there is nothing to join: links that contradict each other, or lead to a piece that hinders, do not.
+  bool join_linked(const std::vector<std::vector<PieceLink>>& links, const std::vector<std::uint8_t>& hinders) {
     std::vector<std::uint32_t> joined(pieces_.size());
     std::vector<int> turn(pieces_.size(), 0);
     std::uint32_t count = 0;
@@ -74,8 +124,9 @@ class PieceFinder {
       if (turn[start] != 0) continue;
       const std::vector<std::uint32_t> linked = spread(start, links, turn);
       const bool consistent = std::all_of(linked.begin(), linked.end(), [&](std::uint32_t piece) {
-        return std::all_of(links[piece].begin(), links[piece].end(),
-                           [&](const PieceLink& link) { return turn[piece] * turn[link.to] == link.relation; });
+        return hinders[piece] == 0 && std::all_of(links[piece].begin(), links[piece].end(), [&](const PieceLink& link) {
+                 return turn[piece] * turn[link.to] == link.relation;
+               });
       });
       for (const std::uint32_t piece : linked) {
         joined[piece] = consistent ? count : count++;
@@ -107,13 +158,15 @@ class PieceFinder {
     return reached;
   }
 
-  void open_cut_patches() {
+  // Some patches may come more than once.
+  template <class Visit>
+  void for_each_cut_patch(const Visit& visit) const {
     if (patches_.cut_edges == 0) return;
     for (std::uint32_t face = 0; face < patches_.of_face.size(); ++face) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const FaceNeighbour other = edges_.neighbour(face, corner);
         if (other.agrees == 0 || patches_.sign[face] * patches_.sign[other.face] == other.agrees) continue;
-        pieces_.is_closed[pieces_.of_patch[patches_.of_face[face]]] = 0;
+        visit(patches_.of_face[face]);
       }
     }
   }
@@ -125,6 +178,8 @@ class PieceFinder {
 
 }  // namespace
 
-Pieces find_pieces(const Patches& patches, const FaceEdges& edges) { return PieceFinder(patches, edges).find(); }
+Pieces find_pieces(const Patches& patches, const FaceEdges& edges, const std::vector<std::int8_t>& vote) {
+  return PieceFinder(patches, edges).find(vote);
+}
 
 }  // namespace raycone

@@ -9,7 +9,8 @@
 
 namespace raycone {
 
-// Patches joined where the faces at an edge cancel but for those of two patches, as where two solids touch along it.
+// Patches joined where they close each other as they are stored, and where the faces at an edge cancel but for those of
+// two patches, as where two solids touch along it.
 struct Pieces {
   std::vector<std::uint32_t> of_patch;
   std::vector<std::int8_t> sign;        // per patch: how it is turned within its piece
@@ -18,8 +19,10 @@ struct Pieces {
   [[nodiscard]] std::size_t size() const { return is_closed.size(); }
 };
 
-// Where the wishes of edges contradict each other, patches are not joined. The result does not depend on the order of
-// faces, but for the numbers of pieces and for which of the two orientations is 1.
-[[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceEdges& edges);
+// `vote`: per face, how it is stored (core/orientation/unique_faces.h). Patches whose faces all agree as stored, and
+// that have no boundary together as they are stored, keep their relations; faces that are stored as often either way
+// cancel there. Others are joined as edges wish; where wishes contradict each other, they are not. The result does not
+// depend on the order of faces, but for the numbers of pieces and for which of the two orientations is 1.
+[[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceEdges& edges, const std::vector<std::int8_t>& vote);
 
 }  // namespace raycone

@@ -265,6 +265,48 @@ TEST(Orient, KeepsTheInsideOfCubesThatShareASide) {
   }
 }
 
+// A box of unit squares, lower corner (l, l, l), two units long.
+TriangleMesh box_of_squares(double l) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 8; ++i) {
+      const bool upper = (i & 4) != 0;
+      const auto corner = [&](double u, double v) {
+        const std::array<double, 3> along{upper ? 2.0 : 0.0, (i & 1) + u, ((i >> 1) & 1) + v};
+        const auto part = [&](int a) { return l + along[static_cast<std::size_t>((a - axis + 3) % 3)]; };
+        mesh.vertices.push_back({part(0), part(1), part(2)});
+      };
+      const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const auto& [u, v] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) corner(u, v);
+      for (Triangle t : {Triangle{n, n + 1, n + 2}, Triangle{n, n + 2, n + 3}}) {
+        if (!upper) reverse(t);
+        mesh.triangles.push_back(t);
+      }
+    }
+  }
+  return welded(mesh);
+}
+
+// Where the boxes pass through each other, their faces meet in fours. As the mean of both sides, 1/2 everywhere, it
+// would be better to empty what is in both.
+TEST(Orient, KeepsWhatClosesAsStoredAcrossEdgesOfFourFaces) {
+  const TriangleMesh boxes = welded(joined(box_of_squares(0), box_of_squares(1)));
+  ASSERT_EQ(winding(boxes, {1.4, 1.5, 1.6}), 2);
+  for (const TriangleMesh& stored : {boxes, test::reversed(boxes)}) {
+    EXPECT_EQ(set_of_faces(automatic(stored)), set_of_faces(boxes));
+  }
+}
+
+// One face the other way round: the file is not to be trusted, and nothing is kept for its sake.
+TEST(Orient, KeepsNothingAcrossEdgesOfFourFacesThatDoNotClose) {
+  TriangleMesh boxes = welded(joined(box_of_squares(0), box_of_squares(1)));
+  reverse(boxes.triangles.front());
+  const TriangleMesh oriented = automatic(boxes);
+  EXPECT_EQ(winding(oriented, {1.4, 1.5, 1.6}), 0);
+  EXPECT_EQ(winding(oriented, {0.4, 0.5, 0.6}), 1);
+  EXPECT_EQ(winding(oriented, {2.4, 2.5, 2.6}), 1);
+}
+
 TEST(Orient, RestoresCellsThatTouchInEdges) {
   Random random(11);
   for (int i = 0; i < 40; ++i) {

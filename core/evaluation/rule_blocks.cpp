@@ -15,10 +15,11 @@
 namespace raycone {
 namespace {
 
-constexpr std::array<std::size_t, 3> kSides{kTile, 32,
-                                            32};  // samples along the sides of the blocks that are begun with
-constexpr std::size_t kFew = 16;                  // samples: for so few no certificate is sought
-constexpr std::size_t kRow = 32;                  // samples: rows this long are worth a certificate
+// In samples: the sides of the blocks that are begun with, blocks so small that no certificate is sought for them, and
+// rows that are worth one.
+constexpr std::array<std::size_t, 3> kSides{kTile, 32, 32};
+constexpr std::size_t kFew = 16;
+constexpr std::size_t kRow = 32;
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 
 // Rounding of sums and differences of a few numbers of turns, beside the doubt of values; times their magnitude.
@@ -78,8 +79,9 @@ class RuleBlocks {
         values_(values),
         cap_crossings_(cap_crossings),
         changes_(mesh.changes().bound) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       blocks_[axis] = (coordinates(axis).size() + kSides[axis] - 1) / kSides[axis];
+    }
     sort_caps();
   }
 
@@ -246,8 +248,9 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
       crossings[i] = static_cast<std::int64_t>(values_[index_of(some[i].sample)]);
     }
     mesh_.set_values(tile, {crossings.data(), some.size()}, {w.data(), some.size()});
-    for (std::size_t i = 0; i < some.size(); ++i)
+    for (std::size_t i = 0; i < some.size(); ++i) {
       some[i].rest = w[i] - crossings_of(index_of(some[i].sample), some[i].closed);
+    }
   }
 }
 
@@ -257,8 +260,9 @@ bool RuleBlocks::decide(const Candidate& candidate) const {
   Margin margin(rule_);
   bool certain = true;
   for_each_row(candidate.block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
-      certain = certain && margin(crossings_of(n, candidate.closed) + candidate.rest) > needed;
+    for (std::size_t n = begin; certain && n < end; ++n) {
+      certain = margin(crossings_of(n, candidate.closed) + candidate.rest) > needed;
+    }
     return certain;
   });
   if (!certain) return false;

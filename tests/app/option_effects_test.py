@@ -124,6 +124,7 @@ TABLE = [
     Row("lattice cubes.obj -o - --resolution 2", "--no-clobber", HARMLESS),
     Row(BATCH, "--no-clobber", HARMLESS),
     Row("info cubes.obj", "--no-clobber", REFUSED),
+    Row("info open.obj --mark old.ply", "--no-clobber", CHANGES),
     *(Row(words, option, CHANGES)
       for words in (LATTICE, POINTS, SLICE) for option in ("--report out/r.json", "--depfile out/a.d")),
     *(Row(words, "--depfile out/a.d", REFUSED)
@@ -254,7 +255,7 @@ class OptionEffects(unittest.TestCase):
             "points.ply": "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                           "property float z\nend_header\n0 0 0\n",
             "null.txt": "good/a.obj\0good/b.obj\0",
-            "old.csv": "", "old.png": "", "old.npz": "",
+            "old.csv": "", "old.png": "", "old.npz": "", "old.ply": "",
         }
         for name, text in texts.items():
             os.makedirs(os.path.dirname(name) or ".", exist_ok=True)

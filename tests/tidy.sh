@@ -15,9 +15,11 @@ if [ "${1-}" = --quick ]; then
 fi
 [ $# -gt 0 ] || set -- core io app
 unity=OFF
+warnings=
 if [ -d "$1" ]; then
   unity=ON
   checks=$checks,-bugprone-suspicious-include  # of .cpp files: how they are put together
+  warnings=--extra-arg=-Wno-shadow             # of one file's constants by another's
 fi
 sh app/install_packages.sh --tidy
 cmake --preset dev -B build/tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DRAYCONE_UNITY=$unity >/dev/null
@@ -30,12 +32,12 @@ for command in json.load(open("build/tidy/compile_commands.json")):
 
 # tidy_all FILE...: notes in build/tidy.tsv how long each took. The headers behind all others: <quadmath.h> is GCC's own.
 rm -f build/tidy.tsv
-export checks gcc_headers="$(g++ -print-file-name=include)"
+export checks warnings gcc_headers="$(g++ -print-file-name=include)"
 tidy_all() {
   printf '%s\n' "$@" | xargs -P "$(nproc)" -n 1 sh -c '
     begin=$(date +%s)
     clang-tidy --quiet -p build/tidy --checks="$checks" --extra-arg=-Wno-unknown-warning-option \
-      --extra-arg=-idirafter --extra-arg="$gcc_headers" "$1" || exit 1
+      --extra-arg=-idirafter --extra-arg="$gcc_headers" $warnings "$1" || exit 1
     printf "%s\t%s\n" "$(($(date +%s) - begin))" "$1" >>build/tidy.tsv' tidy
 }
 phase "$phase_name" tidy_all "$@"

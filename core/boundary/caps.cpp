@@ -28,7 +28,7 @@ class EdgeGraph {
     }
     const auto before = [](const Vec3& a, const Vec3& b) { return lexicographic_order(a, b) < 0; };
     std::ranges::sort(vertices_, before);
-    vertices_.erase(std::ranges::unique(vertices_).begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     const auto index_of = [&](const Vec3& v) {
       return static_cast<std::uint32_t>(std::ranges::lower_bound(vertices_, v, before) - vertices_.begin());
     };

@@ -32,7 +32,7 @@ std::vector<ClosedSurface> surfaces_of(const std::vector<ClosedPatch>& patches) 
 }  // namespace
 
 std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
-  const std::vector<int> outward = outward_signs(patches, vertices);
+  std::vector<int> outward = outward_signs(patches, vertices);
   if (patches.size() < 2) return outward;
   const std::vector<std::vector<std::uint32_t>> around = surfaces_around(surfaces_of(patches), vertices);
 

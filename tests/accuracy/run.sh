@@ -1,7 +1,7 @@
 #!/bin/sh
 # Compares the evaluator with the oracle on every mesh that loads in ../shared/meshes (or in the directory given), and writes
 # docs/accuracy.md: sh tests/accuracy/run.sh [DIRECTORY]. Takes some minutes. --quick: a tenth of the samples of the meshes
-# below 40 000 faces, to standard output only; exit status 77 where the meshes are absent.
+# below 10 000 faces, to standard output only; exit status 77 where the meshes are absent.
 set -eu
 cd "$(dirname "$0")/../.."
 quick=
@@ -23,7 +23,7 @@ python3 - "$meshes" "$quick" >"$list" <<'END'
 import csv, sys
 folder, quick = sys.argv[1:]
 for row in csv.DictReader(open(folder + "/MANIFEST.csv")):
-    if row["expect"].startswith("load") and not (quick and int(row["faces"]) > 40000):
+    if row["expect"].startswith("load") and not (quick and int(row["faces"]) > 10000):
         print(folder + "/" + row["file"])
 END
 

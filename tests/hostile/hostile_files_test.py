@@ -68,7 +68,7 @@ def walk_longest_lines():
 
 # What never ends is read until a limit, and no further; as a mesh: faults_test.py --memory.
 def walk_devices():
-    expect("/dev/zero as points", ["points", "--memory-limit", "100M", MESH, "/dev/zero"], 2, "line of more than")
+    expect("/dev/zero as points", ["points", "--memory-limit", "200M", MESH, "/dev/zero"], 2, "line of more than")
     expect_mesh("/dev/null", 2, "the file is empty")
     expect_mesh(".", 2, "is a directory")
     expect_mesh("absent.obj", 2, "No such file or directory")

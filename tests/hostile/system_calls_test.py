@@ -3,8 +3,8 @@
 strace(1) makes one call of a run return an error, as the kernel does where disks break, quotas and tables are full and
 memory ends, or delivers a signal during it. A run either does not need that call and ends as ever, or ends with a documented
 status and one line, and leaves the earlier outputs, or complete new ones; a batch that is run again completes them. In
-particular no input that cannot be read to its end is taken for a shorter one. --long tries every call of every run, else one
-of each kind (of CALLs only, if given).
+particular no input that cannot be read to its end is taken for a shorter one. --long tries every call of every run with every
+error, else one of each kind with one (of CALLs only, if given).
 Status 77 where strace is missing or may not trace, or RAYCONE is built with a sanitizer, which traces itself.
 """
 
@@ -137,7 +137,7 @@ def sweep(run, chance):
         return calls[call] if LONG else chance.sample(calls[call], min(SAMPLED, len(calls[call])))
 
     for call in chosen(ERRORS):
-        for error in ERRORS[call]:
+        for error in ERRORS[call] if LONG else [chance.choice(ERRORS[call])]:
             for when in times(call):
                 results[inject_error(run, call, error, when)] += 1
     for call in chosen(FROM_FIRST):

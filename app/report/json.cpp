@@ -1,6 +1,7 @@
 // By nlohmann-json: it escapes names correctly and prints doubles shortest-round-trip.
 #include "app/report/json.h"
 
+#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -13,6 +14,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_array(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json to_rows(const std::array<double, 16>& matrix) {
+  Json rows = Json::array();
+  for (std::size_t n = 0; n < 16; n += 4) {
+    rows.push_back(Json::array({matrix[n], matrix[n + 1], matrix[n + 2], matrix[n + 3]}));
+  }
+  return rows;
+}
 
 Json to_object(const Lattice& lattice) {
   return {{"origin", to_array(lattice.origin)},
@@ -120,6 +129,7 @@ std::string to_json(const RunReport& report) {
                 {"dropped_duplicates", report.orientation.dropped_duplicates},
                 {"patches", report.orientation.patches},
                 {"exterior_edges", report.exterior_edges},
+                {"transform", to_rows(report.transform)},
                 {"samples", report.samples},
                 {"lattice", nullptr},
                 {"threads", report.threads},

@@ -1,6 +1,7 @@
 // What a run tells its user when it is done: one summary line, and the numbers behind it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ struct RunReport {
   std::uint64_t faces = 0;
   OrientationCounts orientation;
   std::uint64_t exterior_edges = 0;
+  std::array<double, 16> transform{};  // from the file's coordinates to the world's, row by row
   std::uint64_t samples = 0;
   std::optional<Lattice> lattice;  // absent for points
   int threads = 0;

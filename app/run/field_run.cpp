@@ -72,10 +72,11 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   if (encoding.grid_name) description.fields.front().grid = *encoding.grid_name;
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;
+  description.transform = report.transform;
   description.faces = report.faces;
   description.exterior_edges = report.exterior_edges;
-  description.double_precision = encoding.double_precision;
-  description.half_precision = encoding.half_precision;
+  description.precision = encoding.precision;
+  description.packs_flags = encoding.pack_bits;
   return description;
 }
 

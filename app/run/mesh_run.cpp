@@ -21,7 +21,9 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& output_files, const
 }
 
 TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
-  MeshFile file = timed(report.seconds.read, [&] { return read_mesh_file(mesh_, limits_); });
+  TransformedMesh transformed = timed(report.seconds.read, [&] { return read_mesh_file(mesh_, limits_); });
+  MeshFile& file = transformed.file;
+  report.transform = transformed.transform;
   report.sha256 = file.sha256;
   report.companions = file.companions;
   report.files_read.push_back(report.mesh);

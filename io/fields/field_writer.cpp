@@ -53,6 +53,7 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
     case FieldFormat::kVti:
       return make_vti_lattice_writer(output, lattice, description);
     case FieldFormat::kNpz:
+      return make_npz_lattice_writer(output, lattice, description);
     case FieldFormat::kRawDouble:
     case FieldFormat::kRawFloat:
       break;  // for points only; options are checked before anything is opened
@@ -69,7 +70,7 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
     case FieldFormat::kNpy:
       return make_npy_point_writer(output, size, description);
     case FieldFormat::kNpz:
-      return make_npz_point_writer(output, size.value(), description);
+      return make_npz_point_writer(output, size, description);
     case FieldFormat::kRawDouble:
       return make_raw_point_writer(output, RawPrecision::kDouble, description);
     case FieldFormat::kRawFloat:

@@ -88,7 +88,7 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   insert(grid, "raycone_index_max", to_coord(lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)));
   insert(grid, "raycone_faces", description.faces);
   insert(grid, "raycone_exterior_edges", description.exterior_edges);
-  if (description.half_precision && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
+  if (description.is(Precision::kHalf) && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
 }
 
 // --- Its tree
@@ -223,7 +223,7 @@ std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
   const auto background =
-      vdb::level_set_background<Value>(band_width, plan.lattice.spacing.x, plan.description.half_precision);
+      vdb::level_set_background<Value>(band_width, plan.lattice.spacing.x, plan.description.is(Precision::kHalf));
   return make_builder<Grid>(plan, vdb::StoreDistance<Value>{band_width, background}, background);
 }
 
@@ -231,7 +231,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
   using openvdb::BoolGrid, openvdb::DoubleGrid, openvdb::FloatGrid;
   const double background = plan.field.background;
   const auto narrow_background = static_cast<float>(background);
-  const bool wide = plan.description.double_precision;
+  const bool wide = plan.description.is(Precision::kDouble);
   switch (plan.field.kind) {
     case FieldKind::kFlag:
       return make_builder<BoolGrid>(plan, vdb::StoreFlag{}, background != 0.0);
@@ -246,7 +246,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
       break;
   }
   if (wide) return make_builder<DoubleGrid>(plan, vdb::StoreDouble{}, background);
-  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.half_precision);
+  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf));
   return make_builder<FloatGrid>(plan, vdb::StoreFloat{narrowing}, narrow_background);
 }
 

@@ -48,7 +48,7 @@ std::string lattice_npy(const Lattice& lattice, const std::vector<double>& value
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.npy");
   OutputDescription description;
-  description.double_precision = double_precision;
+  if (double_precision) description.precision = Precision::kDouble;
   test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, thickness);
   return contents(directory / "out.npy");
 }
@@ -213,7 +213,7 @@ TEST(WriteNpy, LatticesOfFlagsAreBooleans) {
   OutputFile output(directory / "out.npy");
   OutputDescription description;
   description.fields.front().kind = FieldKind::kFlag;
-  description.double_precision = true;  // of numbers, not of flags
+  description.precision = Precision::kDouble;  // of numbers, not of flags
   const auto writer = make_lattice_writer(FieldFormat::kNpy, output, lattice_of(2, 1, 2), description);
   const std::vector<std::uint8_t> flags{1, 0, 0, 1};  // x fastest
   const FieldValues field = std::span(flags);

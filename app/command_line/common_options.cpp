@@ -57,7 +57,8 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
   if (formats.only) return *formats.only;
   const bool named = values.given("--format");
   if (!named && output == "-") return FieldFormat::kCsv;
-  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::string extension =
+      has_extension(output, "nii.gz") ? ".nii.gz" : std::filesystem::path(output).extension().string();
   const std::string name =
       named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);

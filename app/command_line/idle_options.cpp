@@ -78,7 +78,7 @@ void refuse_idle_options(const Values& values, const PointsCommand& command) {
 
 void refuse_options_of_outputs(const Values& values) {
   const std::string because = "with --format none, which writes no files";
-  for (const char* const name : {"--double", "--half", "--full-names", "--pack-bits"})
+  for (const char* const name : {"--double", "--half", "--full-names", "--pack-bits", "--compress"})
     refuse_flag(values, name, because);
   for (const char* const name : {"--grid-name", "--dtype"}) refuse_option(values, name, because);
 }

@@ -8,6 +8,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
@@ -117,6 +118,7 @@ Command parse_points(const Values& values) {
   command.output = parse_output_files(values);
   command.encoding = parse_encoding(values, command.output, output_formats(command));
   check_npy_columns(command);
+  command.run.options = given_options(values, option_names(points_spec()));
   refuse_idle_options(values, command);
   return command;
 }

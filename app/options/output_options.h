@@ -20,6 +20,7 @@ struct FieldEncoding {
   FieldFormat format = FieldFormat::kCsv;
   std::optional<Precision> precision;    // of real numbers; else what the format does
   bool pack_bits = false;                // of inside
+  bool compress = false;                 // NRRD and NIfTI
   std::optional<std::string> grid_name;  // of the only field's grid
 };
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -120,6 +121,8 @@ std::string to_text(const Json& document) {
 
 std::string to_json(const RunReport& report) {
   Json document{{"version", kVersion},
+                {"command", report.command},
+                {"options", report.options},
                 {"mesh", report.mesh},
                 {"sha256", report.sha256},
                 {"output", report.output},
@@ -145,6 +148,17 @@ std::string to_json(const RunReport& report) {
     document["seconds"]["verify"] = report.seconds.verify;
   }
   return to_text(document);
+}
+
+std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields, const std::string& rule) {
+  Json document{{"raycone_version", kVersion},
+                {"mesh", std::filesystem::path(report.mesh).filename().string()},
+                {"sha256", report.sha256},
+                {"options", report.options},
+                {"fields", fields},
+                {"transform", to_rows(report.transform)}};
+  if (!rule.empty()) document["rule"] = rule;
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }

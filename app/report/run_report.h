@@ -40,7 +40,9 @@ struct RunReport {
   std::vector<FileRead> companions;     // what the mesh refers to
   std::string sha256;
   std::string output;
-  std::uint64_t vertices = 0;  // as read, before welding
+  std::vector<std::string> command;  // its words, as given; empty where a batch gave it
+  std::vector<std::string> options;  // those of it that results depend on
+  std::uint64_t vertices = 0;        // as read, before welding
   std::uint64_t faces = 0;
   OrientationCounts orientation;
   std::uint64_t exterior_edges = 0;

@@ -47,6 +47,7 @@ double bytes_of_sample(FieldFormat format, const OutputDescription& description)
   switch (format) {
     case FieldFormat::kNpy:
     case FieldFormat::kNpz:
+    case FieldFormat::kNifti:
     case FieldFormat::kVti:
       return bytes_of_values(description, bytes_of_real(description, Precision::kSingle));
     case FieldFormat::kCsv:

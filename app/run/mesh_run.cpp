@@ -17,6 +17,8 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& output_files, const
       total_(std::in_place, report.seconds.total) {
   report.mesh = mesh.path;
   report.output = output_files.path;
+  report.command = options.words;
+  report.options = options.options;
   report.threads = limits.threads();
 }
 

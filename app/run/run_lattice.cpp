@@ -21,6 +21,7 @@
 #include "app/run/slabs.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
+#include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"
 #include "io/files/output_file.h"
 
@@ -40,6 +41,7 @@ void check_cubic(const Vec3& spacing) {
 }
 
 Lattice lattice_of_grid(const GridReference& grid) {
+  if (is_image(grid.path)) return read_image_lattice(grid.path);
   return is_npz(grid.path) ? read_npz_lattice(grid.path) : read_grid_lattice(grid.path, grid.name);
 }
 

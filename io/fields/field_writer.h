@@ -1,4 +1,4 @@
-// Writers of fields: on lattices VDB, CSV, NPY, NPZ and VTI; at points CSV, NPY, NPZ and raw numbers.
+// Writers of fields: on lattices VDB, CSV, NPY, NPZ, NRRD, NIfTI and VTI; at points CSV, NPY, NPZ and raw numbers.
 #pragma once
 
 #include <array>
@@ -24,12 +24,15 @@ enum class FieldFormat {
   kNpy,
   kVti,
   kNpz,
+  kNrrd,
+  kNifti,
+  kNiftiGz,    // NIfTI-1, packed by gzip
   kRawDouble,  // nothing but numbers, little-endian; has no name
   kRawFloat,
   kNone,
 };
 
-// "vdb", "csv", "npy", "vti", "npz" or "none", in any case.
+// "vdb", "csv", "npy", "vti", "npz", "nrrd", "nii", "nii.gz" or "none", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
 
 // What the numbers of a field are; formats choose how they store them.
@@ -67,11 +70,13 @@ struct OutputDescription {
   std::uint64_t faces = 0;
   std::uint64_t exterior_edges = 0;
   std::optional<Precision> precision;             // of real numbers: by default 32 bits on lattices, 64 at points
+  bool compress = false;                          // NRRD, NIfTI: by gzip
   bool packs_flags = false;                       // NPZ: the field inside as bits
   bool on_surface = false;                        // points have normals and faces
   bool single_points = false;                     // NPZ: points and normals as 32 bits
   std::array<double, 16> transform = kIdentity4;  // from the mesh's file to the world, row by row
   std::string metadata;                           // how this was made, as JSON
+  std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
 
   [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }
 };
@@ -101,8 +106,8 @@ class LatticeWriter {
 };
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
-// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY holds
-// one field, VTI no halves.
+// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY, NRRD
+// and NIfTI hold one field; the last two and VTI no halves.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const Lattice& lattice,
                                                                  const OutputDescription& description);

@@ -21,6 +21,10 @@ namespace raycone {
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                      const OutputDescription& description);
 
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_nrrd_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                      const OutputDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_nifti_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                       const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_npz_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                      const OutputDescription& description);
 

@@ -37,10 +37,6 @@ NOT_AVAILABLE = {
         "--field winding,gradient": "--field winding,gradient",
         "--field label": "--field label",
         "--parts component": "--parts",
-        "--compress": "--compress",
-        "--format nrrd": "--format nrrd",
-        "--format nii": "--format nii",
-        "--format NII.GZ": "--format NII.GZ",
         "--mesh-format 3mf": "--mesh-format 3mf",
     },
     "points": {
@@ -52,7 +48,6 @@ NOT_AVAILABLE = {
         "--tolerance 1e-3": "--tolerance 1e-3",
         "--field solid": "--field solid",
         "--parts group": "--parts",
-        "--format nrrd": "--format nrrd",
     },
 }
 
@@ -62,10 +57,6 @@ NOT_AVAILABLE_LINES = {
     "surface --help": "surface",
     "help surface": "surface",
     "info model.3mf": "model.3mf",
-    "lattice cube.obj -o out.nii.gz": "out.nii.gz",
-    "lattice cube.obj -o out.nrrd": "out.nrrd",
-    "lattice cube.obj -o out.vdb --like other.nrrd": "--like other.nrrd",
-    "lattice cube.obj -o out.vdb --like other.nii.gz": "--like other.nii.gz",
 }
 
 # Of a misspelt word: the command line, what is named, what is suggested (nothing: the help).
@@ -171,7 +162,7 @@ class Everywhere(Contract):
         self.assertEqual(run(words, env={**os.environ, "RAYCONE_THREADS": "none"}).returncode, 1)
 
     def test_every_format_goes_to_standard_output(self):
-        for name in ("csv", "npy", "npz", "vdb", "vti"):
+        for name in ("csv", "npy", "npz", "nii", "nii.gz", "nrrd", "vdb", "vti"):
             words = ["lattice", CUBE, "--resolution", "3", "--quiet"]
             self.works([*words, "-o", "out." + name])
             piped = run([*words, "-o", "-", "--format", name], text=False)

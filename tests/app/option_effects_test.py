@@ -54,7 +54,8 @@ TABLE = [
       for words in (LATTICE, BATCH)
       for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--padding 5%", "--resolution 6", "--centers")),
     *(Row(words, option, CHANGES)
-      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb", "--like grid.npz")),
+      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb", "--like grid.npz", "--like grid.nrrd",
+                     "--like grid.nii.gz")),
     *(Row(LATTICE, option, REFUSED) for option in ("--voxel-size .25", "--like grid.vdb")),
     *(Row(BARE + " --like grid.vdb", option, REFUSED)
       for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--resolution 5", "--voxel-size 1", "--centers")),
@@ -118,7 +119,7 @@ TABLE = [
     *(Row(words, twice, REFUSED)
       for words in (LATTICE, POINTS, SLICE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
     *(Row(words + " --field winding", "--field inside", REFUSED) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
-    *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "npz", "vti")),
+    *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "npz", "vti", "nrrd", "nii", "nii.gz")),
     Row(LATTICE, "--format csv", HARMLESS),
     Row(POINTS, "--format npy", CHANGES),
     Row("slice cubes.obj -o out/a --size 8", "--format png", CHANGES),
@@ -135,7 +136,12 @@ TABLE = [
     *(Row(FILE + end, "--double", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
     *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
     *(Row(FILE + end, "--dtype f16", CHANGES) for end in ("vdb", "npy", "npz")),
-    Row(FILE + "vti", "--dtype f16", REFUSED),
+    *(Row(FILE + end, "--dtype f16", REFUSED) for end in ("vti", "nrrd", "nii", "nii.gz")),
+    *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("nrrd", "nii", "nii.gz")),
+    *(Row(words, "--compress", CHANGES) for words in (FILE + "nrrd", BATCH + " --format nrrd")),
+    *(Row(words, "--compress", REFUSED)
+      for words in (FILE + "vdb", FILE + "nii", FILE + "nii.gz", BATCH, BATCH + " --format none")),
+    *(Row(FILE + end, "--diagnostics", REFUSED) for end in ("nrrd", "nii")),
     *(Row(words, "--dtype f32", CHANGES)
       for words in (SAMPLE, POINTS + " --format npy", "batch good --out-dir out/batch --sample uniform=3")),
     *(Row(words, "--dtype f64", REFUSED)
@@ -216,7 +222,7 @@ def without_times(name, content):
         return [{key: value for key, value in row.items() if not key.endswith(("_s", "_bytes"))} for row in rows]
     if name.endswith(".json"):
         report = json.loads(content)
-        return {key: value for key, value in report.items() if key not in ("seconds", "peak_memory_bytes", "threads")}
+        return {key: value for key, value in report.items() if key not in ("command", "seconds", "peak_memory_bytes", "threads")}
     return content
 
 
@@ -285,6 +291,7 @@ class OptionEffects(unittest.TestCase):
             with open(name, "wb") as file:
                 file.write(content)
         for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "lattice cubes.obj -o grid.npz --resolution 3",
+                      "lattice cubes.obj -o grid.nrrd --resolution 3", "lattice cubes.obj -o grid.nii.gz --resolution 3",
                       "batch good --out-dir done --resolution 4"):
             assert run(words).returncode == 0, words
         cls.baselines = {}

@@ -61,6 +61,22 @@ TEST(WriteNpy, HeaderIsVersion1PaddedTo64Bytes) {
   EXPECT_TRUE(header_text(npy).starts_with("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }"));
 }
 
+// Half of what the double below 1/2 rounds to would be 1/2.
+TEST(WriteNpy, HalvesStayOnTheSideOfTheThreshold) {
+  const std::vector<double> values{0.5, std::nextafter(0.5, 0.0), std::nextafter(-0.5, 0.0), 1.0, 1e300, -0.0};
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.npy");
+  OutputDescription description;
+  description.precision = Precision::kHalf;
+  const Lattice lattice = lattice_of(1, 1, 6);
+  test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, 1);
+  const std::string npy = contents(directory / "out.npy");
+  EXPECT_TRUE(header_text(npy).starts_with("{'descr': '<f2'"));
+  // 1/2, the half below it, minus the half below it, 1, 65504, 0
+  const std::vector<std::uint16_t> expected{0x3800, 0x37FF, 0xB7FF, 0x3C00, 0x7BFF, 0};
+  EXPECT_EQ(elements<std::uint16_t>(npy), expected);
+}
+
 TEST(WriteNpy, LatticesHaveZFastest) {
   // More samples than a tile of the transposition on each side, in slabs that do not divide them.
   const Lattice lattice = lattice_of(37, 5, 41);

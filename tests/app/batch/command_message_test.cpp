@@ -54,8 +54,19 @@ std::vector<std::function<void(Command&)>> common_changes() {
           [](Command& c) { c.encoding.precision = Precision::kDouble; },
           [](Command& c) { c.encoding.precision = Precision::kHalf; },
           [](Command& c) { c.encoding.pack_bits = true; },
-          [](Command& c) { c.mesh.normalize = {NormalizeTo::kCube, 2.0}; },
-          [](Command& c) { c.mesh.normalize = {NormalizeTo::kSphere, 1.0}; },
+          [](Command& c) { c.encoding.compress = true; },
+          [](Command& c) {
+            c.run.options = {"--a=b", "--c"};
+          },
+          [](Command& c) {
+            c.run.words = {"a", ""};
+          },
+          [](Command& c) {
+            c.mesh.normalize = {NormalizeTo::kCube, 2.0};
+          },
+          [](Command& c) {
+            c.mesh.normalize = {NormalizeTo::kSphere, 1.0};
+          },
           [](Command& c) { c.encoding.grid_name = "density"; }};
 }
 

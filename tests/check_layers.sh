@@ -43,7 +43,8 @@ only_in nlohmann-json '[<"]nlohmann' 'io/mesh/(bounded_json\.(h|cpp)|gltf_docume
 only_in tinygltf '[<"]tiny_gltf' 'io/mesh/(gltf_data|read_gltf)\.cpp'
 only_in Draco '[<"]draco' 'io/mesh/gltf_draco\.cpp'
 only_in nettle '[<"]nettle' 'io/files/(base64|read_file)\.cpp'
-only_in zlib '[<"]zlib' 'io/files/zip_writer\.cpp'
+only_in zlib '[<"]zlib' 'io/files/(gzip_writer|unpack|zip_writer)\.cpp'
+only_in Zstandard '[<"]zstd' 'io/files/unpack\.cpp'
 only_in libpng '[<"]png\.h' 'io/fields/write_png\.cpp'
 only_in CLI11 '[<"]CLI/' 'app/command_line/parse_command_line\.cpp'
 exit "$status"

@@ -15,6 +15,7 @@
 #include "app/process/usage_error.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
+#include "io/files/unpack.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 using DirectoryIdentity = std::pair<dev_t, ino_t>;
 
 bool has_mesh_extension(const fs::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = fs::path(without_packing_extension(path.string())).extension().string();
   return !extension.empty() && mesh_format_from_name(std::string_view(extension).substr(1)).has_value();
 }
 
@@ -127,7 +128,7 @@ void add_operand(const std::string& operand, bool nul_separated_lists, std::vect
 
 std::string output_name(const std::string& name, const MeshSearch& search) {
   if (search.full_names) return name + '.' + search.extension;
-  return fs::path(name).replace_extension(search.extension).string();
+  return fs::path(without_packing_extension(name)).replace_extension(search.extension).string();
 }
 
 // "a, b and c".

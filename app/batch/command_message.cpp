@@ -125,13 +125,14 @@ class Carrier {
   void carry(Box& box) { carry_members<2>(box); }
   void carry(ReadMeshOptions& options) { carry_members<3>(options); }
   void carry(Weld& weld) { carry_members<2>(weld); }
-  void carry(MeshOptions& options) { carry_members<4>(options); }
-  void carry(RunOptions& options) { carry_members<6>(options); }
+  void carry(Normalize& normalize) { carry_members<2>(normalize); }
+  void carry(MeshOptions& options) { carry_members<5>(options); }
+  void carry(RunOptions& options) { carry_members<8>(options); }
   void carry(Rule& rule) { carry_members<2>(rule); }
   void carry(FieldOptions& options) { carry_members<7>(options); }
   void carry(OutputFiles& files) { carry_members<4>(files); }
-  void carry(FieldEncoding& encoding) { carry_members<4>(encoding); }
-  void carry(WorldPadding& padding) { carry_members<1>(padding); }
+  void carry(FieldEncoding& encoding) { carry_members<5>(encoding); }
+  void carry(WorldPadding& padding) { carry_members<2>(padding); }
   void carry(VoxelPadding& padding) { carry_members<1>(padding); }
   void carry(LongestSide& side) { carry_members<1>(side); }
   void carry(SampleCounts& samples) { carry_members<1>(samples); }
@@ -142,6 +143,7 @@ class Carrier {
   void carry(ReadPointsOptions& options) { carry_members<2>(options); }
   void carry(UniformSamples& samples) { carry_members<1>(samples); }
   void carry(NearSamples& samples) { carry_members<2>(samples); }
+  void carry(SurfaceSamples& samples) { carry_members<1>(samples); }
   void carry(SampleRequest& request) { carry_members<4>(request); }
   void carry(PointsCommand& command) { carry_members<8>(command); }
 

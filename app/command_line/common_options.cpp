@@ -22,6 +22,15 @@ Weld parse_weld(const Values& values) {
   return {WeldMode::kDistance, *distance};
 }
 
+Normalize parse_normalize(const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string name = text.substr(0, colon);
+  const std::optional<double> size = colon < text.size() ? number_from(std::string_view(text).substr(colon + 1)) : 1.0;
+  const bool known = name == "cube" || name == "sphere";
+  if (!known || !size || !(*size > 0.0)) invalid("--normalize", text, "cube or sphere, with :SIZE behind if need be");
+  return {name == "cube" ? NormalizeTo::kCube : NormalizeTo::kSphere, *size};
+}
+
 // `file`: ends with a dot and the format's name.
 void refuse_later_format(const std::string& what, const std::string& file, const OutputFormats& formats) {
   for (const char* const name : formats.later) {
@@ -37,11 +46,19 @@ Orient parse_orient(const Values& values) {
   return way->second;
 }
 
+Precision parse_dtype(const std::string& text) {
+  if (text == "f16") return Precision::kHalf;
+  if (text == "f32") return Precision::kSingle;
+  if (text == "f64") return Precision::kDouble;
+  invalid("--dtype", text, "f16, f32 or f64");
+}
+
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
   if (formats.only) return *formats.only;
   const bool named = values.given("--format");
   if (!named && output == "-") return FieldFormat::kCsv;
-  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::string extension =
+      has_extension(output, "nii.gz") ? ".nii.gz" : std::filesystem::path(output).extension().string();
   const std::string name =
       named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);
@@ -69,7 +86,8 @@ OptionGroup mesh_group() {
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
            {"--orient", "keep|flip|auto", "Turn no face, all, or those that make the mesh agree and face outward"},
            {"--scale", "S", "Multiply all coordinates by S"},
-           {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"}}};
+           {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"},
+           {"--normalize", "cube|sphere[:SIZE]", "Move the mesh to the origin and scale it to SIZE (default: 1)"}}};
 }
 
 MeshOptions parse_mesh(const Values& values) {
@@ -84,6 +102,7 @@ MeshOptions parse_mesh(const Values& values) {
   if (values.given("--scale")) mesh.reading.scale = values.positive("--scale");
   mesh.reading.y_up_to_z_up = values.given("--up");
   if (values.given("--up") && values.text("--up") != "y-to-z") invalid("--up", values.text("--up"), "y-to-z");
+  if (values.given("--normalize")) mesh.normalize = parse_normalize(values.text("--normalize"));
   mesh.weld = parse_weld(values);
   mesh.orient = parse_orient(values);
   return mesh;
@@ -101,6 +120,8 @@ OptionGroup output_group(const std::string& formats) {
        {"--depfile", "FILE.d", "Write the files that were read as a rule for Make"}}};
 }
 
+OptionSpec pack_bits_option() { return {"--pack-bits", "", "Store inside as bits in NPZ, as numpy.packbits does"}; }
+
 OutputFiles parse_output_files(const Values& values) {
   OutputFiles output;
   output.path = values.given("--output") ? values.text("--output") : "-";
@@ -115,6 +136,8 @@ OutputFiles parse_output_files(const Values& values) {
 FieldEncoding parse_encoding(const Values& values, const OutputFiles& output, const OutputFormats& formats) {
   FieldEncoding encoding;
   encoding.format = parse_format(values, output.path, formats);
+  if (values.given("--dtype")) encoding.precision = parse_dtype(values.text("--dtype"));
+  encoding.pack_bits = values.given("--pack-bits");
   return encoding;
 }
 

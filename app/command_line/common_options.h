@@ -29,9 +29,12 @@ struct OutputFormats {
   std::optional<FieldFormat> only = {};  // whatever the output is called
   std::vector<const char*> later = {};   // extensions of those that are promised and do not exist yet
 };
-// Of values that go to `output`. No option but --format is looked at.
+// Of values that go to `output`: --format, --dtype and --pack-bits.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,
                                            const OutputFormats& formats);
+
+// --pack-bits, of commands that write NPZ.
+[[nodiscard]] OptionSpec pack_bits_option();
 
 // Whether `path` ends with a dot and `extension`, which is in lower case, in any case.
 [[nodiscard]] bool has_extension(const std::string& path, const std::string& extension);

@@ -43,11 +43,22 @@ void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
   if (output.path == "-") refuse_option(values, "--depfile", "on standard output, expected -o FILE");
 }
 
+void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding) {
+  const std::string on_csv = "on CSV, which holds all digits, expected another format";
+  if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", on_csv);
+  if (!has_numbers(field)) {
+    refuse_option(values, "--dtype", "on inside, which is yes or no, expected another field");
+  }
+  if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
+  if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
+}
+
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {
+  refuse_idle_encoding(values, command.field, command.encoding);
   refuse_idle_rule(values, command.field);
   refuse_idle_depfile(values, command.output);
   if (!command.field.has(Field::kDistance)) refuse_option(values, "--band", "without a distance, expected --field sdf");
-  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy or vti";
+  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {
     if (!has_numbers(command.field)) refuse_flag(values, name, "on inside, which is yes or no, expected another field");
@@ -55,19 +66,21 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
 }
 
 void refuse_idle_options(const Values& values, const PointsCommand& command) {
+  refuse_idle_encoding(values, command.field, command.encoding);
   refuse_idle_rule(values, command.field);
   refuse_idle_depfile(values, command.output);
   refuse_option(values, "--band", "on distances at points, which are not cut off");
   if (!command.sample || draws_in_box(*command.sample)) return;
   for (const char* const name : {"--bounds", "--padding"}) {
-    refuse_option(values, name, "on points near the surface, expected --sample uniform=N");
+    refuse_option(values, name, "on points on or near the surface, expected --sample uniform=N");
   }
 }
 
 void refuse_options_of_outputs(const Values& values) {
   const std::string because = "with --format none, which writes no files";
-  for (const char* const name : {"--double", "--half", "--full-names"}) refuse_flag(values, name, because);
-  refuse_option(values, "--grid-name", because);
+  for (const char* const name : {"--double", "--half", "--full-names", "--pack-bits", "--compress"})
+    refuse_flag(values, name, because);
+  for (const char* const name : {"--grid-name", "--dtype"}) refuse_option(values, name, because);
 }
 
 }  // namespace raycone

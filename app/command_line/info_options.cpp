@@ -63,8 +63,7 @@ CommandSpec info_spec() {
                      run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",
                        "raycone info *.stl --csv > meshes.csv",
-                       "raycone info part.stl --require closed,outward,embedded --mark flaws.ply"},
-          .later = {{"--normalize"}, {}}};
+                       "raycone info part.stl --require closed,outward,embedded --mark flaws.ply"}};
 }
 
 Command parse_info(const Values& values) {

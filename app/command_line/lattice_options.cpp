@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
@@ -34,20 +36,38 @@ VoxelSize parse_voxel_size(const std::string& text) {
 
 // A file name may contain colons: the grid's name starts behind the last ".vdb:".
 GridReference parse_like(const std::string& text) {
-  for (const char* const later : {"npz", "nrrd", "nii", "nii.gz"}) {
-    if (has_extension(text, later)) not_available("--like " + text);
-  }
   const std::size_t end = text.rfind(".vdb:");
   if (end == std::string::npos) return {text, ""};
   return {text.substr(0, end + 4), text.substr(end + 5)};
 }
 
-// An array of a lattice has one axis per axis of the lattice.
-void check_npy(const LatticeCommand& command) {
-  if (command.encoding.format != FieldFormat::kNpy) return;
-  constexpr const char* kReason = "npy holds one number per sample, expected vdb, csv or vti";
-  if (command.field.diagnostics) throw UsageError(std::string("--diagnostics: ") + kReason);
-  if (command.field.fields.size() > 1) throw UsageError(std::string("several fields: ") + kReason);
+// An array or image of a lattice has one axis per axis of the lattice.
+void check_one_field(const LatticeCommand& command) {
+  const std::map<FieldFormat, std::string> names{{FieldFormat::kNpy, "npy"},
+                                                 {FieldFormat::kNrrd, "nrrd"},
+                                                 {FieldFormat::kNifti, "nii"},
+                                                 {FieldFormat::kNiftiGz, "nii.gz"}};
+  const auto name = names.find(command.encoding.format);
+  if (name == names.end()) return;
+  const std::string reason = name->second + " holds one number per sample, expected vdb, csv, npz or vti";
+  if (command.field.diagnostics) throw UsageError("--diagnostics: " + reason);
+  if (command.field.fields.size() > 1) throw UsageError("several fields: " + reason);
+}
+
+void check_halves(const FieldEncoding& encoding) {
+  if (encoding.precision != Precision::kHalf) return;
+  for (const FieldFormat without :
+       {FieldFormat::kVti, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz}) {
+    if (encoding.format != without) continue;
+    throw UsageError("--dtype f16: this format has no numbers of 16 bits, expected f32, f64 or vdb, npy, npz");
+  }
+}
+
+// NRRD alone leaves the choice.
+void parse_compress(const Values& values, FieldEncoding& encoding) {
+  encoding.compress = values.given("--compress") || encoding.format == FieldFormat::kNiftiGz;
+  if (!values.given("--compress") || encoding.format == FieldFormat::kNrrd) return;
+  throw UsageError("--compress: has no effect on this format, expected nrrd, or the extension .nii.gz");
 }
 
 // A level set needs the band on the outside too.
@@ -62,13 +82,14 @@ void make_room_for_band(const Values& values, LatticeCommand& command) {
 // What only grids of OpenVDB have.
 void parse_grid_options(const Values& values, LatticeCommand& command) {
   FieldEncoding& encoding = command.encoding;
-  values.exclude("--half", {"--double"});
+  values.exclude("--half", {"--double", "--dtype"});
+  values.exclude("--double", {"--dtype"});
   for (const char* const name : {"--half", "--grid-name"}) {
     if (values.given(name) && encoding.format != FieldFormat::kVdb) {
       throw UsageError(std::string(name) + ": is for grids, expected the format vdb");
     }
   }
-  encoding.half_precision = values.given("--half");
+  if (values.given("--half")) encoding.precision = Precision::kHalf;
   if (!values.given("--grid-name")) return;
   encoding.grid_name = values.text("--grid-name");
   if (command.field.fields.size() > 1) {
@@ -84,10 +105,10 @@ void parse_grid_options(const Values& values, LatticeCommand& command) {
 OptionGroup lattice_group() {
   return {"Lattice",
           {{"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to sample (default: the bounding box of the mesh)"},
-           {"--padding", "P|Nv", "Widen the box by P, or by N voxels, on every side"},
+           {"--padding", "P|Q%|Nv", "Widen the box by P, Q % of its longest side, or N voxels, on every side"},
            {"--resolution", "N|NX,NY,NZ", "Samples along the longest side (default: 64), or along x, y and z"},
            {"--voxel-size", "H|HX,HY,HZ", "Spacing of the samples; they lie at multiples of H"},
-           {"--like", "GRID.vdb[:NAME]", "Use the transform and extent of an existing grid"},
+           {"--like", "GRID.vdb[:NAME]|FILE", "Use the lattice of an existing grid: VDB, NPZ, NRRD or NIfTI"},
            {"--centers", "", "Sample the centres of cells instead of their corners"}}};
 }
 
@@ -107,11 +128,12 @@ std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text) 
     const std::optional<std::int64_t> samples = integer_from(std::string_view(text).substr(0, text.size() - 1));
     if (samples) return VoxelPadding{*samples};
   } else if (text.ends_with('%')) {
-    if (number_from(std::string_view(text).substr(0, text.size() - 1))) not_available("--padding " + text);
+    const std::optional<double> percent = number_from(std::string_view(text).substr(0, text.size() - 1));
+    if (percent) return WorldPadding{*percent, true};
   } else if (const std::optional<double> width = number_from(text)) {
     return WorldPadding{*width};
   }
-  invalid("--padding", text, "a distance, or an integer number of voxels such as 3v");
+  invalid("--padding", text, "a distance, a part of the longest side such as 5%, or a number of voxels such as 3v");
 }
 
 std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values) {
@@ -131,9 +153,12 @@ std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& 
 }
 
 CommandSpec lattice_spec() {
-  OptionGroup output = output_group("vdb|csv|npy|vti");
-  output.options.push_back({"--double", "", "64-bit values in VDB, NPY and VTI (default: 32-bit)"});
-  output.options.push_back({"--half", "", "16-bit values in VDB"});
+  OptionGroup output = output_group("vdb|csv|npy|npz|vti|nrrd|nii|nii.gz");
+  output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in all formats but CSV (default: f32)"});
+  output.options.push_back({"--double", "", "The same as --dtype f64"});
+  output.options.push_back({"--half", "", "16-bit values in VDB, as by --dtype f16"});
+  output.options.push_back(pack_bits_option());
+  output.options.push_back({"--compress", "", "Compress NRRD by gzip"});
   output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
   return {.name = "lattice",
           .description = "Evaluate a mesh on a regular lattice",
@@ -144,7 +169,7 @@ CommandSpec lattice_spec() {
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
                        "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
                        "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"},
-          .later = {{"--normalize", "--parts", "--dtype"}, {"--compress", "--pack-bits"}}};
+          .later = {{"--parts"}, {}}};
 }
 
 Command parse_lattice(const Values& values) {
@@ -158,12 +183,15 @@ Command parse_lattice(const Values& values) {
   command.output = parse_output_files(values);
   command.encoding =
       parse_encoding(values, command.output,
-                     {.written = {FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kVti},
-                      .listed = "vdb, csv, npy or vti",
-                      .later = {"npz", "nrrd", "nii", "nii.gz"}});
-  command.encoding.double_precision = values.given("--double");
+                     {.written = {FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz,
+                                  FieldFormat::kVti, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz},
+                      .listed = "vdb, csv, npy, npz, vti, nrrd, nii or nii.gz"});
+  if (values.given("--double")) command.encoding.precision = Precision::kDouble;
   parse_grid_options(values, command);
-  check_npy(command);
+  check_one_field(command);
+  check_halves(command.encoding);
+  parse_compress(values, command.encoding);
+  command.run.options = given_options(values, option_names(lattice_spec()));
   refuse_idle_options(values, command);
   return command;
 }

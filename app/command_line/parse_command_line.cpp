@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <map>
 #include <string_view>
+#include <variant>
 
 #include "app/command_line/arguments.h"
 #include "app/command_line/command_spec.h"
@@ -236,6 +237,16 @@ std::string help_text(const std::string& command) {
   return formatted_help(*root.get_subcommand(command_named(command).spec.name), program_spec().name);
 }
 
+namespace {
+
+// For reports. PrintCommand runs nothing.
+template <typename AnyCommand>
+void keep_words(AnyCommand& command, const std::vector<std::string>& words) {
+  if constexpr (requires { command.run.words; }) command.run.words = words;
+}
+
+}  // namespace
+
 Command parse_command_line(const std::vector<std::string>& words) {
   const OptionNames all_names = all_option_names();
   const Arguments arguments = split_arguments(words, all_names);
@@ -248,7 +259,9 @@ Command parse_command_line(const std::vector<std::string>& words) {
   if (help) return PrintCommand{help_text(arguments.command)};
   check_options(entry.spec, arguments);
   check_operand_count(entry.spec, arguments);
-  return parse_values(entry, parse_with_cli11(arguments));
+  Command command = parse_values(entry, parse_with_cli11(arguments));
+  std::visit([&words](auto& one) { keep_words(one, words); }, command);
+  return command;
 }
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
@@ -30,7 +31,7 @@ ReadPointsOptions parse_point_columns(const Values& values) {
 
 std::optional<RawPrecision> parse_raw(const Values& values) {
   if (!values.given("--raw")) return std::nullopt;
-  values.exclude("--raw", {"--format", "--columns", "--sample"});
+  values.exclude("--raw", {"--format", "--columns", "--sample", "--dtype", "--pack-bits"});
   const std::string text = values.text("--raw");
   if (text == "f64") return RawPrecision::kDouble;
   if (text == "f32") return RawPrecision::kFloat;
@@ -39,12 +40,20 @@ std::optional<RawPrecision> parse_raw(const Values& values) {
 
 OutputFormats output_formats(const PointsCommand& command) {
   if (command.sample) return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .listed = "npz or csv"};
-  OutputFormats formats{.written = {FieldFormat::kCsv, FieldFormat::kNpy}, .listed = "csv or npy", .later = {"npz"}};
+  OutputFormats formats{.written = {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz},
+                        .listed = "csv, npy or npz"};
   if (command.reading.raw) {
     const bool single = *command.reading.raw == RawPrecision::kFloat;
     formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;
   }
   return formats;
+}
+
+// NPY has one type for all columns, which must be able to hold counts and bounds.
+void check_npy_columns(const PointsCommand& command) {
+  const bool narrow = command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
+  if (command.encoding.format != FieldFormat::kNpy || !command.field.diagnostics || !narrow) return;
+  throw UsageError("--diagnostics: takes 64 bits in npy, expected --dtype f64, or npz");
 }
 
 // One of a file of points and a description of those to draw.
@@ -60,7 +69,6 @@ void parse_points_source(const Values& values, PointsCommand& command) {
   }
   if (!values.given("POINTS")) throw UsageError("POINTS is required, or --sample" + help_hint("points"));
   if (command.points.empty()) throw UsageError("POINTS: expected a file, not an empty name");
-  if (has_extension(command.points, "npz")) not_available(command.points);
   if (command.mesh.path == "-" && command.points == "-") {
     throw UsageError("MESH and POINTS cannot both be standard input");
   }
@@ -71,13 +79,16 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 CommandSpec points_spec() {
   OptionGroup field = field_group();
   std::erase_if(field.options, [](const OptionSpec& option) { return option.names == "--band"; });
+  OptionGroup output = output_group("csv|npy|npz");
+  output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in NPY and NPZ (default: f64)"});
+  output.options.push_back(pack_bits_option());
   OptionGroup unlisted = unlisted_field_group();
   unlisted.options.push_back({"--band", "B", ""});  // to be told why it is not there
   return {
       .name = "points",
       .description = "Evaluate a mesh at given or random points",
       .operands = {mesh_operand(),
-                   {"POINTS", "CSV, TSV or blank-separated text, NPY or PLY file; - for text on standard input",
+                   {"POINTS", "CSV, TSV or blank-separated text, NPY, NPZ or PLY file; - for text on standard input",
                     OperandCount::kOptional}},
       .groups = {mesh_group(),
                  {"Points",
@@ -86,14 +97,14 @@ CommandSpec points_spec() {
                  sample_group(),
                  field,
                  unlisted,
-                 output_group("csv|npy|npz"),
+                 output,
                  run_group()},
       .examples = {"raycone points bunny.obj points.csv > values.csv",
                    "raycone points bunny.obj points.npy -o values.npy",
                    "raycone points bunny.obj cloud.ply -o values.csv",
                    "raycone points bunny.obj table.tsv --columns 2,3,4", "echo 0 0.1 0 | raycone points bunny.obj -",
                    "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"},
-      .later = {{"--normalize", "--parts", "--dtype"}, {"--pack-bits"}}};
+      .later = {{"--parts"}, {}}};
 }
 
 Command parse_points(const Values& values) {
@@ -106,6 +117,8 @@ Command parse_points(const Values& values) {
   command.reading.raw = parse_raw(values);
   command.output = parse_output_files(values);
   command.encoding = parse_encoding(values, command.output, output_formats(command));
+  check_npy_columns(command);
+  command.run.options = given_options(values, option_names(points_spec()));
   refuse_idle_options(values, command);
   return command;
 }

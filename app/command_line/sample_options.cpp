@@ -1,5 +1,6 @@
 #include "app/command_line/sample_options.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,20 +12,24 @@
 namespace raycone {
 namespace {
 
-constexpr std::int64_t kMaxSamples = std::int64_t{1} << 48;
+constexpr double kMaxSamples = 0x1p48;
 
 std::optional<std::uint64_t> count_from(std::string_view text) {
-  const std::optional<std::int64_t> count = integer_from(text);
-  if (!count || *count < 1 || *count > kMaxSamples) return std::nullopt;
+  const std::optional<double> count = number_from(text);  // 1e6, too; all doubles up to the most are precise
+  if (!count || *count < 1 || *count > kMaxSamples || std::trunc(*count) != *count) return std::nullopt;
   return static_cast<std::uint64_t>(*count);
 }
 
-// "uniform=N" or "near=N:SIGMA"
+// "uniform=N", "surface=N" or "near=N:SIGMA"
 std::optional<SampleGroup> group_from(std::string_view text) {
-  constexpr std::string_view kUniform = "uniform=", kNear = "near=";
+  constexpr std::string_view kUniform = "uniform=", kSurface = "surface=", kNear = "near=";
   if (text.starts_with(kUniform)) {
     const std::optional<std::uint64_t> count = count_from(text.substr(kUniform.size()));
     return count ? std::optional<SampleGroup>(UniformSamples{*count}) : std::nullopt;
+  }
+  if (text.starts_with(kSurface)) {
+    const std::optional<std::uint64_t> count = count_from(text.substr(kSurface.size()));
+    return count ? std::optional<SampleGroup>(SurfaceSamples{*count}) : std::nullopt;
   }
   const std::size_t colon = text.find(':');
   if (!text.starts_with(kNear) || colon == std::string_view::npos) return std::nullopt;
@@ -37,18 +42,19 @@ std::optional<SampleGroup> group_from(std::string_view text) {
 WorldPadding parse_world_padding(const Values& values) {
   const auto padding = parse_padding(values.text("--padding"));
   if (const auto* const world = std::get_if<WorldPadding>(&padding)) return *world;
-  invalid("--padding", values.text("--padding"), "a distance, as there are no voxels");
+  invalid("--padding", values.text("--padding"),
+          "a distance or a part of the longest side such as 5%, as there are no voxels");
 }
 
 }  // namespace
 
 OptionGroup sample_group() {
   return {"Sampling",
-          {{"--sample", "uniform=N|near=N:SIGMA[,...]",
-            "Draw N points in the box, or N about SIGMA box diagonals off the surface"},
+          {{"--sample", "uniform=N|near=N:SIGMA|surface=N[,...]",
+            "Draw N points in the box, about SIGMA box diagonals off the surface, or on it"},
            {"--seed", "S", "Seed of the random points (default: 1)"},
            {"--bounds", "X0,Y0,Z0,X1,Y1,Z1", "Box to draw points in (default: the bounding box of the mesh)"},
-           {"--padding", "P", "Widen the box by P on every side"}}};
+           {"--padding", "P|Q%", "Widen the box by P, or Q % of its longest side, on every side"}}};
 }
 
 std::optional<SampleRequest> parse_sample(const Values& values) {
@@ -62,8 +68,7 @@ std::optional<SampleRequest> parse_sample(const Values& values) {
   const std::string text = values.text("--sample");
   for (const std::string_view item : items_of(text)) {
     const std::optional<SampleGroup> group = group_from(item);
-    if (item.starts_with("surface=")) not_available("--sample " + text);
-    if (!group) invalid("--sample", text, "uniform=N, near=N:SIGMA or several of them, with commas between");
+    if (!group) invalid("--sample", text, "uniform=N, near=N:SIGMA, surface=N or several, with commas between");
     request.groups.push_back(*group);
   }
   constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();

@@ -158,8 +158,7 @@ CommandSpec slice_spec() {
                        "raycone slice bunny.obj -o foot.png --axis y --at 10% --padding 0.02",
                        "raycone slice part.stl -o cut.png --normal 1,1,0 --origin 0,0,5 --up 0,0,1",
                        "raycone slice part.stl -o thickness.png --field sdf",
-                       "raycone slice part.stl -o part.png --size 4096 --values part.npy"},
-          .later = {{"--normalize"}, {}}};
+                       "raycone slice part.stl -o part.png --size 4096 --values part.npy"}};
 }
 
 Command parse_slice(const Values& values) {

@@ -13,7 +13,8 @@
 namespace raycone {
 
 struct WorldPadding {
-  double width = 0.0;  // world units; widens the box on every side before sampling, negative values narrow it
+  double width = 0.0;    // world units; widens the box on every side before sampling, negative values narrow it
+  bool percent = false;  // of the box's longest side, in place of world units
 };
 struct VoxelPadding {
   std::int64_t samples = 0;  // added at either end of every axis, beside samples that stay where they are

@@ -18,8 +18,9 @@ struct OutputFiles {
 // How the values of fields are stored.
 struct FieldEncoding {
   FieldFormat format = FieldFormat::kCsv;
-  bool double_precision = false;
-  bool half_precision = false;
+  std::optional<Precision> precision;    // of real numbers; else what the format does
+  bool pack_bits = false;                // of inside
+  bool compress = false;                 // NRRD and NIfTI
   std::optional<std::string> grid_name;  // of the only field's grid
 };
 

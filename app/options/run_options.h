@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/process/progress.h"
 
@@ -15,6 +17,8 @@ struct RunOptions {
   ProgressMode progress = ProgressMode::kAuto;
   bool quiet = false;
   bool strict = false;
+  std::vector<std::string> options;  // given ones that results depend on, for files to keep
+  std::vector<std::string> words;    // the command line
 };
 
 }  // namespace raycone

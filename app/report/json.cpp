@@ -1,7 +1,9 @@
 // By nlohmann-json: it escapes names correctly and prints doubles shortest-round-trip.
 #include "app/report/json.h"
 
+#include <array>
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -13,6 +15,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_array(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json to_rows(const std::array<double, 16>& matrix) {
+  Json rows = Json::array();
+  for (std::size_t n = 0; n < 16; n += 4) {
+    rows.push_back(Json::array({matrix[n], matrix[n + 1], matrix[n + 2], matrix[n + 3]}));
+  }
+  return rows;
+}
 
 Json to_object(const Lattice& lattice) {
   return {{"origin", to_array(lattice.origin)},
@@ -111,6 +121,8 @@ std::string to_text(const Json& document) {
 
 std::string to_json(const RunReport& report) {
   Json document{{"version", kVersion},
+                {"command", report.command},
+                {"options", report.options},
                 {"mesh", report.mesh},
                 {"sha256", report.sha256},
                 {"output", report.output},
@@ -120,6 +132,7 @@ std::string to_json(const RunReport& report) {
                 {"dropped_duplicates", report.orientation.dropped_duplicates},
                 {"patches", report.orientation.patches},
                 {"exterior_edges", report.exterior_edges},
+                {"transform", to_rows(report.transform)},
                 {"samples", report.samples},
                 {"lattice", nullptr},
                 {"threads", report.threads},
@@ -135,6 +148,17 @@ std::string to_json(const RunReport& report) {
     document["seconds"]["verify"] = report.seconds.verify;
   }
   return to_text(document);
+}
+
+std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields, const std::string& rule) {
+  Json document{{"raycone_version", kVersion},
+                {"mesh", std::filesystem::path(report.mesh).filename().string()},
+                {"sha256", report.sha256},
+                {"options", report.options},
+                {"fields", fields},
+                {"transform", to_rows(report.transform)}};
+  if (!rule.empty()) document["rule"] = rule;
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/report/info.h"
 #include "app/report/run_report.h"
@@ -11,6 +12,11 @@ namespace raycone {
 
 [[nodiscard]] std::string to_json(const RunReport& report);
 [[nodiscard]] std::string to_json(const MeshInfo& info);
+
+// How a file was made, in one line, without line feed: the version, the mesh by name and hash, the options that were
+// given, the fields, their rule (where it is not empty), the transform. The same whatever the directories and threads.
+[[nodiscard]] std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields,
+                                          const std::string& rule);
 
 // An object that names its mesh first, to be put into an array; no line feed at the end.
 [[nodiscard]] std::string to_json_item(const MeshInfo& info);

@@ -1,6 +1,7 @@
 // What a run tells its user when it is done: one summary line, and the numbers behind it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,10 +40,13 @@ struct RunReport {
   std::vector<FileRead> companions;     // what the mesh refers to
   std::string sha256;
   std::string output;
-  std::uint64_t vertices = 0;  // as read, before welding
+  std::vector<std::string> command;  // its words, as given; empty where a batch gave it
+  std::vector<std::string> options;  // those of it that results depend on
+  std::uint64_t vertices = 0;        // as read, before welding
   std::uint64_t faces = 0;
   OrientationCounts orientation;
   std::uint64_t exterior_edges = 0;
+  std::array<double, 16> transform{};  // from the file's coordinates to the world's, row by row
   std::uint64_t samples = 0;
   std::optional<Lattice> lattice;  // absent for points
   int threads = 0;

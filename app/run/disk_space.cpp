@@ -6,22 +6,34 @@
 namespace raycone {
 namespace {
 
+double bytes_of_real(const OutputDescription& description, Precision otherwise) {
+  switch (description.precision.value_or(otherwise)) {
+    case Precision::kHalf:
+      return 2.0;
+    case Precision::kSingle:
+      return 4.0;
+    case Precision::kDouble:
+      break;
+  }
+  return 8.0;
+}
+
 // Of all fields together.
-double bytes_of_values(const OutputDescription& description, std::size_t bytes_of_real) {
+double bytes_of_values(const OutputDescription& description, double of_real) {
   double bytes = 0.0;
   for (const FieldDescription& field : description.fields) {
     switch (field.kind) {
       case FieldKind::kReal:
       case FieldKind::kDensity:
       case FieldKind::kDistance:
-        bytes += static_cast<double>(bytes_of_real);
+        bytes += of_real;
         break;
       case FieldKind::kBound:
       case FieldKind::kCount:
         bytes += sizeof(float);
         break;
       case FieldKind::kFlag:
-        bytes += sizeof(std::uint8_t);
+        bytes += description.packs_flags ? 1.0 / 8 : 1.0;
     }
   }
   return bytes;
@@ -34,8 +46,10 @@ double bytes_of_sample(FieldFormat format, const OutputDescription& description)
   constexpr std::size_t kIndicesAndPosition = 6;
   switch (format) {
     case FieldFormat::kNpy:
+    case FieldFormat::kNpz:
+    case FieldFormat::kNifti:
     case FieldFormat::kVti:
-      return bytes_of_values(description, description.double_precision ? sizeof(double) : sizeof(float));
+      return bytes_of_values(description, bytes_of_real(description, Precision::kSingle));
     case FieldFormat::kCsv:
       return bytes_of_row(kIndicesAndPosition + description.fields.size());
     default:
@@ -44,18 +58,20 @@ double bytes_of_sample(FieldFormat format, const OutputDescription& description)
 }
 
 double bytes_of_point(FieldFormat format, const OutputDescription& description) {
-  constexpr std::size_t kCoordinates = 3;
+  constexpr double kCoordinates = 3.0;
   const auto fields = static_cast<double>(description.fields.size());
   switch (format) {
     case FieldFormat::kNpy:
+      return fields * bytes_of_real(description, Precision::kDouble);
     case FieldFormat::kRawDouble:
       return fields * sizeof(double);
     case FieldFormat::kRawFloat:
       return fields * sizeof(float);
     case FieldFormat::kNpz:
-      return kCoordinates * sizeof(double) + bytes_of_values(description, sizeof(double));
+      return kCoordinates * (description.on_surface ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +
+             bytes_of_values(description, bytes_of_real(description, Precision::kDouble));
     case FieldFormat::kCsv:
-      return bytes_of_row(kCoordinates + description.fields.size());
+      return bytes_of_row(3 + description.fields.size());
     default:
       return 0.0;
   }

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
+#include "app/report/json.h"
 
 namespace raycone {
 namespace {
@@ -72,10 +74,17 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   if (encoding.grid_name) description.fields.front().grid = *encoding.grid_name;
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;
+  description.transform = report.transform;
   description.faces = report.faces;
   description.exterior_edges = report.exterior_edges;
-  description.double_precision = encoding.double_precision;
-  description.half_precision = encoding.half_precision;
+  description.precision = encoding.precision;
+  description.packs_flags = encoding.pack_bits;
+  description.compress = encoding.compress;
+  description.options = report.options;
+  std::vector<std::string> names;
+  for (const FieldDescription& described : description.fields) names.push_back(described.name);
+  const bool has_rule = field.has(Field::kInside) || field.has(Field::kDistance);
+  description.metadata = provenance_json(report, names, has_rule ? name_of(field.rule) : "");
   return description;
 }
 

@@ -171,19 +171,21 @@ void check_positive(const Vec3& spacing) {
 
 }  // namespace
 
-Box widened(Box box, double width) {
+Box widened(Box box, const WorldPadding& padding) {
+  const double width = padding.percent ? padding.width / 100.0 * longest(sides_of(box)) : padding.width;
   for (int axis = 0; axis < 3; ++axis) {
     box.lower[axis] -= width;
     box.upper[axis] += width;
     if (box.lower[axis] > box.upper[axis])
-      throw UsageError("--padding " + printed(width) + ": leaves nothing of the box");
+      throw UsageError("--padding " + printed(padding.width) + (padding.percent ? "%" : "") +
+                       ": leaves nothing of the box");
   }
   return box;
 }
 
 Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<Warning>& warnings) {
   Box box = request.bounds.value_or(mesh_box);
-  if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, padding->width);
+  if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, *padding);
   check_finite(box);
   Lattice lattice = sample(box, request, warnings);
   check_positive(lattice.spacing);

@@ -17,7 +17,7 @@ namespace raycone {
                                      std::vector<Warning>& warnings);
 
 // Throws UsageError where a negative width leaves nothing.
-[[nodiscard]] Box widened(Box box, double width);
+[[nodiscard]] Box widened(Box box, const WorldPadding& padding);
 
 // Number of samples. Throws LimitError, with the number, where it exceeds 64 bits, or kMaxBlockSide along an axis.
 [[nodiscard]] std::uint64_t sample_count(const Lattice& lattice);

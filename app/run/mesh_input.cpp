@@ -1,6 +1,7 @@
 #include "app/run/mesh_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
@@ -10,13 +11,48 @@
 #include "app/process/limits.h"
 #include "app/process/messages.h"
 #include "app/run/mesh_warnings.h"
+#include "core/mesh/normalize.h"
 #include "core/mesh/polygons.h"
 #include "core/mesh/weld.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
+namespace {
 
-MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
+// Moves and scales the mesh, where that is asked for.
+Normalization normalize_mesh(TriangleMesh& mesh, const MeshOptions& options) {
+  if (!options.normalize) return {};
+  const Normalization normalization = normalization_of(mesh, *options.normalize);
+  const Box box = bounding_box(mesh);
+  if (box.lower == box.upper) {
+    throw InputError(options.path + ": all corners are at one point, expected an extent for --normalize");
+  }
+  apply(normalization, mesh.vertices);
+  const Box result = bounding_box(mesh);
+  bool finite = true;
+  for (int axis = 0; axis < 3; ++axis) finite &= std::isfinite(result.lower[axis]) && std::isfinite(result.upper[axis]);
+  if (!finite || !std::isfinite(normalization.factor) || !(normalization.factor > 0.0) ||
+      result.lower == result.upper) {
+    throw LimitError(options.path + ": its size is beyond what double precision can normalize; see --scale");
+  }
+  return normalization;
+}
+
+// Scaling, then turning, then normalization.
+Matrix4 transform_of(const ReadMeshOptions& reading, const Normalization& normalization) {
+  const double s = reading.scale, f = normalization.factor;
+  const Vec3& m = normalization.middle;
+  const double scale = f * s;
+  // 0 - x, so that there is no -0
+  if (reading.y_up_to_z_up) {
+    return {scale, 0, 0, 0 - f * m.x, 0, 0, -scale, 0 - f * m.y, 0, scale, 0, 0 - f * m.z, 0, 0, 0, 1};
+  }
+  return {scale, 0, 0, 0 - f * m.x, 0, scale, 0, 0 - f * m.y, 0, 0, scale, 0 - f * m.z, 0, 0, 0, 1};
+}
+
+}  // namespace
+
+TransformedMesh read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
   std::error_code error;  // what has no size, such as a pipe, is not checked
   const std::uintmax_t size = std::filesystem::file_size(options.path, error);
   if (!error && options.path != "-") check_memory(options.path, static_cast<double>(size), limits.memory());
@@ -27,7 +63,8 @@ MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits) {
     file.parsed.warnings.push_back(
         {"bad-polygons", std::to_string(bad) + what + ", seen along the area vector, fanned from the first corner"});
   }
-  return file;
+  const Normalization normalization = normalize_mesh(file.parsed.mesh, options);
+  return {std::move(file), transform_of(options.reading, normalization)};
 }
 
 MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {

@@ -1,6 +1,7 @@
 // From a mesh file to the mesh that is evaluated.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,16 @@
 
 namespace raycone {
 
-// The mesh as it is in the file, its concave polygons cut. Throws InputError, LimitError where the file alone is too
-// large for the memory.
-[[nodiscard]] MeshFile read_mesh_file(const MeshOptions& options, const RunLimits& limits);
+using Matrix4 = std::array<double, 16>;  // row by row; for column vectors
+
+struct TransformedMesh {
+  MeshFile file;
+  Matrix4 transform{};  // from the file's coordinates to the mesh's
+};
+
+// The mesh as it is in the file, its concave polygons cut, scaled, turned and normalized as `options` say. Throws
+// InputError, LimitError where the file alone is too large for the memory.
+[[nodiscard]] TransformedMesh read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
 // A mesh that all is done to that comes before anything is made of it, and what is known of it then.
 struct MeshToEvaluate {

@@ -17,11 +17,15 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& output_files, const
       total_(std::in_place, report.seconds.total) {
   report.mesh = mesh.path;
   report.output = output_files.path;
+  report.command = options.words;
+  report.options = options.options;
   report.threads = limits.threads();
 }
 
 TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
-  MeshFile file = timed(report.seconds.read, [&] { return read_mesh_file(mesh_, limits_); });
+  TransformedMesh transformed = timed(report.seconds.read, [&] { return read_mesh_file(mesh_, limits_); });
+  MeshFile& file = transformed.file;
+  report.transform = transformed.transform;
   report.sha256 = file.sha256;
   report.companions = file.companions;
   report.files_read.push_back(report.mesh);

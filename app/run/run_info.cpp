@@ -56,7 +56,7 @@ class InfoRun {
   // Prints the mesh. Returns whether it is what is required.
   bool describe(const MeshOptions& options) {
     const std::vector<WrittenFile> written = files_written(command_);
-    MeshFile file = read_mesh_file(options, limits_);
+    MeshFile file = read_mesh_file(options, limits_).file;
     for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
     MeshInfo info;
     info.mesh = options.path;

@@ -21,6 +21,8 @@
 #include "app/run/slabs.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
+#include "io/fields/read_image_lattice.h"
+#include "io/fields/read_npz_lattice.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -38,10 +40,15 @@ void check_cubic(const Vec3& spacing) {
   throw UsageError(message);
 }
 
+Lattice lattice_of_grid(const GridReference& grid) {
+  if (is_image(grid.path)) return read_image_lattice(grid.path);
+  return is_npz(grid.path) ? read_npz_lattice(grid.path) : read_grid_lattice(grid.path, grid.name);
+}
+
 Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const Lattice lattice = grid
-                              ? read_grid_lattice(grid->path, grid->name)
+                              ? lattice_of_grid(*grid)
                               : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
   if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
   return lattice;

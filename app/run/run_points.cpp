@@ -33,7 +33,11 @@ void evaluate_points(FieldRun& fields, PointReader& reader, PointWriter& writer,
     if (reader.would_block()) writer.flush();
     if (!timed(run.report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
     fields.evaluate(points, done);
-    timed(run.report.seconds.write, [&] { writer.write(points, fields.values()); });
+    const SurfacePlaces places = reader.places();
+    timed(run.report.seconds.write, [&] {
+      writer.write(points, fields.values());
+      if (!places.faces.empty()) writer.write_places(places.normals, places.faces);
+    });
     run.report.samples += points.size();
   }
 }
@@ -43,6 +47,11 @@ void check_points_memory(const PointsCommand& command, const TriangleMesh& mesh,
   constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
   if (command.field.engine != RayEngine::kScan) return;
   check_memory(command.mesh.path, kPerTriangle * static_cast<double>(mesh.triangles.size()), limits.memory());
+}
+
+// Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
+bool draws_single(const PointsCommand& command) {
+  return command.sample && command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
 }
 
 // Null where points are to be drawn, which takes the mesh.
@@ -65,13 +74,16 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   if (!command.sample) report.files_read.push_back(command.points);
   run.print_warnings();
   if (command.sample) {
-    reader = timed(report.seconds.prepare, [&] { return draw_points(report.mesh, mesh, *command.sample); });
+    reader = timed(report.seconds.prepare,
+                   [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
   }
 
   check_points_memory(command, mesh, limits);
   FieldRun fields(run, std::move(mesh), command.field);
   fields.prepare_points();
-  const OutputDescription description = description_of(report, command.field, command.encoding);
+  OutputDescription description = description_of(report, command.field, command.encoding);
+  description.single_points = draws_single(command);
+  description.on_surface = command.sample && draws_on_surface(*command.sample);
   run.output.reserve(least_point_file(command.encoding.format, description, reader->size().value_or(0)));
   const std::unique_ptr<PointWriter> writer =
       make_point_writer(command.encoding.format, run.output, reader->size(), description);

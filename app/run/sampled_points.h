@@ -10,9 +10,13 @@
 
 namespace raycone {
 
-// `name`: the file that `mesh` is from. Throws UsageError where the padding leaves nothing of the box, InputError where
-// points near the surface are asked for and there is none, LimitError where points would not be finite.
+// `name`: the file that `mesh` is from; `single`: coordinates are floats. Throws UsageError where the padding leaves
+// nothing of the box, InputError where points near the surface are asked for and there is none, LimitError where points
+// would not be finite.
 [[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
-                                                       const SampleRequest& request);
+                                                       const SampleRequest& request, bool single);
+
+// Whether some of the points lie on the surface, so that they have normals and faces.
+[[nodiscard]] bool draws_on_surface(const SampleRequest& request);
 
 }  // namespace raycone

@@ -25,7 +25,7 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
   const double at_surface = kLeafVoxels * std::pow(samples / kLeafVoxels, 2.0 / 3.0);
   const double blocks_in_the_making = kLeafSide * layer;
   const bool open = description.exterior_edges > 0;
-  const double real_bytes = description.double_precision ? sizeof(double) : sizeof(float);
+  const double real_bytes = description.is(Precision::kDouble) ? sizeof(double) : sizeof(float);
   switch (field.kind) {
     case FieldKind::kReal:
     case FieldKind::kDensity:
@@ -72,6 +72,8 @@ double slab_memory(const LatticeBlock& slab, const FieldOptions& options, bool o
 }
 
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {
+  const auto samples = static_cast<double>(whole(lattice).size());
+  if (format == FieldFormat::kNpz && description.packs_flags) return samples / 8;
   if (format != FieldFormat::kVdb) return 0.0;
   double bytes = 0.0;
   for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description);

@@ -200,7 +200,7 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
 Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<Warning>& warnings) {
   const Box box = request.bounds.value_or(mesh_box);
   const auto* padding = std::get_if<WorldPadding>(&request.padding);
-  const Box padded = padding ? widened(box, padding->width) : box;
+  const Box padded = padding ? widened(box, *padding) : box;
   Slice slice = std::visit([&](const auto& plane) { return choose(plane, box, padded, request); }, request.plane);
   if (slice.view.width == 1 || slice.view.height == 1) {
     warnings.push_back({"flat-box", "the box is flat: the picture is " + std::to_string(slice.view.width) + " x " +

@@ -20,13 +20,27 @@ std::uint64_t count_of(const SampleGroup& group) {
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
-long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+// Twice the area along each axis, each part rounded once.
+struct AreaVector {
+  long double x, y, z;
+};
+AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto part = [&](int y, int z) {
     return static_cast<long double>(
         determinant(difference(b[y], a[y]), difference(b[z], a[z]), difference(c[y], a[y]), difference(c[z], a[z])));
   };
-  const long double x = part(1, 2), y = part(2, 0), z = part(0, 1);
-  return std::sqrt(x * x + y * y + z * z);
+  return {part(1, 2), part(2, 0), part(0, 1)};
+}
+
+long double length(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return length(area_vector(a, b, c)); }
+
+// Of a triangle with an area, whatever its shape and size.
+Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const AreaVector v = area_vector(a, b, c);
+  const long double norm = length(v);
+  return {static_cast<double>(v.x / norm), static_cast<double>(v.y / norm), static_cast<double>(v.z / norm)};
 }
 
 // Twice the area within 1e-9 of itself, whatever the shape and size; 0 if and only if it is 0.
@@ -79,6 +93,7 @@ PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector
 bool PointSampler::is_finite() const {
   const Box of_mesh = bounding_box(mesh_);
   return std::ranges::all_of(groups_, [&](const SampleGroup& group) {
+    if (std::holds_alternative<SurfaceSamples>(group)) return true;
     const auto* const near = std::get_if<NearSamples>(&group);
     const Box& box = near != nullptr ? of_mesh : box_;
     const double reach = near != nullptr ? Random::kLargestNormal * noise_of(*near) : 0.0;
@@ -96,7 +111,7 @@ double PointSampler::noise_of(const NearSamples& near) const {
   return near.sigma == 0.0 ? 0.0 : near.sigma * diagonal_;
 }
 
-Vec3 PointSampler::on_surface(Random& random) const {
+PointSampler::Drawn PointSampler::on_surface(Random& random) const {
   const double area = random.uniform() * areas_.back();
   const auto found = std::upper_bound(areas_.begin(), areas_.end(), area);
   const Triangle& t = mesh_.triangles[static_cast<std::size_t>(found - areas_.begin())];
@@ -108,16 +123,17 @@ Vec3 PointSampler::on_surface(Random& random) const {
     const auto [least, most] = std::minmax({a[axis], b[axis], c[axis]});
     p[axis] = std::clamp(p[axis], least, most);
   }
-  return p;
+  return {p, found - areas_.begin()};
 }
 
-Vec3 PointSampler::point(std::uint64_t number) const {
+PointSampler::Drawn PointSampler::drawn(std::uint64_t number) const {
   Random random(seed_, number);
   std::size_t group = 0;
   for (; number >= count_of(groups_[group]); ++group) number -= count_of(groups_[group]);
+  if (std::holds_alternative<SurfaceSamples>(groups_[group])) return on_surface(random);
   Vec3 p;
   if (const auto* const near = std::get_if<NearSamples>(&groups_[group])) {
-    p = on_surface(random);
+    p = on_surface(random).point;
     const double noise = noise_of(*near);
     for (int axis = 0; axis < 3; ++axis) p[axis] += noise * random.normal();
   } else {
@@ -126,13 +142,28 @@ Vec3 PointSampler::point(std::uint64_t number) const {
       p[axis] = std::min(place, box_.upper[axis]);  // beyond which rounding may lead
     }
   }
-  return p;
+  return {p};
 }
 
 void PointSampler::draw(std::uint64_t first, std::span<Vec3> points) const {
   parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) points[n] = point(first + n);
+    for (std::size_t n = begin; n < end; ++n) points[n] = drawn(first + n).point;
   });
+}
+
+void PointSampler::draw(std::uint64_t first, std::span<Vec3> points, std::span<std::int64_t> faces) const {
+  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Drawn one = drawn(first + n);
+      points[n] = one.point;
+      faces[n] = one.face;
+    }
+  });
+}
+
+Vec3 PointSampler::normal(std::int64_t face) const {
+  const Triangle& t = mesh_.triangles[static_cast<std::size_t>(face)];
+  return unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
 }
 
 }  // namespace raycone

@@ -1,4 +1,4 @@
-// Points drawn in a box and near a surface.
+// Points drawn in a box, on a surface and near it.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,10 @@ struct NearSamples {
   std::uint64_t count = 0;  // on the surface by area, each coordinate then moved by normal noise
   double sigma = 0.0;       // its standard deviation, in diagonals of the mesh's box
 };
-using SampleGroup = std::variant<UniformSamples, NearSamples>;
+struct SurfaceSamples {
+  std::uint64_t count = 0;  // on the surface, by area
+};
+using SampleGroup = std::variant<UniformSamples, NearSamples, SurfaceSamples>;
 
 // Group after group; each point depends on the mesh, the box, the group, the seed and its number alone. Thread-safe.
 class PointSampler {
@@ -34,13 +37,23 @@ class PointSampler {
   [[nodiscard]] bool is_finite() const;
 
   // The points number first to first + points.size() - 1, up to size(). Needs is_finite(), and has_area() for points
-  // near a surface. With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its coordinates.
-  // Faces without area have no points. Uses the threads that ThreadLimit allows.
+  // on or near a surface. With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its
+  // coordinates. Faces without area have no points. Uses the threads that ThreadLimit allows.
   void draw(std::uint64_t first, std::span<Vec3> points) const;
+  // The same, with the number of the triangle that each point of SurfaceSamples lies on; -1 of other groups.
+  void draw(std::uint64_t first, std::span<Vec3> points, std::span<std::int64_t> faces) const;
+
+  // Of length 1, as the triangle faces. Precondition: it has an area, as those that draw() tells of do.
+  [[nodiscard]] Vec3 normal(std::int64_t face) const;
 
  private:
-  [[nodiscard]] Vec3 point(std::uint64_t number) const;
-  [[nodiscard]] Vec3 on_surface(Random& random) const;
+  // A point, and the number of the triangle that it lies on, or -1.
+  struct Drawn {
+    Vec3 point;
+    std::int64_t face = -1;
+  };
+  [[nodiscard]] Drawn drawn(std::uint64_t number) const;
+  [[nodiscard]] Drawn on_surface(Random& random) const;
   [[nodiscard]] double noise_of(const NearSamples& near) const;
 
   TriangleMesh mesh_;

@@ -36,6 +36,9 @@ std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   if (lower == "none") return FieldFormat::kNone;
   if (lower == "vti") return FieldFormat::kVti;
   if (lower == "npz") return FieldFormat::kNpz;
+  if (lower == "nrrd") return FieldFormat::kNrrd;
+  if (lower == "nii") return FieldFormat::kNifti;
+  if (lower == "nii.gz") return FieldFormat::kNiftiGz;
   return std::nullopt;
 }
 
@@ -53,6 +56,12 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
     case FieldFormat::kVti:
       return make_vti_lattice_writer(output, lattice, description);
     case FieldFormat::kNpz:
+      return make_npz_lattice_writer(output, lattice, description);
+    case FieldFormat::kNrrd:
+      return make_nrrd_lattice_writer(output, lattice, description);
+    case FieldFormat::kNifti:
+    case FieldFormat::kNiftiGz:
+      return make_nifti_lattice_writer(output, lattice, description);
     case FieldFormat::kRawDouble:
     case FieldFormat::kRawFloat:
       break;  // for points only; options are checked before anything is opened
@@ -69,7 +78,7 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
     case FieldFormat::kNpy:
       return make_npy_point_writer(output, size, description);
     case FieldFormat::kNpz:
-      return make_npz_point_writer(output, size.value(), description);
+      return make_npz_point_writer(output, size, description);
     case FieldFormat::kRawDouble:
       return make_raw_point_writer(output, RawPrecision::kDouble, description);
     case FieldFormat::kRawFloat:
@@ -78,6 +87,9 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
       return std::make_unique<NoPointWriter>();
     case FieldFormat::kVdb:
     case FieldFormat::kVti:
+    case FieldFormat::kNrrd:
+    case FieldFormat::kNifti:
+    case FieldFormat::kNiftiGz:
       break;  // lattices only; options are checked before anything is opened
   }
   throw std::logic_error("no point writer for this format");

@@ -1,6 +1,7 @@
-// Writers of fields: on lattices VDB, CSV, NPY and VTI; at points CSV, NPY, NPZ and raw numbers.
+// Writers of fields: on lattices VDB, CSV, NPY, NPZ, NRRD, NIfTI and VTI; at points CSV, NPY, NPZ and raw numbers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -23,17 +24,20 @@ enum class FieldFormat {
   kNpy,
   kVti,
   kNpz,
+  kNrrd,
+  kNifti,
+  kNiftiGz,    // NIfTI-1, packed by gzip
   kRawDouble,  // nothing but numbers, little-endian; has no name
   kRawFloat,
   kNone,
 };
 
-// "vdb", "csv", "npy", "vti", "npz" or "none", in any case.
+// "vdb", "csv", "npy", "vti", "npz", "nrrd", "nii", "nii.gz" or "none", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
 
 // What the numbers of a field are; formats choose how they store them.
 enum class FieldKind {
-  kReal,      // doubles; where 32 bits are the default, 64 on request
+  kReal,      // doubles, stored in the precision asked for
   kDensity,   // likewise: a fog volume
   kDistance,  // likewise: a level set, of magnitude `background` where it is not active
   kBound,     // doubles, rounded up where 32 bits are stored
@@ -53,6 +57,11 @@ struct FieldDescription {
   bool threshold_of_magnitude = false;  // and so their magnitudes
 };
 
+// Bits of a stored real number: 16, 32, 64.
+enum class Precision { kHalf, kSingle, kDouble };
+
+inline constexpr std::array<double, 16> kIdentity4{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
 // What a file holds and says about itself.
 struct OutputDescription {
   std::vector<FieldDescription> fields{{}};  // at least one
@@ -60,8 +69,16 @@ struct OutputDescription {
   std::string mesh_sha256;
   std::uint64_t faces = 0;
   std::uint64_t exterior_edges = 0;
-  bool double_precision = false;  // DoubleGrid / float64 instead of float32
-  bool half_precision = false;    // 16 bits a value in VDB, not together with double_precision
+  std::optional<Precision> precision;             // of real numbers: by default 32 bits on lattices, 64 at points
+  bool compress = false;                          // NRRD, NIfTI: by gzip
+  bool packs_flags = false;                       // NPZ: the field inside as bits
+  bool on_surface = false;                        // points have normals and faces
+  bool single_points = false;                     // NPZ: points and normals as 32 bits
+  std::array<double, 16> transform = kIdentity4;  // from the mesh's file to the world, row by row
+  std::string metadata;                           // how this was made, as JSON
+  std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
+
+  [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }
 };
 
 // Numbers of one field: integers for kCount, bytes for kFlag, else doubles.
@@ -78,7 +95,7 @@ struct FieldTotals {
 class LatticeWriter {
  public:
   virtual ~LatticeWriter() = default;
-  // 2; of NPY, whose slowest axis is x, 1, or 0 where the output cannot be gone back in.
+  // 2; of NPY and NPZ, whose slowest axis is x, 1 or 0 (io/fields/lattice_array.h).
   [[nodiscard]] virtual int slab_axis() const = 0;
   // A slab that ends at multiples of this index (but for the last) is written best: 8 for VDB's leaves, else 1.
   [[nodiscard]] virtual std::int64_t slab_alignment() const = 0;
@@ -89,26 +106,28 @@ class LatticeWriter {
 };
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
-// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY holds
-// one field.
+// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY, NRRD
+// and NIfTI hold one field; the last two and VTI no halves.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const Lattice& lattice,
                                                                  const OutputDescription& description);
 
 // Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
-// float64, shape (n,), with several fields (n, fields); NPZ: an array of the points and one per field; raw: the numbers
-// of the first point, those of the second, and so on.
+// shape (n,), with several fields (n, fields), all in the precision asked for; NPZ: an array of the points and one per
+// field; raw: the numbers of the first point, those of the second, and so on.
 class PointWriter {
  public:
   virtual ~PointWriter() = default;
   // Of each field of the description, in its order, points.size() numbers.
   virtual void write(std::span<const Vec3> points, std::span<const FieldValues> fields) = 0;
+  // Where the description says so, normals of those points and the numbers of the faces they lie on. NPZ keeps them.
+  virtual void write_places(std::span<const Vec3> /*normals*/, std::span<const std::int64_t> /*faces*/) {}
   // Hands what has been written to the system, for readers that wait for it.
   virtual void flush() = 0;
   virtual void finish() = 0;
 };
 
-// `size`, where known, lets NPY be streamed to a pipe; NPZ needs it.
+// `size`, where known, lets NPY be streamed to a pipe, and NPZ do without copies of its arrays.
 [[nodiscard]] std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& output,
                                                              std::optional<std::uint64_t> size,
                                                              const OutputDescription& description);

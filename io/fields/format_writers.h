@@ -21,12 +21,19 @@ namespace raycone {
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const Lattice& lattice,
                                                                      const OutputDescription& description);
 
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_nrrd_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                      const OutputDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_nifti_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                       const OutputDescription& description);
+[[nodiscard]] std::unique_ptr<LatticeWriter> make_npz_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                                     const OutputDescription& description);
+
 [[nodiscard]] std::unique_ptr<PointWriter> make_csv_point_writer(OutputFile& output,
                                                                  const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<PointWriter> make_npy_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
                                                                  const OutputDescription& description);
 
-[[nodiscard]] std::unique_ptr<PointWriter> make_npz_point_writer(OutputFile& output, std::uint64_t size,
+[[nodiscard]] std::unique_ptr<PointWriter> make_npz_point_writer(OutputFile& output, std::optional<std::uint64_t> size,
                                                                  const OutputDescription& description);
 [[nodiscard]] std::unique_ptr<PointWriter> make_raw_point_writer(OutputFile& output, RawPrecision precision,
                                                                  const OutputDescription& description);

@@ -24,10 +24,4 @@ template <typename Element, typename Convert>
   return elements;
 }
 
-// The same, each number cast.
-template <typename Element>
-[[nodiscard]] std::vector<Element> interleaved(std::span<const FieldValues> fields, std::size_t samples) {
-  return interleaved<Element>(fields, samples, [](std::size_t, auto number) { return static_cast<Element>(number); });
-}
-
 }  // namespace raycone

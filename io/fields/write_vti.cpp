@@ -83,7 +83,7 @@ class VtiWriter final : public LatticeWriter {
     std::string declarations;
     std::uint64_t offset = 0;  // behind the head
     for (const FieldDescription& field : description.fields) {
-      const ElementType type = element_type(field.kind, description.double_precision);
+      const ElementType type = element_type(field.kind, description.is(Precision::kDouble));
       declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name +
                       "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
       arrays_.push_back({type.size, offset, samples * type.size, Narrowing(field)});

@@ -3,10 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "io/files/byte_source.h"
 
 namespace raycone {
 
@@ -14,9 +17,8 @@ class InputBuffer {
  public:
   // Opens `path`; "-" is standard input. Throws InputError.
   explicit InputBuffer(const std::string& path);
-  ~InputBuffer();
-  InputBuffer(const InputBuffer&) = delete;
-  InputBuffer& operator=(const InputBuffer&) = delete;
+  // `name` is for messages.
+  InputBuffer(const std::string& name, std::unique_ptr<ByteSource> source);
 
   // What has been read and not consumed; valid until the next fill().
   [[nodiscard]] std::string_view pending() const { return {bytes_.data() + begin_, end_ - begin_}; }
@@ -30,16 +32,18 @@ class InputBuffer {
   // Offset in the input of the first byte of pending().
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
 
-  // Size of a regular file.
+  // Size of a regular file, or as an archive announces it.
   [[nodiscard]] std::optional<std::uint64_t> file_size() const;
-  // Reads exactly `size` bytes at `offset` of a regular file, apart from the stream. Throws InputError.
+  // Whether read_at() works: for regular files, and members of archives that are not compressed.
+  [[nodiscard]] bool is_seekable() const;
+  // Reads exactly `size` bytes at `offset`, apart from the stream. Throws InputError.
   void read_at(std::uint64_t offset, char* bytes, std::size_t size) const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
   std::string name_;
-  int descriptor_;
+  std::unique_ptr<ByteSource> source_;
   std::vector<char> bytes_;  // the pending ones are those in [begin_, end_)
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

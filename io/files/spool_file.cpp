@@ -43,6 +43,10 @@ SpoolFile::~SpoolFile() = default;
 std::ostream& SpoolFile::stream() { return state_->stream; }
 
 void SpoolFile::copy_to(OutputFile& output) {
+  read_back([&output](const char* data, std::size_t size) { output.write(data, size); });
+}
+
+void SpoolFile::read_back(const std::function<void(const char*, std::size_t)>& take) {
   if (state_->buffer.pubsync() != 0) fail_to_spool(state_->name, state_->buffer.error());
   const int descriptor = fileno(state_->file.get());
   if (lseek(descriptor, 0, SEEK_SET) < 0) fail_to_spool(state_->name, errno);
@@ -52,7 +56,7 @@ void SpoolFile::copy_to(OutputFile& output) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail_to_spool(state_->name, errno);
     if (count == 0) return;
-    output.write(bytes.data(), static_cast<std::size_t>(count));
+    take(bytes.data(), static_cast<std::size_t>(count));
   }
 }
 

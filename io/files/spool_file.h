@@ -1,6 +1,8 @@
 // Output set aside until its final form is known.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -23,6 +25,8 @@ class SpoolFile {
   std::ostream& stream();
   // Appends all bytes to `output`.
   void copy_to(OutputFile& output);
+  // Calls take(data, size) for all bytes, piece by piece.
+  void read_back(const std::function<void(const char*, std::size_t)>& take);
 
  private:
   struct State;

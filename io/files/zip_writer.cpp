@@ -110,15 +110,39 @@ ZipWriter::ZipWriter(OutputFile& output, const std::vector<ZipMember>& members, 
 
 void ZipWriter::append(std::size_t member, const void* data, std::size_t size) {
   Entry& entry = entries_[member];
-  output_.write_at(entry.data + entry.written, data, size);
-  entry.written += size;
-  entry.checksum = checksum_of(entry.checksum, data, size);
+  write_at(member, entry.appended, data, size);
+  entry.appended += size;
+}
+
+void ZipWriter::write_at(std::size_t member, std::uint64_t offset, const void* data, std::size_t size) {
+  if (size == 0) return;  // zlib takes a null pointer for a request to begin
+  Entry& entry = entries_[member];
+  output_.write_at(entry.data + offset, data, size);
+  Run run{offset, 0};
+  if (const auto before = entry.runs.find(offset); before != entry.runs.end()) {
+    run = before->second;
+    entry.runs.erase(before);
+  }
+  run.checksum = checksum_of(run.checksum, data, size);
+  entry.runs[offset + size] = run;
+}
+
+// The checksum of all bytes, from those of the runs.
+void ZipWriter::join_runs(Entry& entry) {
+  std::uint64_t end = 0;
+  for (const auto& [run_end, run] : entry.runs) {
+    if (run.begin != end) break;
+    const auto length = static_cast<z_off_t>(run_end - run.begin);
+    entry.checksum = static_cast<std::uint32_t>(crc32_combine(entry.checksum, run.checksum, length));
+    end = run_end;
+  }
+  if (end != entry.size) throw std::logic_error("a ZIP member has another size than announced");
 }
 
 void ZipWriter::finish() {
   std::string directory;
-  for (const Entry& entry : entries_) {
-    if (entry.written != entry.size) throw std::logic_error("a ZIP member has another size than announced");
+  for (Entry& entry : entries_) {
+    join_runs(entry);
     const std::string header = local_header(entry);
     output_.write_at(entry.header, header.data(), header.size());
     directory += directory_entry(entry);

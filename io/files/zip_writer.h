@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct ZipMember {
   std::uint64_t size = 0;  // bytes
 };
 
-// Members are written side by side, each from its beginning to its end. What is beyond 4 GiB takes the form of ZIP64.
+// Members are written side by side. What is beyond 4 GiB takes the form of ZIP64.
 // Time stamps are those of 1980-01-01, so that equal members make equal archives.
 class ZipWriter {
  public:
@@ -28,19 +29,29 @@ class ZipWriter {
 
   // Appends to a member, by its number. Throws OutputError.
   void append(std::size_t member, const void* data, std::size_t size);
+  // Writes a piece of a member, from `offset` of it on; pieces come in any order, each byte once. Memory grows with the
+  // number of runs of bytes that lie apart.
+  void write_at(std::size_t member, std::uint64_t offset, const void* data, std::size_t size);
   // Completes and commits the file; every member must have got all its bytes. Throws OutputError.
   void finish();
 
  private:
+  // Bytes from `begin` on that have been written.
+  struct Run {
+    std::uint64_t begin = 0;
+    std::uint32_t checksum = 0;
+  };
   struct Entry {
     std::string name;
     std::uint64_t size = 0;
     std::uint64_t header = 0;  // offset of its local header
     std::uint64_t data = 0;    // offset of its bytes
-    std::uint64_t written = 0;
+    std::uint64_t appended = 0;
+    std::map<std::uint64_t, Run> runs{};  // by their ends
     std::uint32_t checksum = 0;
   };
 
+  static void join_runs(Entry& entry);
   [[nodiscard]] bool is_large(std::uint64_t number) const { return number >= zip64_from_; }
   [[nodiscard]] std::uint64_t or_largest(std::uint64_t number) const { return is_large(number) ? kLargest32 : number; }
   [[nodiscard]] std::string local_header(const Entry& entry) const;

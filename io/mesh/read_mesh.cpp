@@ -7,6 +7,7 @@
 #include "core/machine/threads.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
+#include "io/files/unpack.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_signature.h"
 
@@ -28,23 +29,20 @@ std::string lower_case(std::string_view text) {
 }
 
 std::optional<MeshFormat> format_from_extension(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = std::filesystem::path(without_packing_extension(path)).extension().string();
   return extension.empty() ? std::nullopt : mesh_format_from_name(std::string_view(extension).substr(1));
 }
 
-// Compressed by gzip or zstd, or an archive as 3MF is.
-bool is_packed(std::string_view bytes) {
-  return bytes.starts_with("\x1f\x8b") || bytes.starts_with("\x28\xb5\x2f\xfd") || bytes.starts_with("PK\x03\x04");
-}
+// 3MF is an archive.
+bool is_archive(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
 
 bool has_later_extension(const std::string& path) {
-  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  return extension == ".gz" || extension == ".zst" || extension == ".3mf";
+  return lower_case(std::filesystem::path(without_packing_extension(path)).extension().string()) == ".3mf";
 }
 
 MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = recognise_mesh(source.bytes)) return *format;
-  if (is_packed(source.bytes)) throw NotAvailable(source.name);
+  if (is_archive(source.bytes)) throw NotAvailable(source.name);
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
   if (has_later_extension(source.name)) throw NotAvailable(source.name);
@@ -91,6 +89,29 @@ void check_finite(const TriangleMesh& mesh, const std::string& name) {
         throw InputError(name + ": a coordinate is not finite after scaling, expected a smaller --scale");
 }
 
+// The mesh in `bytes`, which are those of the file at `path`, or what is packed in them.
+MeshFile parse_mesh(const std::string& path, std::string_view bytes, std::string_view of_file,
+                    const ReadMeshOptions& options) {
+  if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
+  const NamedBytes source{path, directory_of(path), bytes};
+  MeshFile file;
+  const MeshFormat format = format_of(source, options);
+  // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.
+  constexpr std::size_t kLarge = std::size_t{1} << 20;
+  parallel_for(2, of_file.size() < kLarge ? 2 : 1, [&](std::size_t begin, std::size_t end) {
+    if (begin == 0) file.parsed = parse(source, format, &file.companions);
+    if (end == 2) file.sha256 = sha256(of_file);
+  });
+  if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");
+  if (file.parsed.mesh.triangles.size() > kMaxTriangles) {
+    throw LimitError(path + ": " + std::to_string(file.parsed.mesh.triangles.size()) + " triangles, expected at most " +
+                     std::to_string(kMaxTriangles));
+  }
+  transform(file.parsed.mesh.vertices, options);
+  if (options.scale != 1.0) check_finite(file.parsed.mesh, path);
+  return file;
+}
+
 }  // namespace
 
 std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
@@ -102,24 +123,8 @@ std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
 
 MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   const std::string bytes = read_file(path);
-  if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
-  const NamedBytes source{path, directory_of(path), bytes};
-  MeshFile file;
-  const MeshFormat format = format_of(source, options);
-  // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.
-  constexpr std::size_t kLarge = std::size_t{1} << 20;
-  parallel_for(2, bytes.size() < kLarge ? 2 : 1, [&](std::size_t begin, std::size_t end) {
-    if (begin == 0) file.parsed = parse(source, format, &file.companions);
-    if (end == 2) file.sha256 = sha256(bytes);
-  });
-  if (file.parsed.mesh.triangles.empty()) throw InputError(path + ": no triangles, expected at least one");
-  if (file.parsed.mesh.triangles.size() > kMaxTriangles) {
-    throw LimitError(path + ": " + std::to_string(file.parsed.mesh.triangles.size()) + " triangles, expected at most " +
-                     std::to_string(kMaxTriangles));
-  }
-  transform(file.parsed.mesh.vertices, options);
-  if (options.scale != 1.0) check_finite(file.parsed.mesh, path);
-  return file;
+  if (is_packed(bytes)) return parse_mesh(path, unpacked(bytes, path), bytes, options);
+  return parse_mesh(path, bytes, bytes, options);
 }
 
 }  // namespace raycone

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "io/files/input_buffer.h"
@@ -16,6 +17,8 @@ inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
                                                             const ReadPointsOptions& options);
 [[nodiscard]] std::unique_ptr<PointReader> read_raw_points(std::unique_ptr<InputBuffer> input, RawPrecision precision);
 [[nodiscard]] std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input);
+// The array `points` of NumPy's archive at `path`.
+[[nodiscard]] std::unique_ptr<PointReader> read_npz_points(const std::string& path);
 [[nodiscard]] std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input);
 
 }  // namespace raycone

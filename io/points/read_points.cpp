@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/files/file_error.h"
+#include "io/files/unpack.h"
+#include "io/files/zip_reader.h"
 #include "io/mesh/ply.h"
 #include "io/points/point_readers.h"
 
@@ -45,12 +48,20 @@ std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input)
   return std::make_unique<StoredPoints>(read_ply_vertices({input->name(), {}, input->pending()}));
 }
 
+std::unique_ptr<PointReader> read_npz_points(const std::string& path) {
+  const ZipReader archive(path);
+  const ZipReader::Member* const points = archive.find("points.npy");
+  if (points == nullptr) throw InputError(path + ": has no array 'points', expected one of shape (n, 3)");
+  return read_npy_points(std::make_unique<InputBuffer>(archive.name_of(*points), archive.open(*points)));
+}
+
 std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options) {
-  auto input = std::make_unique<InputBuffer>(path);
-  if (options.raw) return read_raw_points(std::move(input), *options.raw);
+  if (options.raw) return read_raw_points(std::make_unique<InputBuffer>(path), *options.raw);
+  auto input = std::make_unique<InputBuffer>(path, unpacked(open_source(path), path));
   // Nothing may wait on standard input before the first point is asked for.
   if (path != "-") {
     if (begins_with(*input, kNpyMagic)) return read_npy_points(std::move(input));
+    if (begins_with(*input, "PK\x03\x04")) return read_npz_points(path);
     if (begins_with(*input, "ply\n") || begins_with(*input, "ply\r")) return read_ply_points(std::move(input));
   }
   return read_text_points(std::move(input), options);

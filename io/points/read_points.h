@@ -1,4 +1,4 @@
-// Reading of query points: text (CSV, TSV, blanks), NPY, PLY vertices, raw coordinates.
+// Reading of query points: text (CSV, TSV, blanks), NPY, NPZ, PLY vertices, raw coordinates.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct ReadPointsOptions {
   std::optional<RawPrecision> raw;            // no format: coordinates, one after the other
 };
 
+// Where points lie on a surface. Both empty, or one each per point.
+struct SurfacePlaces {
+  std::span<const Vec3> normals{};        // unit vectors; 0 where the point is not on the surface
+  std::span<const std::int64_t> faces{};  // numbers of triangles; -1 there
+};
+
 // A stream of points: memory does not grow with their number for text.
 class PointReader {
  public:
@@ -28,6 +35,9 @@ class PointReader {
   // on a pipe it returns what has arrived. Throws InputError naming the line (or byte) of anything that is not a finite
   // point.
   virtual bool next(std::vector<Vec3>& batch, std::size_t max) = 0;
+
+  // Of the batch that next() gave last, where its points are drawn from a surface; valid until the next one.
+  [[nodiscard]] virtual SurfacePlaces places() { return {}; }
 
   // Whether a further next() would have to wait for input now: the moment to flush what has been answered.
   [[nodiscard]] virtual bool would_block() const = 0;
@@ -39,7 +49,7 @@ class PointReader {
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
 };
 
-// Opens `path`, or standard input (text) for "-". Throws InputError.
+// Opens `path`, or standard input (text) for "-", either packed by gzip or Zstandard, too. Throws InputError.
 [[nodiscard]] std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options = {});
 
 }  // namespace raycone

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,12 +13,12 @@
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
+#include "io/files/npy_head.h"
 #include "io/points/point_readers.h"
 
 namespace raycone {
 namespace {
 
-constexpr std::size_t kMaxHeader = std::size_t{1} << 16;
 constexpr std::size_t kMaxRow = std::size_t{1} << 24;  // bytes
 constexpr std::size_t kBlockRows = std::size_t{1} << 14;
 
@@ -35,119 +34,36 @@ struct NpyHeader {
   std::uint64_t data_offset = 0;
 };
 
-// What follows key `'name':` in the header, a Python dictionary; empty where it is missing.
-std::string_view value_of(std::string_view dictionary, std::string_view name) {
-  for (const char quote : {'\'', '"'}) {
-    const std::string key = quote + std::string(name) + quote;
-    std::size_t position = dictionary.find(key);
-    if (position == std::string_view::npos) continue;
-    position = dictionary.find_first_not_of(" \t", position + key.size());
-    if (position == std::string_view::npos || dictionary[position] != ':') continue;
-    position = dictionary.find_first_not_of(" \t", position + 1);
-    if (position != std::string_view::npos) return dictionary.substr(position);
-  }
-  return {};
+[[noreturn]] void fail(const InputBuffer& input, const std::string& what) {
+  throw InputError(input.name() + ": NPY " + what);
 }
 
-class HeaderParser {
- public:
-  HeaderParser(std::string_view dictionary, const std::string& file) : dictionary_(dictionary), file_(file) {}
-
-  [[nodiscard]] NpyHeader parse() const {
-    NpyHeader header;
-    parse_type(header);
-    header.fortran_order = parse_order();
-    parse_shape(header);
-    return header;
+void interpret_type(const InputBuffer& input, const NpyHead& head, NpyHeader& header) {
+  const std::string& type = head.type;
+  if (type.empty()) fail(input, "file of structured values, expected numbers");
+  static constexpr std::array<std::string_view, 11> kTypes{"f2", "f4", "f8", "i1", "i2", "i4",
+                                                           "i8", "u1", "u2", "u4", "u8"};
+  const bool known = type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
+                     std::find(kTypes.begin(), kTypes.end(), type.substr(1)) != kTypes.end();
+  if (!known) {
+    fail(input, "file of type " + printable_npy(type) + ", expected real or integer numbers of at most 64 bits");
   }
-
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(file_ + ": NPY " + what); }
-
- private:
-  void parse_type(NpyHeader& header) const {
-    const std::string_view value = value_of(dictionary_, "descr");
-    const std::size_t end = value.empty() ? std::string_view::npos : value.find(value.front(), 1);
-    if (end == std::string_view::npos || (value.front() != '\'' && value.front() != '"')) {
-      fail("file of structured values, expected numbers");
-    }
-    const std::string_view type = value.substr(1, end - 1);
-    static constexpr std::array<std::string_view, 11> kTypes{"f2", "f4", "f8", "i1", "i2", "i4",
-                                                             "i8", "u1", "u2", "u4", "u8"};
-    const bool known = type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
-                       std::find(kTypes.begin(), kTypes.end(), type.substr(1)) != kTypes.end();
-    if (!known) fail("file of type " + printable(type) + ", expected real or integer numbers of at most 64 bits");
-    header.kind = type[1];
-    header.item_size = static_cast<std::size_t>(type[2] - '0');
-    header.order = type[0] == '>' ? std::endian::big : type[0] == '<' ? std::endian::little : std::endian::native;
-  }
-
-  [[nodiscard]] bool parse_order() const {
-    const std::string_view value = value_of(dictionary_, "fortran_order");
-    if (value.starts_with("True")) return true;
-    if (!value.starts_with("False")) fail("header without fortran_order, expected True or False");
-    return false;
-  }
-
-  void parse_shape(NpyHeader& header) const {
-    const std::string_view value = value_of(dictionary_, "shape");
-    const std::size_t end = value.find(')');
-    if (!value.starts_with('(') || end == std::string_view::npos) fail("header without a shape, expected (n, 3)");
-    const std::string_view shape = value.substr(0, end + 1);
-    std::vector<std::uint64_t> sizes;
-    for (const char* c = shape.data() + 1; *c != ')';) {
-      std::uint64_t size = 0;
-      const auto [after, error] = std::from_chars(c, shape.data() + shape.size(), size);
-      if (error != std::errc()) fail("shape " + printable(shape) + ", expected (n, 3)");
-      sizes.push_back(size);
-      // Python 2 wrote 10L; separators are a comma and blanks.
-      for (c = after; *c == 'L' || *c == ',' || *c == ' ';) ++c;
-    }
-    if (sizes.size() != 2 || sizes[1] < 3) fail("shape " + printable(shape) + ", expected (n, 3 or more)");
-    header.rows = sizes[0];
-    header.columns = sizes[1];
-  }
-
-  static std::string printable(std::string_view text) {
-    constexpr std::size_t kMaxQuoted = 40;
-    std::string copy(text.substr(0, kMaxQuoted));
-    std::replace_if(
-        copy.begin(), copy.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return copy;
-  }
-
-  std::string_view dictionary_;
-  const std::string& file_;
-};
-
-// Waits until `count` bytes are pending.
-void require(InputBuffer& input, std::size_t count, const char* what) {
-  while (input.pending().size() < count) {
-    if (!input.fill()) {
-      throw InputError(input.name() + ":byte " + std::to_string(input.offset() + input.pending().size()) +
-                       ": the file ends within " + what);
-    }
-  }
+  header.kind = type[1];
+  header.item_size = static_cast<std::size_t>(type[2] - '0');
+  header.order = type[0] == '>' ? std::endian::big : type[0] == '<' ? std::endian::little : std::endian::native;
 }
 
 NpyHeader read_header(InputBuffer& input) {
-  constexpr std::size_t kPrefix = 12;  // magic, version, length of the header in 2 or 4 bytes; it is never shorter
-  require(input, kPrefix, "the NPY header");
-  const int version = static_cast<unsigned char>(input.pending()[6]);
-  if (version < 1 || version > 3) {
-    throw InputError(input.name() + ": NPY version " + std::to_string(version) + ", expected 1 to 3");
+  const NpyHead head = read_npy_head(input);
+  NpyHeader header;
+  interpret_type(input, head, header);
+  if (head.shape.size() != 2 || head.shape[1] < 3) {
+    fail(input, "shape " + printable_npy(head.shape_text) + ", expected (n, 3 or more)");
   }
-  const char* length = input.pending().data() + 8;
-  const std::size_t start = version == 1 ? 10 : 12;
-  const std::size_t size =
-      version == 1 ? load_little_endian<std::uint16_t>(length) : load_little_endian<std::uint32_t>(length);
-  if (size > kMaxHeader) {
-    throw InputError(input.name() + ": NPY header of " + std::to_string(size) + " bytes, expected at most " +
-                     std::to_string(kMaxHeader));
-  }
-  require(input, start + size, "the NPY header");
-  NpyHeader header = HeaderParser(input.pending().substr(start, size), input.name()).parse();
-  header.data_offset = start + size;
-  input.consume(start + size);
+  header.fortran_order = head.fortran_order;
+  header.rows = head.shape[0];
+  header.columns = head.shape[1];
+  header.data_offset = head.data_offset;
   return header;
 }
 
@@ -261,7 +177,7 @@ class RowMajorReader : public NpyPointReader {
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.clear();
     if (next_count(max) == 0) return false;
-    require(*input_, row_size(), "the NPY data");
+    require_bytes(*input_, row_size(), "the NPY data");
     const std::size_t count = std::min(next_count(max), input_->pending().size() / row_size());
     const char* row = input_->pending().data();
     for (std::size_t i = 0; i < count; ++i, ++row_, row += row_size()) {
@@ -314,8 +230,9 @@ std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input)
   const NpyHeader header = read_header(*input);
   check_size(header, *input);
   if (!header.fortran_order) return std::make_unique<RowMajorReader>(std::move(input), header);
-  if (!input->file_size()) {
-    throw InputError(input->name() + ": NPY in Fortran order on a pipe, expected C order or a regular file");
+  if (!input->is_seekable()) {
+    throw InputError(input->name() +
+                     ": NPY in Fortran order on a pipe or compressed, expected C order or a file that is neither");
   }
   return std::make_unique<ColumnMajorReader>(std::move(input), header);
 }

@@ -55,7 +55,7 @@ void check_voxels(const Lattice& lattice, const std::string& name) {
 
 // Halves range from 2^-14, below which they lose digits, to 65504.
 void check_half(const OutputDescription& description, const Lattice& lattice, const std::string& name) {
-  if (!description.half_precision) return;
+  if (!description.is(Precision::kHalf)) return;
   for (const FieldDescription& field : description.fields) {
     if (field.kind != FieldKind::kDistance) continue;
     if (lattice.spacing.x >= 0x1p-14 && field.background <= 65504) continue;

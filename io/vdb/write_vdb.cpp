@@ -10,6 +10,7 @@
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -66,6 +67,16 @@ void insert(openvdb::GridBase& grid, const char* key, const openvdb::Coord& valu
   grid.insertMeta(key, openvdb::Vec3IMetadata(value.asVec3i()));
 }
 
+void insert(openvdb::GridBase& grid, const char* key, const std::array<double, 16>& matrix) {
+  grid.insertMeta(key, openvdb::Mat4DMetadata(openvdb::Mat4d(matrix.data())));
+}
+
+std::string joined_by_blanks(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
 openvdb::GridClass class_of(FieldKind kind) {
   if (kind == FieldKind::kDensity) return openvdb::GRID_FOG_VOLUME;
   if (kind == FieldKind::kDistance) return openvdb::GRID_LEVEL_SET;
@@ -86,9 +97,11 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   insert(grid, "raycone_sha256", description.mesh_sha256);
   insert(grid, "raycone_index_min", to_coord(lattice.index_min[0], lattice.index_min[1], lattice.index_min[2]));
   insert(grid, "raycone_index_max", to_coord(lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)));
+  if (!description.options.empty()) insert(grid, "raycone_options", joined_by_blanks(description.options));
+  insert(grid, "raycone_transform", description.transform);
   insert(grid, "raycone_faces", description.faces);
   insert(grid, "raycone_exterior_edges", description.exterior_edges);
-  if (description.half_precision && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
+  if (description.is(Precision::kHalf) && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
 }
 
 // --- Its tree
@@ -223,7 +236,7 @@ std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
   const auto background =
-      vdb::level_set_background<Value>(band_width, plan.lattice.spacing.x, plan.description.half_precision);
+      vdb::level_set_background<Value>(band_width, plan.lattice.spacing.x, plan.description.is(Precision::kHalf));
   return make_builder<Grid>(plan, vdb::StoreDistance<Value>{band_width, background}, background);
 }
 
@@ -231,7 +244,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
   using openvdb::BoolGrid, openvdb::DoubleGrid, openvdb::FloatGrid;
   const double background = plan.field.background;
   const auto narrow_background = static_cast<float>(background);
-  const bool wide = plan.description.double_precision;
+  const bool wide = plan.description.is(Precision::kDouble);
   switch (plan.field.kind) {
     case FieldKind::kFlag:
       return make_builder<BoolGrid>(plan, vdb::StoreFlag{}, background != 0.0);
@@ -246,7 +259,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
       break;
   }
   if (wide) return make_builder<DoubleGrid>(plan, vdb::StoreDouble{}, background);
-  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.half_precision);
+  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf));
   return make_builder<FloatGrid>(plan, vdb::StoreFloat{narrowing}, narrow_background);
 }
 

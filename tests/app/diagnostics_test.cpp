@@ -162,7 +162,7 @@ TEST_F(DiagnosticsOption, GridsOfAVdbAreTheColumnsOfTheCsv) {
 TEST_F(DiagnosticsOption, NpyOfALatticeIsAUsageErrorThatNamesTheFormats) {
   const CommandResult result = run_raycone({"lattice", dir_ / "absent.obj", "-o", "out.npy", "--diagnostics"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.err, "raycone: --diagnostics: npy holds one number per sample, expected vdb, csv or vti\n");
+  EXPECT_EQ(result.err, "raycone: --diagnostics: npy holds one number per sample, expected vdb, csv, npz or vti\n");
 }
 
 TEST_F(DiagnosticsOption, DoubleWidensTheValuesOnly) {

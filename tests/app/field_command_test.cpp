@@ -124,7 +124,7 @@ TEST_F(FieldOption, VdbHoldsAGridPerField) {
 TEST_F(FieldOption, NpyOfALatticeHoldsOneField) {
   const CommandResult result = run(dir_ / "absent.obj", "out.npy", {"--field", "inside,winding"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.err, "raycone: several fields: npy holds one number per sample, expected vdb, csv or vti\n");
+  EXPECT_EQ(result.err, "raycone: several fields: npy holds one number per sample, expected vdb, csv, npz or vti\n");
 }
 
 TEST_F(FieldOption, NumpySeesBooleansAndColumns) {

@@ -45,15 +45,17 @@ TABLE = [
     Row("batch seam.obj --out-dir out/batch --resolution 4", "--weld none", CHANGES),
     *(Row(words, option, CHANGES)
       for words in (LATTICE, POINTS, SLICE, INFO, BATCH) for option in ("--scale 2", "--up y-to-z")),
+    *(Row(words, "--normalize sphere:3", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO, BATCH, SAMPLE)),
     Row(SLICE + " --normal 1,1,0", "--up 1,0,0", CHANGES),
     Row(SLICE, "--up 1,0,0", REFUSED),
     *(Row(words, "--orient flip", CHANGES) for words in (LATTICE, POINTS, INFO, BATCH, SLICE)),
     # --- Lattices
     *(Row(words, option, CHANGES)
       for words in (LATTICE, BATCH)
-      for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--resolution 6", "--centers")),
+      for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--padding 5%", "--resolution 6", "--centers")),
     *(Row(words, option, CHANGES)
-      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb")),
+      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb", "--like grid.npz", "--like grid.nrrd",
+                     "--like grid.nii.gz")),
     *(Row(LATTICE, option, REFUSED) for option in ("--voxel-size .25", "--like grid.vdb")),
     *(Row(BARE + " --like grid.vdb", option, REFUSED)
       for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--resolution 5", "--voxel-size 1", "--centers")),
@@ -91,6 +93,7 @@ TABLE = [
     Row("points cubes.obj points.raw -o out/a.raw --columns 3,2,1", "--raw f64", REFUSED),
     Row("points cubes.obj points.raw -o out/a.raw", "--raw f64", CHANGES),
     Row("points cubes.obj -o out/a.npz", "--sample uniform=5", CHANGES),
+    Row("points cubes.obj -o out/a.npz", "--sample surface=1e1", CHANGES),
     Row("batch good --out-dir out/batch", "--sample uniform=5", CHANGES),
     *(Row(words, option, CHANGES)
       for words in (SAMPLE, "batch good --out-dir out/batch --sample uniform=5")
@@ -116,7 +119,7 @@ TABLE = [
     *(Row(words, twice, REFUSED)
       for words in (LATTICE, POINTS, SLICE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
     *(Row(words + " --field winding", "--field inside", REFUSED) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
-    *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "vti")),
+    *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "npz", "vti", "nrrd", "nii", "nii.gz")),
     Row(LATTICE, "--format csv", HARMLESS),
     Row(POINTS, "--format npy", CHANGES),
     Row("slice cubes.obj -o out/a --size 8", "--format png", CHANGES),
@@ -130,7 +133,26 @@ TABLE = [
     *(Row(words, "--depfile out/a.d", REFUSED)
       for words in ("lattice cubes.obj -o - --resolution 2", "points cubes.obj points.csv",
                     "slice cubes.obj -o - --size 8")),
-    *(Row(FILE + end, "--double", CHANGES) for end in ("vdb", "npy", "vti")),
+    *(Row(FILE + end, "--double", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
+    *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
+    *(Row(FILE + end, "--dtype f16", CHANGES) for end in ("vdb", "npy", "npz")),
+    *(Row(FILE + end, "--dtype f16", REFUSED) for end in ("vti", "nrrd", "nii", "nii.gz")),
+    *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("nrrd", "nii", "nii.gz")),
+    *(Row(words, "--compress", CHANGES) for words in (FILE + "nrrd", BATCH + " --format nrrd")),
+    *(Row(words, "--compress", REFUSED)
+      for words in (FILE + "vdb", FILE + "nii", FILE + "nii.gz", BATCH, BATCH + " --format none")),
+    *(Row(FILE + end, "--diagnostics", REFUSED) for end in ("nrrd", "nii")),
+    *(Row(words, "--dtype f32", CHANGES)
+      for words in (SAMPLE, POINTS + " --format npy", "batch good --out-dir out/batch --sample uniform=3")),
+    *(Row(words, "--dtype f64", REFUSED)
+      for words in (FILE + "csv", POINTS, FILE + "npz --field inside", FILE + "npz --double",
+                    "points cubes.obj points.raw -o out/a.raw --raw f64", BATCH + " --format none")),
+    *(Row(words, "--pack-bits", CHANGES)
+      for words in (SAMPLE, FILE + "npz --field inside,winding", BATCH + " --format npz --field inside",
+                    POINTS + " --format npz --field inside")),
+    *(Row(words, "--pack-bits", REFUSED)
+      for words in (FILE + "npz", FILE + "npy --field inside", POINTS + " --field inside", BATCH + " --field inside",
+                    BATCH + " --format none")),
     Row(FILE + "csv", "--double", REFUSED),
     Row(BATCH + " --format csv", "--double", REFUSED),
     *(Row(FILE + end + " --field inside", "--double", REFUSED) for end in ("vdb", "npy", "vti")),
@@ -200,7 +222,7 @@ def without_times(name, content):
         return [{key: value for key, value in row.items() if not key.endswith(("_s", "_bytes"))} for row in rows]
     if name.endswith(".json"):
         report = json.loads(content)
-        return {key: value for key, value in report.items() if key not in ("seconds", "peak_memory_bytes", "threads")}
+        return {key: value for key, value in report.items() if key not in ("command", "seconds", "peak_memory_bytes", "threads")}
     return content
 
 
@@ -268,7 +290,9 @@ class OptionEffects(unittest.TestCase):
         for name, content in {"points.npy": npy, "points.raw": raw}.items():
             with open(name, "wb") as file:
                 file.write(content)
-        for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "batch good --out-dir done --resolution 4"):
+        for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "lattice cubes.obj -o grid.npz --resolution 3",
+                      "lattice cubes.obj -o grid.nrrd --resolution 3", "lattice cubes.obj -o grid.nii.gz --resolution 3",
+                      "batch good --out-dir done --resolution 4"):
             assert run(words).returncode == 0, words
         cls.baselines = {}
 

@@ -70,7 +70,7 @@ TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   description.exterior_edges = 1;
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, description), 0.0);
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 4e9 + 4 * 8e6);
-  description.double_precision = true;
+  description.precision = Precision::kDouble;
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 8e9 + 8 * 8e6);
   EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}), 1e8);
 }

@@ -48,7 +48,7 @@ std::string lattice_npy(const Lattice& lattice, const std::vector<double>& value
   const TemporaryDirectory directory;
   OutputFile output(directory / "out.npy");
   OutputDescription description;
-  description.double_precision = double_precision;
+  if (double_precision) description.precision = Precision::kDouble;
   test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, thickness);
   return contents(directory / "out.npy");
 }
@@ -59,6 +59,22 @@ TEST(WriteNpy, HeaderIsVersion1PaddedTo64Bytes) {
   EXPECT_EQ(header_size(npy), 128U);
   EXPECT_EQ(static_cast<unsigned char>(npy[8]) + 256U * static_cast<unsigned char>(npy[9]), 118U);
   EXPECT_TRUE(header_text(npy).starts_with("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }"));
+}
+
+// Half of what the double below 1/2 rounds to would be 1/2.
+TEST(WriteNpy, HalvesStayOnTheSideOfTheThreshold) {
+  const std::vector<double> values{0.5, std::nextafter(0.5, 0.0), std::nextafter(-0.5, 0.0), 1.0, 1e300, -0.0};
+  const TemporaryDirectory directory;
+  OutputFile output(directory / "out.npy");
+  OutputDescription description;
+  description.precision = Precision::kHalf;
+  const Lattice lattice = lattice_of(1, 1, 6);
+  test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, 1);
+  const std::string npy = contents(directory / "out.npy");
+  EXPECT_TRUE(header_text(npy).starts_with("{'descr': '<f2'"));
+  // 1/2, the half below it, minus the half below it, 1, 65504, 0
+  const std::vector<std::uint16_t> expected{0x3800, 0x37FF, 0xB7FF, 0x3C00, 0x7BFF, 0};
+  EXPECT_EQ(elements<std::uint16_t>(npy), expected);
 }
 
 TEST(WriteNpy, LatticesHaveZFastest) {
@@ -213,7 +229,7 @@ TEST(WriteNpy, LatticesOfFlagsAreBooleans) {
   OutputFile output(directory / "out.npy");
   OutputDescription description;
   description.fields.front().kind = FieldKind::kFlag;
-  description.double_precision = true;  // of numbers, not of flags
+  description.precision = Precision::kDouble;  // of numbers, not of flags
   const auto writer = make_lattice_writer(FieldFormat::kNpy, output, lattice_of(2, 1, 2), description);
   const std::vector<std::uint8_t> flags{1, 0, 0, 1};  // x fastest
   const FieldValues field = std::span(flags);

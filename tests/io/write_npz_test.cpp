@@ -93,7 +93,7 @@ TEST(WriteNpz, NumpyLoadsPointsAndFields) {
   EXPECT_EQ(test::run_python("import numpy, sys\n"
                              "z = numpy.load(sys.argv[1])\n"
                              "assert z.files == ['points', 'w', 'crossings', 'degenerate', 'on_surface', 'error_bound',"
-                             " 'inside'], z.files\n"
+                             " 'inside', 'transform'], z.files\n"
                              "assert z['points'].shape == (7, 3) and z['points'].dtype == 'f8'\n"
                              "assert (z['points'] == [[n, 0.5, -1] for n in range(7)]).all()\n"
                              "assert z['w'].tolist() == [0, .25, .5, .75, 0, .25, .5]\n"

@@ -169,7 +169,7 @@ TEST(WriteVdbFields, DistancesThatRoundToTheBandStayActive) {
 
 TEST(WriteVdbFields, DoublesOnRequest) {
   OutputDescription description = described({kDistance});
-  description.double_precision = true;
+  description.precision = Precision::kDouble;
   const auto grid = written_ball(description, VdbType::kDouble);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->background(), 3 * kVoxel);

@@ -128,7 +128,7 @@ TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_fie
 
 TEST(WriteVdb, HoldsDoublesOnRequest) {
   OutputDescription description = described();
-  description.double_precision = true;
+  description.precision = Precision::kDouble;
   expect_holds(*written_grid(random_field(), description, VdbType::kDouble), random_field());
 }
 

@@ -99,10 +99,10 @@ TEST(WriteVti, DoublesOnRequest) {
   if (!test::python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
   const TemporaryDirectory directory;
   OutputDescription description = described();
-  description.double_precision = true;
+  description.precision = Precision::kDouble;
   write_vti(directory / "out.vti", description);
   EXPECT_EQ(test::run_python(with_reader("assert (arrays['winding'].ravel()[1:] == "
-                                                    "[0.1 * n for n in range(1, 24)]).all()\n"),
+                                         "[0.1 * n for n in range(1, 24)]).all()\n"),
                              {directory / "out.vti"}),
             "");
 }

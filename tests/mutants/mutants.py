@@ -36,6 +36,13 @@ MUTANTS = [
     Mutant("degenerate_without_box", "ties count for triangles whose closed box meets the closed ray", [
         ("core/crossings/crossings.cpp", "  if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle\n", "")]),
 
+    # --- Numbers of 16 bits ---
+    Mutant("half_ties_upwards", "a double becomes the nearest half, of two the even one", [
+        ("io/fields/half.cpp", "std::nearbyint(clamped / step)", "std::floor(clamped / step + 0.5)")]),
+    Mutant("half_across_the_threshold", "a stored number is on the threshold's side", [
+        ("io/fields/array_elements.cpp", "return bits_of_half(narrowing(number));",
+         "return bits_of_half(nearest_half(number));")]),
+
     # --- Exact signs, shared ---
     Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [
         ("core/boundary/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",

@@ -118,7 +118,6 @@ TEST_F(BatchSamples, RefusesWhatBelongsToLattices) {
   expect_usage_error(sample({"--format", "vdb"}), "--format vdb: expected npz or csv");
   expect_usage_error(sample({}, "uniform=0"), "--sample uniform=0: expected");
   expect_usage_error(run({"--seed", "2"}), "--seed 2: expected --sample with it");
-  expect_usage_error(run({"--format", "npz"}), "--format npz: not available yet");
   EXPECT_FALSE(fs::exists(out_));
 }
 

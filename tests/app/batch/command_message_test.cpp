@@ -51,8 +51,22 @@ std::vector<std::function<void(Command&)>> common_changes() {
           [](Command& c) { c.output.report = ""; },
           [](Command& c) { c.output.depfile = "o.d"; },
           [](Command& c) { c.encoding.format = FieldFormat::kNone; },
-          [](Command& c) { c.encoding.double_precision = true; },
-          [](Command& c) { c.encoding.half_precision = true; },
+          [](Command& c) { c.encoding.precision = Precision::kDouble; },
+          [](Command& c) { c.encoding.precision = Precision::kHalf; },
+          [](Command& c) { c.encoding.pack_bits = true; },
+          [](Command& c) { c.encoding.compress = true; },
+          [](Command& c) {
+            c.run.options = {"--a=b", "--c"};
+          },
+          [](Command& c) {
+            c.run.words = {"a", ""};
+          },
+          [](Command& c) {
+            c.mesh.normalize = {NormalizeTo::kCube, 2.0};
+          },
+          [](Command& c) {
+            c.mesh.normalize = {NormalizeTo::kSphere, 1.0};
+          },
           [](Command& c) { c.encoding.grid_name = "density"; }};
 }
 
@@ -64,6 +78,9 @@ std::vector<Change> lattice_changes() {
                                   request_of(c).bounds = Box{{1, 2, 3}, {4, 5, 6}};
                                 },
                                 [](LatticeCommand& c) { request_of(c).padding = WorldPadding{-1.5}; },
+                                [](LatticeCommand& c) {
+                                  request_of(c).padding = WorldPadding{-1.5, true};
+                                },
                                 [](LatticeCommand& c) { request_of(c).padding = VoxelPadding{-3}; },
                                 [](LatticeCommand& c) { request_of(c).sampling = LongestSide{5}; },
                                 [](LatticeCommand& c) {
@@ -97,6 +114,7 @@ std::vector<PointsChange> points_changes() {
                                       [](PointsCommand& c) {
                                         c.sample.emplace().groups = {UniformSamples{7}, NearSamples{8, 0.02}};
                                       },
+                                      [](PointsCommand& c) { c.sample.emplace().groups = {SurfaceSamples{7}}; },
                                       [](PointsCommand& c) { c.sample.emplace().seed = 2; },
                                       [](PointsCommand& c) {
                                         c.sample.emplace().bounds = Box{{1, 2, 3}, {4, 5, 6}};

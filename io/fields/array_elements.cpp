@@ -1,0 +1,160 @@
+#include "io/fields/array_elements.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/machine/threads.h"
+#include "io/fields/half.h"
+#include "io/fields/narrowing.h"
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
+
+// Each type here turns a field's Number into an Element.
+
+struct ByteElement {
+  using Number = std::uint8_t;
+  using Element = std::uint8_t;
+  static constexpr const char* kDescriptor = "|b1";  // NumPy's bool is a byte
+  Element operator()(Number flag) const { return flag; }
+};
+
+struct IntegerElement {
+  using Number = std::int64_t;
+  using Element = std::int64_t;
+  static constexpr const char* kDescriptor = "<i8";
+  Element operator()(Number count) const { return count; }
+};
+
+// Adding 0 turns -0 into 0, here and below.
+struct DoubleElement {
+  using Number = double;
+  using Element = double;
+  static constexpr const char* kDescriptor = "<f8";
+  Element operator()(Number number) const { return number + 0.0; }
+};
+
+struct FloatElement {
+  using Number = double;
+  using Element = float;
+  static constexpr const char* kDescriptor = "<f4";
+  Element operator()(Number number) const { return narrowing(number) + 0.0F; }
+  Narrowing narrowing;
+};
+
+struct HalfElement {
+  using Number = double;
+  using Element = std::uint16_t;
+  static constexpr const char* kDescriptor = "<f2";
+  Element operator()(Number number) const { return bits_of_half(narrowing(number)); }
+  Narrowing narrowing;
+};
+
+template <typename Convert>
+class TypedElements final : public ArrayElements {
+ public:
+  using Number = typename Convert::Number;
+  using Element = typename Convert::Element;
+
+  // `largest`: the magnitude that numbers may have.
+  TypedElements(Convert convert, double largest, std::string output)
+      : convert_(std::move(convert)), largest_(largest), output_(std::move(output)) {}
+
+  const char* descriptor() const override { return Convert::kDescriptor; }
+  std::size_t size() const override { return sizeof(Element); }
+
+  std::span<const char> in_order(const FieldValues& values) override {
+    const auto numbers = std::get<std::span<const Number>>(values);
+    check_range(numbers);
+    elements_.resize(numbers.size());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) elements_[n] = convert_(numbers[n]);
+    });
+    return bytes();
+  }
+
+  std::span<const char> planes(const LatticeBlock& block, const FieldValues& values, std::size_t x_begin,
+                               std::size_t x_end) override {
+    const auto numbers = std::get<std::span<const Number>>(values);
+    if (x_begin == 0) check_range(numbers);
+    const auto ny = static_cast<std::size_t>(block.counts[1]), nz = static_cast<std::size_t>(block.counts[2]);
+    elements_.resize((x_end - x_begin) * ny * nz);
+    parallel_for(ny, 1, [&](std::size_t y_begin, std::size_t y_end) {
+      for (std::size_t y = y_begin; y < y_end; ++y) transpose_row(block, numbers, y, x_begin, x_end);
+    });
+    return bytes();
+  }
+
+ private:
+  void transpose_row(const LatticeBlock& block, std::span<const Number> numbers, std::size_t y, std::size_t x_begin,
+                     std::size_t x_end) {
+    constexpr std::size_t kTile = 16;  // a tile's cache lines on both sides fit in the first-level cache
+    const auto nx = static_cast<std::size_t>(block.counts[0]);
+    const auto ny = static_cast<std::size_t>(block.counts[1]);
+    const auto nz = static_cast<std::size_t>(block.counts[2]);
+    for (std::size_t z_tile = 0; z_tile < nz; z_tile += kTile) {
+      const std::size_t z_end = std::min(z_tile + kTile, nz);
+      for (std::size_t x_tile = x_begin; x_tile < x_end; x_tile += kTile) {
+        for (std::size_t x = x_tile; x < std::min(x_tile + kTile, x_end); ++x) {
+          for (std::size_t z = z_tile; z < z_end; ++z) {
+            elements_[((x - x_begin) * ny + y) * nz + z] = convert_(numbers[(z * ny + y) * nx + x]);
+          }
+        }
+      }
+    }
+  }
+
+  void check_range(std::span<const Number> numbers) const {
+    if (!std::isfinite(largest_)) return;
+    const auto beyond = std::ranges::find_if(
+        numbers, [this](Number number) { return std::abs(static_cast<double>(number)) > largest_; });
+    if (beyond == numbers.end()) return;
+    char message[160];
+    std::snprintf(message, sizeof message,
+                  ": the distance %.6g is beyond %g, the range of 16 bits; expected --dtype f32, or another --scale",
+                  static_cast<double>(*beyond), largest_);
+    throw OutputError(output_ + message);
+  }
+
+  [[nodiscard]] std::span<const char> bytes() const {
+    return {reinterpret_cast<const char*>(elements_.data()), elements_.size() * sizeof(Element)};
+  }
+
+  Convert convert_;
+  double largest_;
+  std::string output_;
+  std::vector<Element> elements_;
+};
+
+}  // namespace
+
+std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field, Precision precision,
+                                                   const std::string& output) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  if (field.kind == FieldKind::kFlag) return std::make_unique<TypedElements<ByteElement>>(ByteElement{}, kAny, output);
+  if (field.kind == FieldKind::kCount) {
+    return std::make_unique<TypedElements<IntegerElement>>(IntegerElement{}, kAny, output);
+  }
+  if (field.kind == FieldKind::kBound || precision == Precision::kDouble) {
+    return std::make_unique<TypedElements<DoubleElement>>(DoubleElement{}, kAny, output);
+  }
+  if (precision == Precision::kSingle) {
+    return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, kAny, output);
+  }
+  const Narrowing narrowing(field, &nearest_half, &next_half_above);
+  // Winding numbers beyond are stored as the largest half, which every rule takes for the same.
+  const double largest = field.kind == FieldKind::kDistance ? kLargestHalf : kAny;
+  return std::make_unique<TypedElements<HalfElement>>(HalfElement{narrowing}, largest, output);
+}
+
+}  // namespace raycone

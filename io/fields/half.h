@@ -1,0 +1,20 @@
+// Numbers of 16 bits (IEEE 754 binary16), held as floats, all of which they are among.
+#pragma once
+
+#include <cstdint>
+
+namespace raycone {
+
+inline constexpr double kLargestHalf = 65504.0;
+
+// The half nearest to `value`, ties to even; beyond the largest one, that. Precondition: not NaN.
+[[nodiscard]] float nearest_half(double value);
+
+// The next half above `half`, which is one below the largest.
+[[nodiscard]] float next_half_above(float half);
+
+// The bits of a float that is a half, -0 as 0, and back.
+[[nodiscard]] std::uint16_t bits_of_half(float half);
+[[nodiscard]] float half_from_bits(std::uint16_t bits);
+
+}  // namespace raycone

@@ -1,0 +1,18 @@
+// The lattice of an NRRD or NIfTI-1 volume, for --like.
+#pragma once
+
+#include <string>
+
+#include "core/data/lattice.h"
+
+namespace raycone {
+
+// Whether the regular file at `path` begins as one of them does, also where gzip packed it; false where it cannot be
+// read.
+[[nodiscard]] bool is_image(const std::string& path);
+
+// Its voxels' middles, in right, anterior, superior; index 0 is the first one. Throws InputError where the head cannot
+// be read, NotAvailable where the volume's axes are not those of the world.
+[[nodiscard]] Lattice read_image_lattice(const std::string& path);
+
+}  // namespace raycone

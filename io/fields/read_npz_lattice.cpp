@@ -1,0 +1,111 @@
+#include "io/fields/read_npz_lattice.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "io/files/file_error.h"
+#include "io/files/input_buffer.h"
+#include "io/files/npy_head.h"
+#include "io/files/zip_reader.h"
+
+namespace raycone {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "elements are read as they are in memory");
+
+constexpr double kMostIndex = 0x1p53;
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) { throw InputError(path + ": " + what); }
+
+const ZipReader::Member& find_array(const ZipReader& archive, const std::string& path, const std::string& name) {
+  const ZipReader::Member* const member = archive.find(name + ".npy");
+  if (member == nullptr) fail(path, "has no array '" + name + "', expected a lattice that raycone wrote");
+  return *member;
+}
+
+// An array of `kCount` numbers of type `descriptor`, whatever its shape.
+template <typename Number, std::size_t kCount>
+std::array<Number, kCount> read_numbers(const ZipReader& archive, const std::string& path, const std::string& name,
+                                        std::string_view descriptor) {
+  const ZipReader::Member& member = find_array(archive, path, name);
+  InputBuffer input(archive.name_of(member), archive.open(member));
+  const NpyHead head = read_npy_head(input);
+  std::uint64_t count = 1;
+  for (const std::uint64_t size : head.shape) count *= std::min<std::uint64_t>(size, kCount + 1);
+  if (head.type != descriptor || count != kCount) {
+    fail(input.name(), "expected " + std::to_string(kCount) + " numbers of type " + std::string(descriptor));
+  }
+  std::array<Number, kCount> numbers{};
+  require_bytes(input, sizeof numbers, "the array");
+  std::memcpy(numbers.data(), input.pending().data(), sizeof numbers);
+  return numbers;
+}
+
+// Of the first field, which may be packed.
+std::array<std::int64_t, 3> read_counts(const ZipReader& archive, const std::string& path) {
+  if (archive.find("inside_shape.npy") != nullptr) {
+    return read_numbers<std::int64_t, 3>(archive, path, "inside_shape", "<i8");
+  }
+  static constexpr std::array<std::string_view, 6> kNoFields{"origin.npy",    "spacing.npy",   "index_min.npy",
+                                                             "direction.npy", "transform.npy", "raycone.npy"};
+  for (const ZipReader::Member& member : archive.members()) {
+    if (std::ranges::count(kNoFields, member.name) > 0) continue;
+    InputBuffer input(archive.name_of(member), archive.open(member));
+    const NpyHead head = read_npy_head(input);
+    if (head.shape.size() < 3) continue;
+    std::array<std::int64_t, 3> counts{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (static_cast<double>(head.shape[a]) > kMostIndex) fail(input.name(), "has too large a shape");
+      counts[a] = static_cast<std::int64_t>(head.shape[a]);
+    }
+    return counts;
+  }
+  fail(path, "has no field on a lattice");
+}
+
+}  // namespace
+
+bool is_npz(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::array<char, 4> first{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(first.data(), first.size());
+  return file && std::string_view(first.data(), first.size()) == "PK\x03\x04";
+}
+
+Lattice read_npz_lattice(const std::string& path) {
+  const ZipReader archive(path);
+  const auto origin = read_numbers<double, 3>(archive, path, "origin", "<f8");
+  const auto spacing = read_numbers<double, 3>(archive, path, "spacing", "<f8");
+  const auto direction = read_numbers<double, 9>(archive, path, "direction", "<f8");
+  const auto index_min = read_numbers<std::int64_t, 3>(archive, path, "index_min", "<i8");
+  if (direction != std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}) {
+    fail(path, "has a lattice that is not along the axes, expected one of direction 1");
+  }
+  Lattice lattice;
+  lattice.counts = read_counts(archive, path);
+  lattice.index_min = index_min;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    lattice.origin[axis] = origin[a];
+    lattice.spacing[axis] = spacing[a];
+    const bool valid = std::isfinite(origin[a]) && std::isfinite(spacing[a]) && spacing[a] > 0.0 &&
+                       std::abs(static_cast<double>(index_min[a])) <= kMostIndex && lattice.counts[a] >= 1;
+    if (!valid || !std::isfinite(lattice.coordinate(axis, lattice.index_max(axis)))) {
+      fail(path, std::string("has no valid lattice along ") + "xyz"[axis]);
+    }
+  }
+  return lattice;
+}
+
+}  // namespace raycone

@@ -1,0 +1,215 @@
+// Volumes of medical imaging: NRRD (teem.sourceforge.net/nrrd/format.html, version 5) and NIfTI-1 (the header nifti1.h
+// of nifti.nimh.nih.gov). Both are a head and the samples, x fastest, and place the middles of voxels: here the
+// samples, in the mesh's own coordinates, which viewers take for right, anterior, superior. Written here because a head
+// is all there is to write: libnifti would want the whole volume in memory.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/fields/array_elements.h"
+#include "io/fields/format_writers.h"
+#include "io/files/file_error.h"
+#include "io/files/gzip_writer.h"
+
+namespace raycone {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
+
+enum class Element { kByte, kFloat, kDouble };
+
+Element element_of(const OutputDescription& description) {
+  if (description.fields.front().kind == FieldKind::kFlag) return Element::kByte;
+  return description.is(Precision::kDouble) ? Element::kDouble : Element::kFloat;
+}
+
+Vec3 first_sample(const Lattice& lattice) {
+  Vec3 place;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+  }
+  return place;
+}
+
+// --- NRRD -----------------------------------------------------------------------------------------------------------
+
+std::string shortest_text(double number) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
+std::string vector_text(const Vec3& v) {
+  return '(' + shortest_text(v.x) + ',' + shortest_text(v.y) + ',' + shortest_text(v.z) + ')';
+}
+
+// Backslashes and line ends are written as NRRD's key/value pairs want them.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\\') {
+      result += "\\\\";
+    } else if (c == '\n') {
+      result += "\\n";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string nrrd_head(const Lattice& lattice, const OutputDescription& description) {
+  static constexpr std::array kTypes{"uint8", "float", "double"};
+  const Vec3& s = lattice.spacing;
+  const FieldDescription& field = description.fields.front();
+  std::string head =
+      "NRRD0005\n# Complete NRRD file format specification at: http://teem.sourceforge.net/nrrd/format.html\n";
+  head += std::string("type: ") + kTypes[static_cast<std::size_t>(element_of(description))] + '\n';
+  head += "dimension: 3\nspace: right-anterior-superior\nsizes:";
+  for (const std::int64_t count : lattice.counts) head += ' ' + std::to_string(count);
+  head += "\nspace directions: " + vector_text({s.x, 0, 0}) + ' ' + vector_text({0, s.y, 0}) + ' ' +
+          vector_text({0, 0, s.z}) + '\n';
+  head += "kinds: domain domain domain\nendian: little\n";
+  head += std::string("encoding: ") + (description.compress ? "gzip" : "raw") + '\n';
+  head += "space origin: " + vector_text(first_sample(lattice)) + '\n';
+  head += "raycone_field:=" + field.name + '\n';
+  if (!field.rule.empty()) head += "raycone_rule:=" + field.rule + '\n';
+  if (!description.metadata.empty()) head += "raycone:=" + escaped(description.metadata) + '\n';
+  return head + '\n';
+}
+
+// --- NIfTI-1 --------------------------------------------------------------------------------------------------------
+
+// The 348 bytes of the head, and four that say that no extension follows.
+class NiftiHead {
+ public:
+  NiftiHead() : bytes_(352, '\0') {}
+
+  template <typename Number>
+  void put(std::size_t offset, Number number) {
+    std::memcpy(&bytes_[offset], &number, sizeof number);
+  }
+  void put_text(std::size_t offset, std::size_t room, const std::string& text) {
+    bytes_.replace(offset, std::min(room - 1, text.size()), text.substr(0, room - 1));
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+void check_nifti(const Lattice& lattice, const std::string& name) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int16_t>::max();
+  for (const std::int64_t count : lattice.counts) {
+    if (count <= kMost) continue;
+    throw OutputError(name + ": " + std::to_string(count) +
+                      " samples along an axis do not fit in the 16 bits of NIfTI-1");
+  }
+  const Vec3 first = first_sample(lattice);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto spacing = static_cast<float>(lattice.spacing[axis]);
+    if (std::isfinite(spacing) && spacing >= std::numeric_limits<float>::min() &&
+        std::isfinite(static_cast<float>(first[axis]))) {
+      continue;
+    }
+    throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
+  }
+}
+
+std::string nifti_head(const Lattice& lattice, const OutputDescription& description) {
+  // Offsets are those of nifti1.h.
+  static constexpr std::array<std::pair<int, int>, 3> kTypes{{{2, 8}, {16, 32}, {64, 64}}};  // code, bits
+  constexpr std::int16_t kScannerSpace = 1;
+  const auto [code, bits] = kTypes[static_cast<std::size_t>(element_of(description))];
+  const Vec3 first = first_sample(lattice);
+  NiftiHead head;
+  head.put<std::int32_t>(0, 348);
+  head.put<std::int16_t>(40, 3);
+  for (std::size_t n = 1; n < 8; ++n) {
+    head.put<std::int16_t>(40 + 2 * n, static_cast<std::int16_t>(n <= 3 ? lattice.counts[n - 1] : 1));
+  }
+  head.put<std::int16_t>(70, static_cast<std::int16_t>(code));
+  head.put<std::int16_t>(72, static_cast<std::int16_t>(bits));
+  head.put<float>(76, 1.0F);  // qfac: not mirrored
+  head.put<float>(108, 352.0F);
+  head.put<float>(112, 1.0F);  // values are as stored
+  head.put_text(148, 80, std::string("raycone ") + RAYCONE_VERSION + ' ' + description.fields.front().name);
+  head.put(252, kScannerSpace);  // the quaternion is that of no rotation
+  head.put(254, kScannerSpace);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const auto spacing = static_cast<float>(lattice.spacing[axis]), place = static_cast<float>(first[axis]);
+    head.put(80 + 4 * a, spacing);
+    head.put(268 + 4 * a, place);
+    head.put(280 + 16 * a + 4 * a, spacing);
+    head.put(280 + 16 * a + 12, place);
+  }
+  head.put_text(344, 4, "n+1");
+  return head.bytes();
+}
+
+// --- Either ---------------------------------------------------------------------------------------------------------
+
+class ImageWriter final : public LatticeWriter {
+ public:
+  // `packs_head`: the whole file is compressed, not just what follows the head.
+  ImageWriter(OutputFile& output, const OutputDescription& description, const std::string& head, bool packs_head)
+      : output_(output),
+        elements_(make_array_elements(description.fields.front(), description.precision.value_or(Precision::kSingle),
+                                      output.name())) {
+    if (!packs_head) output_.write(head.data(), head.size());
+    if (description.compress) packed_.emplace(output_);
+    if (packs_head) append({head.data(), head.size()});
+  }
+
+  int slab_axis() const override { return 2; }
+  std::int64_t slab_alignment() const override { return 1; }
+  void write(const LatticeBlock&, std::span<const FieldValues> fields) override {
+    append(elements_->in_order(fields.front()));
+  }
+  void finish(const FieldTotals&) override {
+    if (packed_) packed_->finish();
+    output_.commit();
+  }
+
+ private:
+  void append(std::span<const char> bytes) {
+    if (packed_) return packed_->write(bytes.data(), bytes.size());
+    output_.write(bytes.data(), bytes.size());
+  }
+
+  OutputFile& output_;
+  std::unique_ptr<ArrayElements> elements_;
+  std::optional<GzipWriter> packed_;
+};
+
+void check_fields(const OutputDescription& description) {
+  if (description.fields.size() != 1) throw std::logic_error("an image holds one field");
+}
+
+}  // namespace
+
+std::unique_ptr<LatticeWriter> make_nrrd_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                        const OutputDescription& description) {
+  check_fields(description);
+  return std::make_unique<ImageWriter>(output, description, nrrd_head(lattice, description), false);
+}
+
+std::unique_ptr<LatticeWriter> make_nifti_lattice_writer(OutputFile& output, const Lattice& lattice,
+                                                         const OutputDescription& description) {
+  check_fields(description);
+  check_nifti(lattice, output.name());
+  return std::make_unique<ImageWriter>(output, description, nifti_head(lattice, description), description.compress);
+}
+
+}  // namespace raycone

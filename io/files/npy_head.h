@@ -1,0 +1,31 @@
+// What precedes the elements of an NPY file, versions 1 to 3 (NumPy documentation, "numpy.lib.format").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/input_buffer.h"
+
+namespace raycone {
+
+struct NpyHead {
+  std::string type;  // as NumPy writes it, "<f8" for instance; empty for structured values
+  bool fortran_order = false;
+  std::vector<std::uint64_t> shape;
+  std::string shape_text;
+  std::uint64_t data_offset = 0;
+};
+
+// Consumes the head. Throws InputError.
+[[nodiscard]] NpyHead read_npy_head(InputBuffer& input);
+
+// Waits until `count` bytes are pending; throws InputError where the input ends before.
+void require_bytes(InputBuffer& input, std::size_t count, const char* what);
+
+// The beginning of `text`, without what a terminal would not print.
+[[nodiscard]] std::string printable_npy(std::string_view text);
+
+}  // namespace raycone

@@ -1,0 +1,258 @@
+#include "io/files/unpack.h"
+
+#include <zlib.h>
+#include <zstd.h>
+#include <zstd_errors.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::string_view kGzip = "\x1f\x8b", kZstandard = "\x28\xb5\x2f\xfd";
+constexpr std::size_t kBlock = std::size_t{1} << 17;
+constexpr int kGzipWindow = 15 + 16, kBareWindow = -15;  // as zlib counts
+
+// Packed bytes, block by block.
+class PackedInput {
+ public:
+  PackedInput(std::unique_ptr<ByteSource> source, std::string name, std::string_view begun = {})
+      : source_(std::move(source)), name_(std::move(name)), bytes_(kBlock) {
+    std::ranges::copy(begun, bytes_.begin());
+    end_ = begun.size();
+  }
+
+  // What is there, at least one byte unless at the end.
+  std::string_view pending() {
+    if (begin_ == end_) {
+      begin_ = 0;
+      end_ = source_->read(bytes_.data(), bytes_.size());
+    }
+    return {bytes_.data() + begin_, end_ - begin_};
+  }
+  void consume(std::size_t count) {
+    begin_ += count;
+    offset_ += count;
+  }
+  [[nodiscard]] bool is_ready() const { return begin_ < end_ || source_->is_ready(); }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(name_ + ":byte " + std::to_string(offset_) + ": " + what);
+  }
+
+ private:
+  std::unique_ptr<ByteSource> source_;
+  std::string name_;
+  std::vector<char> bytes_;
+  std::size_t begin_ = 0, end_ = 0;
+  std::uint64_t offset_ = 0;
+};
+
+// By zlib: gzip files, or bare deflate.
+class InflatingSource final : public ByteSource {
+ public:
+  InflatingSource(PackedInput input, int window, std::optional<std::uint64_t> size)
+      : input_(std::move(input)), is_gzip_(window == kGzipWindow), size_(size) {
+    if (inflateInit2(&state_, window) != Z_OK) throw std::bad_alloc();
+  }
+  ~InflatingSource() override { inflateEnd(&state_); }
+  InflatingSource(const InflatingSource&) = delete;
+  InflatingSource& operator=(const InflatingSource&) = delete;
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    state_.next_out = reinterpret_cast<Bytef*>(bytes);
+    state_.avail_out = static_cast<uInt>(std::min(size, kBlock));
+    const uInt room = state_.avail_out;
+    while (state_.avail_out == room && !at_end_) inflate_some();
+    const std::size_t count = room - state_.avail_out;
+    done_ += count;
+    if (size_ && (done_ > *size_ || (count == 0 && done_ != *size_))) input_.fail("another size than announced");
+    return count;
+  }
+  bool is_ready() const override { return at_end_ || input_.is_ready(); }
+  std::optional<std::uint64_t> size() const override { return size_; }
+
+ private:
+  void inflate_some() {
+    const std::string_view packed = input_.pending();
+    if (packed.empty()) {
+      if (!between_) input_.fail("the compressed data end too early");
+      at_end_ = true;
+      return;
+    }
+    if (between_ && !begins_member(packed)) return;
+    state_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+    state_.avail_in = static_cast<uInt>(packed.size());
+    const int result = inflate(&state_, Z_NO_FLUSH);
+    input_.consume(packed.size() - state_.avail_in);
+    if (result == Z_MEM_ERROR) throw std::bad_alloc();
+    if (result == Z_STREAM_END) {
+      between_ = is_gzip_;
+      at_end_ = !is_gzip_;
+    } else if (result != Z_OK && result != Z_BUF_ERROR) {
+      input_.fail(std::string("damaged compressed data: ") + (state_.msg != nullptr ? state_.msg : "a dictionary"));
+    }
+  }
+
+  // Behind a gzip file may be another one, and zeros that fill a block of a tape.
+  bool begins_member(std::string_view packed) {
+    if (packed.front() == '\0') {
+      input_.consume(1);
+      return false;
+    }
+    if (packed.front() != kGzip.front()) input_.fail("something other than compressed data behind them");
+    between_ = false;
+    inflateReset(&state_);
+    return true;
+  }
+
+  PackedInput input_;
+  z_stream state_{};
+  bool is_gzip_;
+  std::optional<std::uint64_t> size_;
+  bool between_ = false;  // two gzip files
+  bool at_end_ = false;
+  std::uint64_t done_ = 0;
+};
+
+class ZstandardSource final : public ByteSource {
+ public:
+  explicit ZstandardSource(PackedInput input)
+      : input_(std::move(input)), state_(ZSTD_createDStream(), &ZSTD_freeDStream) {
+    if (!state_) throw std::bad_alloc();
+  }
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    ZSTD_outBuffer out{bytes, size, 0};
+    while (out.pos == 0) {
+      const std::string_view packed = input_.pending();
+      if (packed.empty() && !within_) return 0;
+      ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+      const std::size_t result = ZSTD_decompressStream(state_.get(), &out, &in);
+      input_.consume(in.pos);
+      if (ZSTD_isError(result)) fail(result);
+      within_ = result != 0;
+      if (packed.empty() && out.pos == 0) input_.fail("the compressed data end too early");
+    }
+    return out.pos;
+  }
+  bool is_ready() const override { return input_.is_ready(); }
+
+ private:
+  [[noreturn]] void fail(std::size_t result) const {
+    if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+    input_.fail(std::string("damaged compressed data: ") + ZSTD_getErrorName(result));
+  }
+
+  PackedInput input_;
+  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> state_;
+  bool within_ = false;  // a frame
+};
+
+// Decides at the first byte, so that nothing waits before.
+class UnpackingSource final : public ByteSource {
+ public:
+  UnpackingSource(std::unique_ptr<ByteSource> source, std::string name)
+      : source_(std::move(source)), name_(std::move(name)) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    if (!is_known_) find_out();
+    if (begun_.empty()) return source_->read(bytes, size);
+    const std::size_t count = std::min(size, begun_.size());
+    std::memcpy(bytes, begun_.data(), count);
+    begun_.erase(0, count);
+    return count;
+  }
+  bool is_ready() const override { return !begun_.empty() || source_->is_ready(); }
+  std::optional<std::uint64_t> size() const override { return source_->size(); }
+  bool is_seekable() const override { return source_->is_seekable(); }
+  void read_at(std::uint64_t offset, char* bytes, std::size_t size) const override {
+    source_->read_at(offset, bytes, size);
+  }
+
+ private:
+  void find_out() {
+    is_known_ = true;
+    std::array<char, 4> first{};
+    while (begun_.size() < first.size() && (kGzip.starts_with(begun_) || kZstandard.starts_with(begun_))) {
+      const std::size_t count = source_->read(first.data(), first.size() - begun_.size());
+      if (count == 0) return;
+      begun_.append(first.data(), count);
+    }
+    if (begun_.starts_with(kGzip)) {
+      source_ = std::make_unique<InflatingSource>(take_input(), kGzipWindow, std::nullopt);
+    } else if (begun_.starts_with(kZstandard)) {
+      source_ = std::make_unique<ZstandardSource>(take_input());
+    }
+  }
+
+  PackedInput take_input() {
+    PackedInput input(std::move(source_), name_, begun_);
+    begun_.clear();
+    return input;
+  }
+
+  std::unique_ptr<ByteSource> source_;
+  std::string name_;
+  std::string begun_;  // bytes that were read to find out
+  bool is_known_ = false;
+};
+
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(std::string_view bytes) : rest_(bytes) {}
+  std::size_t read(char* bytes, std::size_t size) override {
+    const std::size_t count = rest_.copy(bytes, size);
+    rest_.remove_prefix(count);
+    return count;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+}  // namespace
+
+bool is_packed(std::string_view bytes) { return bytes.starts_with(kGzip) || bytes.starts_with(kZstandard); }
+
+std::unique_ptr<ByteSource> unpacked(std::unique_ptr<ByteSource> packed, const std::string& name) {
+  return std::make_unique<UnpackingSource>(std::move(packed), name);
+}
+
+std::string unpacked(std::string_view packed, const std::string& name) {
+  const std::unique_ptr<ByteSource> source = unpacked(std::make_unique<MemorySource>(packed), name);
+  std::string bytes(std::max(kBlock, 4 * packed.size()), '\0');  // most meshes need no more room
+  std::size_t size = 0;
+  while (const std::size_t count = source->read(bytes.data() + size, bytes.size() - size)) {
+    size += count;
+    if (size == bytes.size()) bytes.resize(size + size / 2);
+  }
+  bytes.resize(size);
+  bytes.shrink_to_fit();
+  return bytes;
+}
+
+std::unique_ptr<ByteSource> inflated(std::unique_ptr<ByteSource> packed, std::uint64_t size, const std::string& name) {
+  return std::make_unique<InflatingSource>(PackedInput(std::move(packed), name), kBareWindow, size);
+}
+
+std::string without_packing_extension(const std::string& path) {
+  for (const std::string_view extension : {".gz", ".zst"}) {
+    if (path.size() <= extension.size()) continue;
+    const std::string_view end = std::string_view(path).substr(path.size() - extension.size());
+    const bool same = std::ranges::equal(end, extension, [](char c, char lower) {
+      return ('A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == lower;
+    });
+    if (same) return path.substr(0, path.size() - extension.size());
+  }
+  return path;
+}
+
+}  // namespace raycone

@@ -1,0 +1,166 @@
+// Numbers of sections are those of PKWARE's APPNOTE.TXT 6.3.10.
+#include "io/files/zip_reader.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "io/files/file_error.h"
+#include "io/files/unpack.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::uint64_t kLargest16 = 0xFFFF, kLargest32 = 0xFFFFFFFF;
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw InputError(path + ": not a readable ZIP archive: " + what);
+}
+
+// Little-endian fields, one after the other.
+class Fields {
+ public:
+  Fields(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
+
+  std::uint64_t number(std::size_t size) {
+    std::uint64_t value = 0;
+    const std::string_view bytes = text(size);
+    for (std::size_t n = size; n-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[n]);
+    return value;
+  }
+  std::string_view text(std::size_t size) {
+    if (size > rest_.size()) fail(path_, "it ends within a record");
+    const std::string_view bytes = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return bytes;
+  }
+  [[nodiscard]] std::size_t left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_;
+  const std::string& path_;
+};
+
+std::string bytes_at(const ByteSource& file, const std::string& path, std::uint64_t offset, std::uint64_t size) {
+  const std::uint64_t end = file.size().value_or(0);
+  if (offset > end || size > end - offset) fail(path, "a record lies beyond its end");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  file.read_at(offset, bytes.data(), bytes.size());
+  return bytes;
+}
+
+struct Directory {
+  std::uint64_t entries, size, offset;
+};
+
+// 4.3.14, 4.3.15: `end` is where the record of 4.3.16 begins.
+Directory large_directory(const ByteSource& file, const std::string& path, std::uint64_t end) {
+  constexpr std::uint64_t kLocator = 20, kRecord = 56;
+  if (end < kLocator) fail(path, "no ZIP64 directory");
+  const std::string locator = bytes_at(file, path, end - kLocator, kLocator);
+  Fields place(locator, path);
+  if (place.number(4) != 0x07064b50) fail(path, "no ZIP64 directory");
+  (void)place.number(4);  // disk
+  const std::string record = bytes_at(file, path, place.number(8), kRecord);
+  Fields fields(record, path);
+  if (fields.number(4) != 0x06064b50) fail(path, "no ZIP64 directory");
+  (void)fields.text(20);  // size, versions, disks
+  (void)fields.number(8);
+  Directory directory{};
+  directory.entries = fields.number(8);
+  directory.size = fields.number(8);
+  directory.offset = fields.number(8);
+  return directory;
+}
+
+// 4.3.16
+Directory find_directory(const ByteSource& file, const std::string& path) {
+  constexpr std::uint64_t kRecord = 22;
+  const std::uint64_t size = file.size().value_or(0);
+  const std::uint64_t window = std::min(size, kRecord + kLargest16);  // a comment may stand behind
+  const std::string tail = bytes_at(file, path, size - window, window);
+  const std::size_t found = tail.rfind("PK\x05\x06");
+  if (found == std::string::npos || tail.size() - found < kRecord) fail(path, "no directory at its end");
+  Fields fields(std::string_view(tail).substr(found + 4), path);
+  if (fields.number(2) != 0 || fields.number(2) != 0) fail(path, "it is in several parts");
+  (void)fields.number(2);
+  Directory directory{};
+  directory.entries = fields.number(2);
+  directory.size = fields.number(4);
+  directory.offset = fields.number(4);
+  const bool large = directory.entries == kLargest16 || directory.size == kLargest32 || directory.offset == kLargest32;
+  return large ? large_directory(file, path, size - window + found) : directory;
+}
+
+// 4.5.3: what did not fit into 32 bits.
+void read_extra(Fields extra, ZipReader::Member& member) {
+  while (extra.left() >= 4) {
+    const std::uint64_t kind = extra.number(2), size = extra.number(2);
+    Fields field = extra;
+    (void)extra.text(static_cast<std::size_t>(size));
+    if (kind != 1) continue;
+    for (std::uint64_t* const number : {&member.size, &member.packed_size, &member.header}) {
+      if (*number == kLargest32) *number = field.number(8);
+    }
+  }
+}
+
+// 4.3.12
+ZipReader::Member read_entry(Fields& fields, const std::string& path) {
+  constexpr std::uint64_t kEncrypted = 1, kStored = 0, kDeflated = 8;
+  if (fields.number(4) != 0x02014b50) fail(path, "its directory is damaged");
+  (void)fields.number(4);  // versions
+  const std::uint64_t flags = fields.number(2), method = fields.number(2);
+  (void)fields.text(8);  // time, date, checksum
+  ZipReader::Member member;
+  member.packed_size = fields.number(4);
+  member.size = fields.number(4);
+  const std::uint64_t name = fields.number(2), extra = fields.number(2), comment = fields.number(2);
+  (void)fields.text(8);  // disk, attributes
+  member.header = fields.number(4);
+  member.name = fields.text(static_cast<std::size_t>(name));
+  read_extra(Fields(fields.text(static_cast<std::size_t>(extra)), path), member);
+  (void)fields.text(static_cast<std::size_t>(comment));
+  if ((flags & kEncrypted) != 0) fail(path, member.name + " is encrypted");
+  if (method != kStored && method != kDeflated) {
+    fail(path, member.name + " is compressed by method " + std::to_string(method) + ", expected none or deflate");
+  }
+  member.deflated = method == kDeflated;
+  if (!member.deflated && member.size != member.packed_size) fail(path, member.name + " has two sizes");
+  return member;
+}
+
+}  // namespace
+
+ZipReader::ZipReader(const std::string& path) : path_(path) {
+  const std::unique_ptr<ByteSource> file = open_source(path);
+  if (!file->size()) throw InputError(path + ": is a ZIP archive on a pipe, expected a regular file");
+  file_size_ = *file->size();
+  const Directory directory = find_directory(*file, path);
+  const std::string bytes = bytes_at(*file, path, directory.offset, directory.size);
+  Fields fields(bytes, path);
+  while (fields.left() > 0 && members_.size() < directory.entries) members_.push_back(read_entry(fields, path));
+  if (members_.size() != directory.entries) fail(path, "its directory is damaged");
+}
+
+const ZipReader::Member* ZipReader::find(const std::string& name) const {
+  const auto found = std::ranges::find(members_, name, &Member::name);
+  return found == members_.end() ? nullptr : &*found;
+}
+
+// 4.3.7: name and extra field of the local header may differ from the directory's in length.
+std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
+  constexpr std::uint64_t kHeader = 30;
+  const std::unique_ptr<ByteSource> file = open_source(path_);
+  const std::string header = bytes_at(*file, path_, member.header, kHeader);
+  Fields fields(header, path_);
+  if (fields.number(4) != 0x04034b50) fail(path_, member.name + " is not where the directory says");
+  (void)fields.text(22);
+  const std::uint64_t name = fields.number(2), extra = fields.number(2);
+  const std::uint64_t data = member.header + kHeader + name + extra;
+  if (data > file_size_ || member.packed_size > file_size_ - data) fail(path_, member.name + " lies beyond its end");
+  std::unique_ptr<ByteSource> part = open_part(path_, data, member.packed_size);
+  return member.deflated ? inflated(std::move(part), member.size, name_of(member)) : std::move(part);
+}
+
+}  // namespace raycone

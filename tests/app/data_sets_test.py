@@ -1,0 +1,432 @@
+"""Data sets as training pipelines and scanners take and give them: python3 data_sets_test.py RAYCONE MESH_DIRECTORY
+
+NPZ of lattices and points, types and bits, --like, --normalize, points on the surface, compressed inputs. The oracle is
+numpy, the same values as CSV, and the definitions.
+"""
+
+import gzip
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+try:
+    import numpy
+except ImportError:
+    print("no numpy in %s: skipped" % sys.executable)
+    sys.exit(0)
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+CUBE, TEAPOT, OPEN_BOX = (os.path.join(MESHES, name) for name in ("cube.obj", "teapot.obj", "open_box.obj"))
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+
+
+def run(words, **options):
+    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def bits_of(archive):
+    shape = archive["inside_shape"]
+    return numpy.unpackbits(archive["inside"])[: shape.prod()].reshape(shape).astype(bool)
+
+
+class DataSets(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.addCleanup(os.chdir, "/")
+        os.chdir(directory.name)
+
+    def works(self, words, **options):
+        result = run(words + " --quiet", **options)
+        self.assertEqual(result.returncode, 0, (words, result.stderr))
+        self.assertEqual(result.stderr, b"", words)
+        return result.stdout
+
+    def refused(self, words, status, expected):
+        result = run(words)
+        self.assertEqual(result.returncode, status, (words, result.stderr))
+        self.assertIn(expected, result.stderr.decode(), words)
+        self.assertEqual(result.stderr.count(b"\n"), 1, words)
+
+    def csv(self, words):
+        text = self.works(words + " -o - --format csv").decode()
+        return numpy.genfromtxt(io.StringIO(text), delimiter=",", names=True)
+
+    def points(self, words):
+        self.works("points " + words + " -o points.npz")
+        return numpy.load("points.npz")
+
+
+class Lattices(DataSets):
+    def test_npz_holds_what_csv_does_with_its_place(self):
+        # Large enough for slabs across y, whose pieces do not follow one another in the file.
+        words = "lattice %s --resolution 2,280,240 --padding 2v --field winding,inside" % OPEN_BOX
+        rows = self.csv(words)
+        self.works(words + " -o a.npz --double --report a.json")
+        with zipfile.ZipFile("a.npz") as archive:
+            self.assertIsNone(archive.testzip())
+        values = numpy.load("a.npz")
+        lattice = json.loads(read("a.json"))["lattice"]
+        index = numpy.stack([rows[name].astype(int) - first for name, first in zip("ijk", values["index_min"])])
+        for name, column in (("w", "w"), ("inside", "inside")):
+            self.assertTrue((values[name][tuple(index)] == rows[column]).all(), name)
+        for name in ("origin", "spacing", "index_min"):
+            self.assertEqual(values[name].tolist(), lattice[name])
+        self.assertTrue((values["direction"] == numpy.eye(3)).all() and (values["transform"] == numpy.eye(4)).all())
+        self.assertEqual([values[name].dtype for name in ("w", "inside")], ["f8", "bool"])
+
+    def test_diagnostics_have_arrays_of_their_own(self):
+        words = "lattice %s --resolution 5 --diagnostics" % OPEN_BOX
+        rows = self.csv(words)
+        self.works(words + " -o a.npz")
+        values = numpy.load("a.npz")
+        for name, dtype in (("crossings", "i8"), ("degenerate", "i8"), ("on_surface", "bool"), ("error_bound", "f8")):
+            self.assertEqual(values[name].dtype, dtype)
+            self.assertTrue((values[name].transpose().ravel() == rows[name]).all(), name)
+
+    def test_types_and_bits(self):
+        words = "lattice %s --resolution 33 --padding 2v --field winding,inside,sdf" % OPEN_BOX
+        loaded = {}
+        for dtype in ("f16", "f32", "f64"):
+            self.works("%s -o %s.npz --dtype %s --pack-bits" % (words, dtype, dtype))
+            loaded[dtype] = numpy.load(dtype + ".npz")
+        exact = loaded["f64"]
+        inside = bits_of(exact)
+        self.works(words.replace("winding,inside,sdf", "inside") + " -o plain.npy")
+        self.assertTrue((numpy.load("plain.npy") == inside).all() and inside.any() and not inside.all())
+        for dtype, digits in (("f16", 11), ("f32", 24)):
+            values = loaded[dtype]
+            self.assertEqual(values["w"].dtype, dtype.replace("f16", "f2").replace("f32", "f4"))
+            # Half a unit of the last place; another one where the nearest is across the threshold.
+            allowed = 2.0 ** -digits * 3 * numpy.maximum(abs(exact["w"]), 2.0 ** -14)
+            self.assertTrue((abs(values["w"].astype("f8") - exact["w"]) <= allowed).all(), dtype)
+            self.assertTrue(((values["w"] >= 0.5) == inside).all(), dtype)
+            self.assertTrue((values["sdf"] == exact["sdf"].astype(values["sdf"].dtype)).all(), dtype)
+            self.assertTrue((bits_of(values) == inside).all())
+        for dtype in ("f16", "f32", "f64"):
+            self.works("lattice %s --resolution 33 --padding 2v -o w.npy --dtype %s" % (OPEN_BOX, dtype))
+            self.assertTrue((numpy.load("w.npy") == loaded[dtype]["w"]).all())
+        self.refused("lattice %s -o a.npz --field sdf --dtype f16 --scale 1e7" % CUBE, 3, "beyond 65504")
+        self.assertFalse(os.path.exists("a.npz"))
+
+    def test_like_takes_the_lattice_again(self):
+        self.works("lattice %s -o a.npz --voxel-size .1,.2,.3 --centers --field winding,inside" % TEAPOT)
+        self.works("lattice %s -o b.npz --like a.npz --field winding,inside" % TEAPOT)
+        self.works("lattice %s -o bits.npz --like b.npz --field inside --pack-bits" % TEAPOT)
+        self.works("lattice %s -o c.npz --like bits.npz --field winding,inside" % TEAPOT)
+        expected = numpy.load("a.npz")
+        for name in ("b.npz", "c.npz"):
+            values = numpy.load(name)
+            self.assertEqual(values.files, expected.files)
+            for array in set(expected.files) - {"raycone"}:  # which says what was asked for
+                self.assertTrue((values[array] == expected[array]).all(), name + array)
+        self.works("points %s --sample uniform=3 -o points.npz" % CUBE)
+        self.refused("lattice %s -o d.npz --like points.npz" % CUBE, 2, "has no array 'origin'")
+        whole = read("a.npz")
+        for cut in (3, 30, 700, len(whole) - 5):
+            with open("cut.npz", "wb") as file:
+                file.write(whole[:cut])
+            self.assertEqual(run("lattice %s -o d.npz --like cut.npz" % CUBE).returncode, 2, cut)
+
+
+class Images(DataSets):
+    WORDS = "lattice %s --voxel-size .25,.5,.125 --padding 2v --field " % TEAPOT
+
+    def expected(self, field):
+        """Values with x fastest, the spacing and the place of the first sample."""
+        self.works(self.WORDS + field + " -o a.npz" + ("" if field == "inside" else " --dtype f64"))
+        values = numpy.load("a.npz")
+        name = {"winding": "w"}.get(field, field)
+        return values[name], values["spacing"], values["origin"] + values["index_min"] * values["spacing"]
+
+    def test_nrrd_is_what_its_head_says(self):
+        for field, dtype, kind, stored in (("winding", "", "float", "<f4"), ("inside", "", "uint8", "u1"),
+                                           ("density", " --dtype f64", "double", "<f8")):
+            values, spacing, first = self.expected(field)
+            for compress in ("", " --compress"):
+                self.works(self.WORDS + field + " -o a.nrrd" + dtype + compress)
+                head, _, data = read("a.nrrd").partition(b"\n\n")
+                lines = head.decode().split("\n")
+                self.assertEqual(lines[0], "NRRD0005")
+                entries = dict(line.split(": ", 1) for line in lines[2:] if ":=" not in line)
+                about = dict(line.split(":=", 1) for line in lines[2:] if ":=" in line)
+                self.assertEqual((entries["type"], entries["dimension"]), (kind, "3"))
+                self.assertEqual([int(n) for n in entries["sizes"].split()], list(values.shape))
+                self.assertEqual(entries["encoding"], "gzip" if compress else "raw")
+                rows = [json.loads("[%s]" % row.strip("()")) for row in entries["space directions"].split(" ")]
+                self.assertEqual(rows, numpy.diag(spacing).tolist())
+                self.assertEqual(json.loads("[%s]" % entries["space origin"].strip("()")), first.tolist())
+                self.assertEqual(about["raycone_field"], field)
+                self.assertEqual(json.loads(about["raycone"])["fields"], [field])
+                array = numpy.frombuffer(gzip.decompress(data) if compress else data, stored)
+                array = array.reshape(values.shape, order="F")
+                self.assertTrue((array == values.astype(stored)).all() and array.any(), field)
+
+    def test_nifti_is_what_its_head_says(self):
+        for field, dtype, code, stored in (("winding", "", 16, "<f4"), ("inside", "", 2, "u1"),
+                                           ("density", " --dtype f64", 64, "<f8")):
+            values, spacing, first = self.expected(field)
+            for name in ("a.nii", "a.nii.gz"):
+                self.works(self.WORDS + field + " -o " + name + dtype)
+                data = gzip.decompress(read(name)) if name.endswith("gz") else read(name)
+                self.assertEqual((data[344:348], int.from_bytes(data[:4], "little")), (b"n+1\0", 348))
+                dim = numpy.frombuffer(data, "<i2", 8, 40)
+                self.assertEqual(dim.tolist(), [3, *values.shape, 1, 1, 1, 1])
+                self.assertEqual(numpy.frombuffer(data, "<i2", 2, 70).tolist(), [code, 8 * numpy.dtype(stored).itemsize])
+                form = numpy.frombuffer(data, "<f4", 12, 280).reshape(3, 4)
+                self.assertEqual(form.tolist(), numpy.c_[numpy.diag(spacing), first].astype("f4").tolist())
+                array = numpy.frombuffer(data, stored, values.size, 352).reshape(values.shape, order="F")
+                self.assertTrue((array == values.astype(stored)).all() and array.any(), field)
+                self.assertEqual(len(data), 352 + array.nbytes)
+                self.check_with_nibabel(name, array, form)
+        self.refused("lattice %s -o b.nii --resolution 40000,2,2" % CUBE, 3, "do not fit in the 16 bits of NIfTI-1")
+        self.refused("lattice %s -o b.nii --resolution 2 --scale 1e40" % CUBE, 3, "do not fit in the 32 bits")
+        self.assertFalse(os.path.exists("b.nii"))
+
+    def check_with_nibabel(self, name, array, form):
+        try:
+            import nibabel
+        except ImportError:
+            return
+        image = nibabel.load(name)
+        self.assertTrue((image.get_fdata() == array).all())
+        for affine in (image.affine, image.get_qform(), image.get_sform()):
+            self.assertTrue(abs(affine[:3] - form).max() < 1e-6)
+
+    def test_images_are_the_same_whatever_the_slabs(self):
+        words = "lattice %s --resolution 60 --field sdf -o %s --threads %d --memory-limit %s"
+        for end in ("nrrd --compress", "nii.gz"):
+            name = "a." + end.split()[0]
+            self.works(words % (TEAPOT, "a." + end, 1, "4G"))
+            first = read(name)
+            self.works(words % (TEAPOT, "a." + end, 3, "150M"))
+            self.assertEqual(read(name), first)
+
+
+class ImagesToFollow(DataSets):
+    def lattice_like(self, path):
+        self.works("lattice %s -o like.npz --field inside --like %s" % (CUBE, path))
+        values = numpy.load("like.npz")
+        return values["inside"].shape, values["spacing"].tolist(), values["origin"].tolist()
+
+    def test_what_was_written_is_followed(self):
+        for name in ("a.nrrd", "a.nii", "a.nii.gz"):
+            self.works("lattice %s -o %s --voxel-size .25,.5,.125 --padding 2v" % (CUBE, name))
+            self.assertEqual(self.lattice_like(name), ((9, 7, 13), [0.25, 0.5, 0.125], [-0.5, -1, -0.25]), name)
+
+    def nrrd(self, space="LPS", steps="(-1,0,0) (0,-2,0) (0,0,.5)", **entries):
+        entries = {"dimension": 3, "space": space, "sizes": "3 4 5", "space directions": steps,
+                   "space origin": "(1, -1, .5)", **entries}
+        with open("b.nrrd", "w") as file:
+            file.write("NRRD0004\r\n# a comment: with a colon\r\n")
+            file.write("".join("%s: %s\r\n" % entry for entry in entries.items() if entry[1] is not None) + "\r\n")
+
+    def test_nrrd_of_others(self):
+        self.nrrd()
+        self.assertEqual(self.lattice_like("b.nrrd"), ((3, 4, 5), [1, 2, 0.5], [-1, 1, 0.5]))
+        for change, message in (({"steps": "(-1,0,0) (0,-2,0)"}, "space directions, expected 9 numbers"),
+                                ({"space": "scanner-xyz"}, "its space, expected"), ({"sizes": None}, "has no sizes"),
+                                ({"sizes": "3 0 5"}, "sizes, expected"), ({"dimension": 4}, "dimension, expected 3"),
+                                ({"space origin": "(nan,0,0)"}, "space origin, expected 3 numbers")):
+            self.nrrd(**change)
+            self.refused("lattice %s -o c.vdb --like b.nrrd" % CUBE, 2, "b.nrrd: not a readable volume: ")
+            self.refused("lattice %s -o c.vdb --like b.nrrd" % CUBE, 2, message)
+        for steps in ("(1,0,0) (0,-2,0) (0,0,.5)", "(-1,.1,0) (0,-2,0) (0,0,.5)"):
+            self.nrrd(steps=steps)
+            self.refused("lattice %s -o c.vdb --like b.nrrd" % CUBE, 1, "axes are turned: not available yet")
+
+    def test_nifti_of_others(self):
+        self.works("lattice %s -o a.nii --voxel-size .25,.5,.125" % CUBE)
+        head = bytearray(read("a.nii"))
+        head[254:256] = bytes(2)  # no sform, but the qform that says the same
+        with open("q.nii", "wb") as file:
+            file.write(head)
+        self.assertEqual(self.lattice_like("q.nii"), self.lattice_like("a.nii"))
+        head[252:254] = bytes(2)
+        with open("none.nii", "wb") as file:
+            file.write(head)
+        self.refused("lattice %s -o c.vdb --like none.nii" % CUBE, 2, "neither sform nor qform")
+        with open("cut.nii", "wb") as file:
+            file.write(head[:300])
+        self.assertEqual(run("lattice %s -o c.vdb --like cut.nii" % CUBE).returncode, 2)
+        try:
+            import nibabel
+        except ImportError:
+            return
+        # Big-endian, by another program.
+        affine = numpy.array([[0.5, 0, 0, -1], [0, 0.25, 0, -2], [0, 0, 2, -3], [0, 0, 0, 1]])
+        image = nibabel.Nifti1Image(numpy.zeros((4, 5, 6), "f4"), affine,
+                                    nibabel.Nifti1Header(endianness=">"))
+        nibabel.save(image, "big.nii.gz")
+        self.assertEqual(self.lattice_like("big.nii.gz"), ((4, 5, 6), [0.5, 0.25, 2], [-1, -2, -3]))
+        affine[0, 1] = 0.1
+        nibabel.save(nibabel.Nifti1Image(numpy.zeros((4, 5, 6), "f4"), affine), "turned.nii")
+        self.refused("lattice %s -o c.vdb --like turned.nii" % CUBE, 1, "axes are turned: not available yet")
+
+
+class Provenance(DataSets):
+    def test_files_say_how_they_were_made(self):
+        words = "%s --scale 2 --field inside --rule abs=.5 --threads 2 --report r.json" % CUBE
+        for command, options in (("lattice " + words + " --resolution 3", ["--resolution=3"]),
+                                 ("points " + words + " --sample uniform=3 --seed 7",
+                                  ["--sample=uniform=3", "--seed=7"])):
+            given = sorted(["--field=inside", "--rule=abs=.5", "--scale=2", *options])
+            self.works(command + " -o a.npz")
+            about = json.loads(numpy.load("a.npz")["raycone"].item())
+            self.assertEqual(about["options"], given)
+            self.assertEqual((about["mesh"], about["rule"], about["fields"]), ("cube.obj", "abs=0.5", ["inside"]))
+            self.assertEqual(about["transform"][0], [2, 0, 0, 0])
+            report = json.loads(read("r.json"))
+            self.assertEqual(report["command"], (command + " -o a.npz --quiet").split())
+            self.assertEqual(report["options"], given)
+            for key in ("sha256", "transform"):
+                self.assertEqual(about[key], report[key])
+
+    def test_vdb_has_options_and_transform(self):
+        try:
+            import pyopenvdb
+        except ImportError:
+            self.skipTest("no pyopenvdb")
+        self.works("lattice %s -o a.vdb --resolution 3 --normalize cube:4 --grid-name w" % CUBE)
+        grid = pyopenvdb.read("a.vdb", "w")
+        self.assertEqual(grid["raycone_options"], "--grid-name=w --normalize=cube:4 --resolution=3")
+        matrix = numpy.array(grid["raycone_transform"])
+        self.assertEqual(matrix.tolist(), [[4, 0, 0, -2], [0, 4, 0, -2], [0, 0, 4, -2], [0, 0, 0, 1]])
+
+
+class Points(DataSets):
+    def test_npz_goes_in_and_out(self):
+        drawn = self.points(CUBE + " --sample uniform=1e3,near=1e2:0.1 --padding 5%")
+        os.rename("points.npz", "drawn.npz")
+        again = self.points(CUBE + " drawn.npz --field winding,inside,sdf")
+        for name in ("points", "w", "inside", "sdf"):
+            self.assertTrue((drawn[name] == again[name]).all(), name)
+        numpy.savez_compressed("deflated.npz", other=numpy.zeros(3), points=drawn["points"].astype(">f8"))
+        numpy.savez("fortran.npz", points=numpy.asfortranarray(drawn["points"]))
+        expected = self.works("points %s drawn.npz" % CUBE)
+        for name in ("deflated.npz", "fortran.npz"):
+            self.assertEqual(self.works("points %s %s" % (CUBE, name)), expected)
+        self.assertEqual(drawn["points"][:1000].min() < 0, True)  # --padding
+        self.assertGreaterEqual(drawn["points"][:1000].min(), -0.05)
+
+    def test_of_a_pipe_whose_length_nobody_knows(self):
+        text = b"0.5 0.5 0.5\n2 2 2\n0.1 0.1 0.1\n"
+        given = self.works("points %s - -o - --format npz --field inside,sdf --pack-bits" % CUBE, input=text)
+        values = numpy.load(io.BytesIO(given))
+        self.assertEqual(bits_of(values).tolist(), [True, False, True])
+        self.assertEqual(values["points"].tolist(), [[0.5] * 3, [2] * 3, [0.1] * 3])
+        self.assertTrue(abs(values["sdf"] - [-0.5, 3**0.5, -0.1]).max() < 1e-15)
+        empty = numpy.load(io.BytesIO(self.works("points %s - -o - --format npz" % CUBE, input=b"")))
+        self.assertEqual((empty["points"].shape, empty["w"].shape), ((0, 3), (0,)))
+
+    def test_files_that_hold_no_points(self):
+        numpy.savez("none.npz", other=numpy.zeros((2, 3)))
+        self.refused("points %s none.npz" % CUBE, 2, "none.npz: has no array 'points'")
+        numpy.savez("flat.npz", points=numpy.zeros(3))
+        self.refused("points %s flat.npz" % CUBE, 2, "flat.npz(points.npy): NPY shape (3,), expected (n, 3 or more)")
+        numpy.savez("nan.npz", points=numpy.full((2, 3), numpy.nan))
+        self.refused("points %s nan.npz" % CUBE, 2, "expected a finite number")
+
+    def test_points_on_the_surface_have_normals_and_faces(self):
+        values = self.points(TEAPOT + " --sample uniform=2,surface=2e3,near=2:0.1 --field sdf,winding")
+        off = numpy.r_[0:2, 2002:2004]
+        on = slice(2, 2002)
+        self.assertTrue((values["faces"][off] == -1).all() and (values["normals"][off] == 0).all())
+        vertices, faces = [], []
+        for line in read(TEAPOT).decode().splitlines():
+            if line.startswith("v "):
+                vertices.append([float(word) for word in line.split()[1:4]])
+            if line.startswith("f "):
+                faces.append([int(word.split("/")[0]) - 1 for word in line.split()[1:4]])
+        corners = numpy.array(vertices)[numpy.array(faces)][values["faces"][on]]
+        normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= numpy.linalg.norm(normals, axis=1)[:, None]
+        self.assertTrue(abs(values["normals"][on] - normals).max() < 1e-9)  # of a difference of thin triangles
+        height = ((values["points"][on] - corners[:, 0]) * normals).sum(axis=1)
+        self.assertTrue(abs(height).max() < 1e-13)  # some units of the last place of coordinates up to 3
+        self.assertTrue(abs(values["sdf"][on]).max() < 1e-13)
+        fewer = self.points(TEAPOT + " --sample uniform=2,surface=1e3 --field sdf")
+        self.assertTrue((fewer["points"] == values["points"][:1002]).all())
+        self.refused("points %s --sample surface=1.5 -o a.npz" % CUBE, 1, "--sample surface=1.5: expected")
+
+    def test_drawn_points_lie_where_32_bits_say(self):
+        for dtype in ("f16", "f32"):
+            values = self.points("%s --sample uniform=500,surface=50 --dtype %s" % (TEAPOT, dtype))
+            self.assertEqual(values["points"].dtype, "f4")
+            numpy.savez("given.npz", points=values["points"])
+            again = self.points("%s given.npz --field winding,inside,sdf --dtype %s" % (TEAPOT, dtype))
+            for name in ("w", "inside", "sdf"):
+                self.assertTrue((values[name] == again[name]).all(), name)
+        self.refused("points %s --sample uniform=5 -o a.npz --dtype f32 --scale 1e39" % CUBE, 4, "too large for 32 bits")
+
+
+class Meshes(DataSets):
+    def test_normalize_moves_and_scales_and_says_how(self):
+        original = json.loads(self.works("info %s --json" % TEAPOT))
+        for kind, size in (("cube", 1), ("cube:3", 3), ("sphere:2", 2)):
+            bounds = numpy.array(json.loads(self.works("info %s --json --normalize %s" % (TEAPOT, kind)))["bounds"])
+            self.assertTrue(abs(bounds.sum(axis=0)).max() < 1e-15 * size)
+            if kind != "sphere:2":
+                self.assertLess(abs((bounds[1] - bounds[0]).max() - size), 1e-15 * size)
+            values = self.points(TEAPOT + " --sample surface=2e3 --normalize " + kind)
+            transform = values["transform"]
+            moved = numpy.array(original["bounds"]) @ transform[:3, :3].T + transform[:3, 3]
+            self.assertTrue(abs(moved - bounds).max() < 4e-16 * size)
+            if kind == "sphere:2":
+                most = numpy.linalg.norm(values["points"], axis=1).max()
+                self.assertTrue(0.9 < most <= 1 + 1e-15, most)
+        self.works("slice %s -o a.png --size 8 --normalize cube --report r.json --scale 4 --up y-to-z" % CUBE)
+        expected = [[1, 0, 0, -0.5], [0, 0, -1, 0.5], [0, 1, 0, -0.5], [0, 0, 0, 1]]
+        self.assertEqual(json.loads(read("r.json"))["transform"], expected)
+
+    def test_meshes_that_cannot_be_normalized(self):
+        with open("point.obj", "w") as file:
+            file.write("v 1 2 3\n" * 3 + "f 1 2 3\n")
+        self.refused("info point.obj --normalize cube", 2, "all corners are at one point")
+        with open("huge.obj", "w") as file:
+            file.write("v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.refused("info huge.obj --normalize sphere", 4, "beyond what double precision can normalize")
+        for value in ("cube:0", "cube:-1", "ball", "cube:", "sphere:x"):
+            self.refused("info %s --normalize %s" % (CUBE, value), 1, "--normalize %s: expected" % value)
+
+    def test_compressed_meshes_and_points(self):
+        expected = self.works("info %s --json" % TEAPOT)
+        with open("a.obj.gz", "wb") as file:
+            file.write(gzip.compress(read(TEAPOT)))
+        shutil.copy("a.obj.gz", "plain.obj")  # by content, whatever the name
+        names = ["a.obj.gz", "plain.obj"]
+        if shutil.which("zstd"):
+            subprocess.run(["zstd", "-q", TEAPOT, "-o", "A.OBJ.ZST"], check=True)
+            names.append("A.OBJ.ZST")
+        for name in names:
+            self.assertEqual(self.works("info %s --json" % name), expected, name)
+            with open(name, "rb") as file:
+                self.assertEqual(self.works("info - --mesh-format obj --json", stdin=file), expected, name)
+        with open("p.csv.gz", "wb") as file:
+            file.write(gzip.compress(b"x,y,z\n.5,.5,.5\n2,2,2\n"))
+        self.assertEqual(self.works("points %s p.csv.gz" % CUBE), b"x,y,z,w\n0.5,0.5,0.5,1\n2,2,2,0\n")
+        self.works("batch . --out-dir out --format npz --resolution 4")
+        self.assertEqual(sorted(name for name in os.listdir("out") if name.endswith("npz")),
+                         ["A.npz"] * (len(names) - 2) + ["a.npz", "plain.npz"])
+
+    def test_bombs_are_stopped_by_the_memory_limit(self):
+        with open("bomb.obj.gz", "wb") as file:
+            with gzip.GzipFile(fileobj=file, mode="wb", compresslevel=1) as packed:
+                for _ in range(48):
+                    packed.write(b"\n" * (4 << 20))
+        self.refused("info bomb.obj.gz --memory-limit 128M", 4, "out of memory, the limit is 128 MB")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -24,6 +24,7 @@ namespace {
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; beyond_error() adds those of distances
 constexpr std::size_t kWidth = TrianglePack::kWidth;
+constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
 constexpr std::size_t kPartSide = 4, kGroupSide = 2;
 constexpr std::size_t kGroup = 8;  // samples
 using Places = hn::RebindToSigned<Doubles>;
@@ -45,6 +46,7 @@ void close(NearTriangles& list) {
   for (std::size_t n = list.count; n < list.count + kWidth; ++n) {
     for (std::size_t axis = 0; axis < 3; ++axis) list.lower[axis][n] = list.upper[axis][n] = kFarAway;
     list.places[n] = 0;
+    list.distances[n] = 0.0;
   }
 }
 
@@ -61,8 +63,36 @@ HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
           {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
 }
 
-HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, hn::Vec<Places> places, LaneMask wanted) {
+// Where triangles are from the middle of some samples. Of distances that are not sure nothing is known: they are 0, and
+// so are the directions. Others grow along `away`, of length 1.
+struct Bearings {
+  Lanes distances;
+  VectorLanes away;
+};
+
+HWY_INLINE Bearings bearings_of(const NearTriangles& list, std::size_t n) {
+  return {hn::LoadU(d, &list.distances[n]),
+          {hn::LoadU(d, &list.away[0][n]), hn::LoadU(d, &list.away[1][n]), hn::LoadU(d, &list.away[2][n])}};
+}
+template <class Triangles>
+HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangles) {
+  const Squares some = squared(triangles, p);
+  const Lanes distances = hn::Sqrt(some.values);
+  const LaneMask sure = hn::And(some.sure, hn::Gt(distances, hn::Zero(d)));
+  const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
+  return {
+      hn::IfThenElseZero(sure, distances),
+      {hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.x)), hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.y)),
+       hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))}};
+}
+
+HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
+                       LaneMask wanted) {
   const std::size_t at = list.count;
+  hn::CompressStore(bearings.distances, wanted, d, &list.distances[at]);
+  hn::CompressStore(bearings.away.x, wanted, d, &list.away[0][at]);
+  hn::CompressStore(bearings.away.y, wanted, d, &list.away[1][at]);
+  hn::CompressStore(bearings.away.z, wanted, d, &list.away[2][at]);
   hn::CompressStore(boxes.lower.x, wanted, d, &list.lower[0][at]);
   hn::CompressStore(boxes.lower.y, wanted, d, &list.lower[1][at]);
   hn::CompressStore(boxes.lower.z, wanted, d, &list.lower[2][at]);
@@ -78,7 +108,7 @@ struct Middle {
   VectorLanes lower, upper;  // of the box that the samples span
   Vec3 center;
   double radius;
-  VectorLanes extent;  // from there along each axis
+  Vec3 extent;  // from there along each axis
 
   Middle(const LatticeRows& rows, const SampleBox& box) {
     const Vec3 first{rows.xs[box.begin[0]], rows.ys[box.begin[1]], rows.zs[box.begin[2]]};
@@ -87,32 +117,27 @@ struct Middle {
     upper = in_all_lanes(last);
     center = 0.5 * (first + last);
     const Vec3 from_first = center - first, to_last = last - center;
-    const Vec3 farthest{std::max(from_first.x, to_last.x), std::max(from_first.y, to_last.y),
-                        std::max(from_first.z, to_last.z)};
-    radius = std::sqrt(raycone::dot(farthest, farthest));
-    extent = in_all_lanes(farthest);
+    extent = {std::max(from_first.x, to_last.x), std::max(from_first.y, to_last.y), std::max(from_first.z, to_last.z)};
+    radius = std::sqrt(raycone::dot(extent, extent));
   }
 };
 
 double square_of_reach(double reach) { return beyond_error(reach * kSlack * (reach * kSlack)); }
 
 // The triangles of packs that are near the block.
-void find_near(const BlockTask& task, NearTriangles& near) {
-  const Middle middle(task.rows, task.block);
-  const VectorLanes center = in_all_lanes(task.center);
+void find_near(const BlockTask& task, const Middle& middle, NearTriangles& near) {
+  const VectorLanes center = in_all_lanes(middle.center);
   const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
-  const Lanes from_center = hn::Set(d, square_of_reach(task.reach + task.radius));
   make_room(near, task.packs.size() * kWidth);
   for (const std::uint32_t number : task.packs) {
     const TrianglePack& pack = task.tree.packs()[number];
     for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
       const BoxLanes boxes = boxes_of(pack, i);
-      LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
+      const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
       if (hn::AllFalse(d, wanted)) continue;
-      const Squares from_middle = squared(PackedTriangles(pack, i), center);
-      wanted = hn::AndNot(hn::AndNot(hn::Le(from_middle.values, from_center), from_middle.sure), wanted);
       const Places integers;
-      append(near, boxes, hn::Iota(integers, static_cast<std::int64_t>(number * kWidth + i)), wanted);
+      append(near, boxes, bearings_from(center, PackedTriangles(pack, i)),
+             hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
     }
   }
   close(near);
@@ -121,57 +146,44 @@ void find_near(const BlockTask& task, NearTriangles& near) {
 // Triangles at some places of the packs.
 class PlacedTriangles {
  public:
-  PlacedTriangles(const DistanceTree& tree, hn::Vec<Places> places) : pack_(tree.packs().front()) {
-    constexpr auto kStride = static_cast<std::int64_t>(sizeof(TrianglePack) / sizeof(double));
-    const Places integers;
-    const auto numbers = hn::ShiftRight<3>(places);
-    const auto slots = hn::And(places, hn::Set(integers, 7));
-    alignas(64) std::array<std::int64_t, kWidth> number;
-    hn::Store(numbers, integers, number.data());
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) number[lane] *= kStride;
-    offsets_ = hn::Add(hn::Load(integers, number.data()), slots);
-  }
+  PlacedTriangles(const DistanceTree& tree, hn::Vec<Places> places) : pack_(tree.packs().front()), places_(places) {}
   HWY_INLINE Lanes operator()(const TrianglePack::Column& column) const {
-    return hn::GatherIndex(d, column.data(), offsets_);
+    return hn::GatherIndex(d, column.data(), places_);
   }
   HWY_INLINE const TrianglePack& pack() const { return pack_; }
 
  private:
   const TrianglePack& pack_;
-  hn::Vec<Places> offsets_;
+  hn::Vec<Places> places_;
 };
 
-// Where a triangle is from the middle of some samples.
-struct Bearing {
-  double distance;
-  Vec3 away;  // of length 1, or 0 where the distance is not sure
-};
-
-// Sets the distances of the triangles from p, and returns what of the nearest one is known. A distance that is not sure
-// is not less than the triangle's.
-Bearing take_bearings(const Vec3& p, const DistanceTree& tree, NearTriangles& near) {
+void take_bearings(const Vec3& p, const DistanceTree& tree, NearTriangles& near) {
   const VectorLanes ps = in_all_lanes(p);
   const Places integers;
-  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const Squares some = squared(PlacedTriangles(tree, hn::LoadU(integers, &near.places[n])), ps);
-    const Lanes distances = hn::Sqrt(some.values);
-    const LaneMask sure = hn::And(some.sure, hn::Gt(distances, hn::Zero(d)));
-    const VectorLanes away = times(hn::Div(hn::Set(d, 1.0), distances), some.rest);
-    hn::StoreU(hn::IfThenElseZero(sure, distances), d, &near.distances[n]);
-    hn::StoreU(hn::IfThenElseZero(sure, away.x), d, &near.away[0][n]);
-    hn::StoreU(hn::IfThenElseZero(sure, away.y), d, &near.away[1][n]);
-    hn::StoreU(hn::IfThenElseZero(sure, away.z), d, &near.away[2][n]);
-    const Lanes numbers = hn::Iota(d, static_cast<double>(n));
-    const LaneMask nearer =
-        hn::And(hn::Lt(distances, least), hn::Lt(numbers, hn::Set(d, static_cast<double>(near.count))));
-    least = hn::IfThenElse(nearer, distances, least);
-    number = hn::IfThenElse(nearer, numbers, number);
+    const Bearings bearings = bearings_from(ps, PlacedTriangles(tree, hn::LoadU(integers, &near.places[n])));
+    hn::StoreU(bearings.distances, d, &near.distances[n]);
+    hn::StoreU(bearings.away.x, d, &near.away[0][n]);
+    hn::StoreU(bearings.away.y, d, &near.away[1][n]);
+    hn::StoreU(bearings.away.z, d, &near.away[2][n]);
   }
-  const Lanes nearest = hn::MinOfLanes(d, least);
-  const Lanes candidates = hn::IfThenElse(hn::Eq(least, nearest), number, hn::Set(d, kNowhere));
-  const auto n = static_cast<std::size_t>(hn::GetLane(hn::MinOfLanes(d, candidates)));
-  return {hn::GetLane(nearest), {near.away[0][n], near.away[1][n], near.away[2][n]}};
+}
+
+struct Bearing {
+  double distance;
+  Vec3 away;
+};
+
+// That of the nearest triangle of which anything is known; else an infinite distance.
+Bearing nearest_of(const NearTriangles& near) {
+  Bearing nearest{kNowhere, {}};
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const double distance = near.distances[n];
+    if (distance > 0.0 && distance < nearest.distance) {
+      nearest = {distance, {near.away[0][n], near.away[1][n], near.away[2][n]}};
+    }
+  }
+  return nearest;
 }
 
 // How much farther than by its direction a triangle at this distance gets within the radius at most.
@@ -179,30 +191,28 @@ double bend(double distance, double radius) {
   return distance > radius / 2 ? radius * radius / (2 * distance) : 2 * (radius - distance);
 }
 
-// Of the triangles near more samples, those that may be nearest to one of `box`, as far as `reach`.
-void narrow(const BlockTask& task, const SampleBox& box, double reach, NearTriangles& near, NearTriangles& fewer) {
-  const Middle middle(task.rows, box);
-  const Bearing nearest = take_bearings(middle.center, task.tree, near);
-  const bool has_direction = nearest.away != Vec3{};
-  // More than distances are off by, and directions of which the distance is sure.
-  const double slack = 1e-5 * middle.radius + 1e-8 * nearest.distance + 1e-14;
-  const double within = has_direction ? nearest.distance + bend(nearest.distance, middle.radius) + slack
-                                      : nearest.distance + 2 * middle.radius + slack;
-  const VectorLanes away = in_all_lanes(nearest.away), extent = middle.extent;
-  const Lanes from_box = hn::Set(d, square_of_reach(reach));
+// More than distances within `radius` of the middle, of about `distance`, are off by, and more than directions are off
+// whose distance is sure.
+double slack_of(double distance, double radius) { return 1e-5 * radius + 1e-8 * distance + 1e-14; }
+
+// Of triangles whose bearings are taken from the middle of some samples, those that may be nearest to one of these.
+void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles& near, NearTriangles& fewer) {
+  const Bearing nearest = nearest_of(near);
+  const Lanes within =
+      hn::Set(d, nearest.distance + bend(nearest.distance, middle.radius) + slack_of(nearest.distance, middle.radius));
+  const VectorLanes away = in_all_lanes(nearest.away);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
   const Places integers;
   make_room(fewer, near.count);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
     const BoxLanes boxes = boxes_of(near, n);
-    const VectorLanes turn =
-        minus(away, {hn::LoadU(d, &near.away[0][n]), hn::LoadU(d, &near.away[1][n]), hn::LoadU(d, &near.away[2][n])});
-    const Lanes gained = hn::Add(hn::Add(hn::Mul(hn::Abs(turn.x), extent.x), hn::Mul(hn::Abs(turn.y), extent.y)),
-                                 hn::Mul(hn::Abs(turn.z), extent.z));
-    const Lanes most = hn::Add(hn::Set(d, within), has_direction ? gained : hn::Zero(d));
+    const Bearings bearings = bearings_of(near, n);
+    const VectorLanes turn = minus(away, bearings.away);
+    const Lanes gained = dot({hn::Abs(turn.x), hn::Abs(turn.y), hn::Abs(turn.z)}, in_all_lanes(middle.extent));
     const LaneMask wanted =
         hn::And(hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box),
-                hn::Le(hn::LoadU(d, &near.distances[n]), most));
-    append(fewer, boxes, hn::LoadU(integers, &near.places[n]), wanted);
+                hn::Le(bearings.distances, hn::Add(within, gained)));
+    append(fewer, boxes, bearings, hn::LoadU(integers, &near.places[n]), wanted);
   }
   close(fewer);
 }
@@ -239,21 +249,87 @@ void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, La
   }
 }
 
-HWY_INLINE void lower_to(const TrianglePack& pack, std::size_t slot, Group& group) {
+// Returns the largest of the group's least squares.
+HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& group) {
+  Lanes largest = hn::Zero(d);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
     const Squares some = squared(SameTriangle(pack, slot), ps);
     const Lanes before = hn::Load(d, &group.least[n]);
     hn::Store(hn::IfThenElse(some.sure, hn::Min(before, some.values), before), d, &group.least[n]);
     if (!hn::AllTrue(d, some.sure)) take_care(pack, slot, n, some.sure, group);
+    largest = hn::Max(largest, hn::Load(d, &group.least[n]));
   }
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-void fill_group(const BlockTask& task, const SampleBox& box, const NearTriangles& near) {
+// The distance of triangles from a box is this at least. `from`: from the middle, of which the bearings are, to that of
+// the box.
+HWY_INLINE Lanes least_distances(const Bearings& bearings, const VectorLanes& from, const VectorLanes& extent) {
+  const VectorLanes& away = bearings.away;
+  const Lanes least = hn::Sub(hn::Add(bearings.distances, dot(away, from)),
+                              dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
+  return least;
+}
+
+// The number of the triangle that seems to be nearest to the box.
+HWY_INLINE std::size_t likely_nearest(const NearTriangles& near, const VectorLanes& center) {
+  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const VectorLanes to_box = minus(plus(boxes.lower, boxes.upper), plus(center, center));
+    const Lanes square = dot(to_box, to_box);
+    const LaneMask nearer = hn::Lt(square, least);
+    least = hn::IfThenElse(nearer, square, least);
+    number = hn::IfThenElse(nearer, hn::Iota(d, static_cast<double>(n)), number);
+  }
+  const LaneMask is_least = hn::Eq(least, hn::MinOfLanes(d, least));
+  return static_cast<std::size_t>(
+      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere)))));
+}
+
+// Whether the triangle's half-space, of the bearing from `middle`, leaves it nearer to a sample than what was found.
+HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, const Vec3& middle, double slack,
+                              const Group& group) {
+  const Lanes distance = hn::Set(d, near.distances[number] - slack);
+  const VectorLanes away = in_all_lanes({near.away[0][number], near.away[1][number], near.away[2][number]});
+  LaneMask nearer = hn::FirstN(d, 0);
+  for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
+    const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const Lanes bound = hn::Max(hn::Add(distance, dot(away, minus(ps, in_all_lanes(middle)))), hn::Zero(d));
+    nearer = hn::Or(nearer, hn::Le(hn::Mul(bound, bound), hn::Load(d, &group.least[n])));
+  }
+  return !hn::AllFalse(d, nearer);
+}
+
+// `near` with bearings from `middle`.
+void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middle, const NearTriangles& near) {
+  const Middle here(task.rows, box);
   Group group(task, box);
-  for (std::size_t n = 0; n < near.count; ++n) {
-    const auto place = static_cast<std::size_t>(near.places[n]);
-    lower_to(task.tree.packs()[place / kWidth], place % kWidth, group);
+  const std::vector<TrianglePack>& packs = task.tree.packs();
+  const auto look_at = [&](std::size_t number) {
+    const auto place = static_cast<std::size_t>(near.places[number]);
+    return beyond_error(lower_to(packs[place / kStride], place % kStride, group));
+  };
+  const VectorLanes from = in_all_lanes(here.center - middle.center), center = in_all_lanes(here.center);
+  const std::size_t first = likely_nearest(near, center);
+  double most = std::min(square_of_reach(task.reach), look_at(first));
+  const double slack = slack_of(std::sqrt(most), middle.radius);
+  const VectorLanes extent = in_all_lanes(here.extent);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const Lanes squares = squared_between(boxes.lower, boxes.upper, here.lower, here.upper);
+    const Lanes distances = hn::Sub(least_distances(bearings_of(near, n), from, extent), hn::Set(d, slack));
+    const auto below = [&](double square) {
+      return hn::And(hn::Lt(squares, hn::Set(d, square)), hn::Le(distances, hn::Set(d, std::sqrt(square))));
+    };
+    LaneMask wanted = below(most);
+    while (!hn::AllFalse(d, wanted)) {
+      const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, wanted));
+      const bool worth_it = n + lane != first && may_be_nearer(near, n + lane, middle.center, slack, group);
+      if (worth_it) most = std::min(most, look_at(n + lane));
+      wanted = hn::AndNot(hn::FirstN(d, lane + 1), worth_it ? hn::And(wanted, below(most)) : wanted);
+    }
   }
   for (std::size_t n = 0; n < kGroup; ++n) {
     double& square = task.squares[group.index[n]];
@@ -282,15 +358,16 @@ HWY_INLINE void for_each_part(const SampleBox& box, std::size_t side, const Visi
 }
 
 void fill_block(const BlockTask& task, BlockScratch& scratch) {
-  find_near(task, scratch.of_block);
+  const Middle middle(task.rows, task.block);
+  find_near(task, middle, scratch.all);
+  keep_near(task, middle, scratch.all, scratch.of_block);
+  if (scratch.of_block.count == 0) return;
   for_each_part(task.block, kPartSide, [&](const SampleBox& part) {
-    if (scratch.of_block.count == 0) return;
-    narrow(task, part, task.reach, scratch.of_block, scratch.of_part);
-    for_each_part(part, kGroupSide, [&](const SampleBox& box) {
-      if (scratch.of_part.count == 0) return;
-      narrow(task, box, task.reach, scratch.of_part, scratch.of_group);
-      if (scratch.of_group.count > 0) fill_group(task, box, scratch.of_group);
-    });
+    const Middle of_part(task.rows, part);
+    take_bearings(of_part.center, task.tree, scratch.of_block);
+    keep_near(task, of_part, scratch.of_block, scratch.of_part);
+    if (scratch.of_part.count == 0) return;
+    for_each_part(part, kGroupSide, [&](const SampleBox& box) { fill_group(task, box, of_part, scratch.of_part); });
   });
 }
 

@@ -25,7 +25,7 @@ inline constexpr std::size_t kBlockSide = 8;
 // Triangles that may be near some samples, in columns of equal length.
 struct NearTriangles {
   std::array<std::vector<double>, 3> lower, upper;  // their boxes
-  std::vector<std::int64_t> places;                 // 8 times the pack's number, plus the slot
+  std::vector<std::int64_t> places;                 // in the packs: of the first column's number, counted in numbers
   std::vector<double> distances;                    // from the middle of part of the samples; 0 where not sure
   std::array<std::vector<double>, 3> away;          // directions in which these distances grow; 0 where not sure
   std::size_t count = 0;
@@ -34,7 +34,7 @@ struct NearTriangles {
 // What a task keeps from block to block.
 struct BlockScratch {
   std::vector<std::uint32_t> packs;
-  NearTriangles of_block, of_part, of_group;
+  NearTriangles all, of_block, of_part;
 };
 
 // Samples and what is known about their nearest triangles.
@@ -42,8 +42,6 @@ struct BlockTask {
   const DistanceTree& tree;
   const LatticeRows& rows;
   SampleBox block;                       // each side at most kBlockSide
-  Vec3 center;                           // within the block
-  double radius;                         // from there to each sample at most
   double reach;                          // a triangle that is farther than this from all samples counts for none
   std::span<const std::uint32_t> packs;  // all that have a triangle that counts
   std::span<double> squares;             // of all samples of `rows`, x fastest

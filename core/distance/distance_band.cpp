@@ -42,7 +42,7 @@ class Descent {
     if (block.side(axis) <= kBlockSide) {
       const double block_reach = std::min(band_, here + radius) * kSlack;
       tree_.find_packs(box, beyond_error(block_reach * block_reach), scratch_.packs);
-      return fill_block_({tree_, rows_, block, center, radius, block_reach, scratch_.packs, squares_}, scratch_);
+      return fill_block_({tree_, rows_, block, block_reach, scratch_.packs, squares_}, scratch_);
     }
     const std::size_t blocks = (block.side(axis) + kBlockSide - 1) / kBlockSide;
     const std::size_t middle = block.begin[axis] + (blocks + 1) / 2 * kBlockSide;

@@ -63,8 +63,8 @@ HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
           {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
 }
 
-// Where triangles are from the middle of some samples. Of distances that are not sure nothing is known: they are 0, and
-// so are the directions. Others grow along `away`, of length 1.
+// Where triangles are from the middle of some samples. Where directions are not sure, they are 0, and so are the
+// distances. Others grow along `away`, of length 1.
 struct Bearings {
   Lanes distances;
   VectorLanes away;
@@ -78,7 +78,7 @@ template <class Triangles>
 HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangles) {
   const Squares some = squared(triangles, p);
   const Lanes distances = hn::Sqrt(some.values);
-  const LaneMask sure = hn::And(some.sure, hn::Gt(distances, hn::Zero(d)));
+  const LaneMask sure = hn::Ge(some.values, triangles(triangles.pack().direction_from));
   const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
   return {
       hn::IfThenElseZero(sure, distances),

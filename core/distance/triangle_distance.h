@@ -41,6 +41,7 @@ class TriangleDistance {
   Vec3 to_v_, to_w_;                      // a + v ab + w ac is the closest point of the plane, v = (p - a) . to_v_
   double sure_from_;                      // squares from here on need no care,
   double sure_up_to_;                     // nor those that are not above this
+  double direction_from_;                 // from here on the closest point's direction is off by less than 2e-6
   Shape shape_;
 };
 

@@ -23,6 +23,7 @@ void TrianglePack::set(const TriangleMesh& mesh, std::span<const std::uint32_t> 
     }
     sure_from[slot] = distance.sure_from_;
     sure_up_to[slot] = distance.sure_up_to_;
+    direction_from[slot] = distance.direction_from_;
     shape[slot] = static_cast<double>(distance.shape_);
   }
 }

@@ -21,7 +21,7 @@ struct alignas(64) TrianglePack {
   std::array<Columns, 3> corners;
   Columns inverse_square;
   Columns to_v, to_w;
-  Column sure_from, sure_up_to;
+  Column sure_from, sure_up_to, direction_from;
   Column shape;  // 0: proper, 1: slender, 2: flat
   Columns lower, upper;
 

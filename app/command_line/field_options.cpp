@@ -1,6 +1,7 @@
 #include "app/command_line/field_options.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,6 +14,12 @@ namespace raycone {
 namespace {
 
 constexpr const char* kRules = "threshold=T, abs=T, nonzero, positive or odd";
+
+// Infinite for "all".
+double parse_band(const Values& values) {
+  if (values.text("--band") == "all") return std::numeric_limits<double>::infinity();
+  return values.positive("--band");
+}
 
 std::vector<Field> parse_fields(const Values& values) {
   std::vector<Field> fields;
@@ -53,7 +60,9 @@ OptionGroup field_group() {
           {{"--field", "winding|inside|density|sdf[,...]",
             "Winding number (default), inside mask, winding number clamped to 0..1, signed distance", true},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
-           {"--band", "B", "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side"},
+           {"--band", "B",
+            "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not cut it "
+            "off"},
            {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
            {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
            {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
@@ -79,8 +88,7 @@ FieldOptions parse_field(const Values& values) {
   FieldOptions options;
   if (values.given("--field")) options.fields = parse_fields(values);
   if (values.given("--rule")) options.rule = parse_rule(values);
-  if (values.text("--band") == "all") not_available("--band all");
-  if (values.given("--band")) options.band = values.positive("--band");
+  if (values.given("--band")) options.band = parse_band(values);
   if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));
   if (values.given("--simd")) options.simd = parse_simd(values.text("--simd"));
   options.diagnostics = values.given("--diagnostics");

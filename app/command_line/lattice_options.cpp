@@ -70,12 +70,13 @@ void parse_compress(const Values& values, FieldEncoding& encoding) {
   throw UsageError("--compress: has no effect on this format, expected nrrd, or the extension .nii.gz");
 }
 
-// A level set needs the band on the outside too.
+// A level set needs the band on the outside too. One that is not cut off has the lattice of the default band.
 void make_room_for_band(const Values& values, LatticeCommand& command) {
   if (values.given("--padding") || values.given("--bounds") || values.given("--like")) return;
   constexpr double kMost = 1e6;
-  if (command.field.band > kMost) invalid("--band", values.text("--band"), "at most a million voxels");
-  const auto samples = static_cast<std::int64_t>(std::ceil(command.field.band + 1));
+  const double band = std::isinf(command.field.band) ? FieldOptions{}.band : command.field.band;
+  if (band > kMost) invalid("--band", values.text("--band"), "at most a million voxels");
+  const auto samples = static_cast<std::int64_t>(std::ceil(band + 1));
   std::get<LatticeRequest>(command.lattice).padding = VoxelPadding{samples};
 }
 

@@ -34,7 +34,7 @@ inline constexpr std::array kDiagnosticNames{"crossings", "degenerate", "on_surf
 struct FieldOptions {
   std::vector<Field> fields{Field::kWinding};  // at least one, none twice
   Rule rule;
-  double band = 3.0;  // voxels; of distances on lattices
+  double band = 3.0;  // voxels; of distances on lattices; infinite: they are not cut off
   bool diagnostics = false;
   std::uint64_t verify = 0;             // samples to be computed again by definition
   RayEngine engine = RayEngine::kScan;  // no value depends on these two

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -52,6 +54,20 @@ Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std
                               : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
   if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
   return lattice;
+}
+
+// A band in voxels that all samples are in: as wide as the box of mesh and lattice is long, from corner to corner.
+double band_of_all(const Box& mesh_box, const Lattice& lattice) {
+  Vec3 sides;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    const double last = lattice.coordinate(axis, lattice.index_max(axis));
+    sides[axis] = std::max(mesh_box.upper[axis], last) - std::min(mesh_box.lower[axis], first);
+  }
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  constexpr double kMore = 1 + 1e-9;  // so that rounding cuts nothing off
+  const double width = std::min(std::hypot(sides.x, sides.y, sides.z), kLargest / 2) * kMore;
+  return std::min(width / lattice.spacing.x, kLargest);
 }
 
 // The slabs of a lattice, one after the other.
@@ -128,13 +144,15 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& write
 
 }  // namespace
 
-RunReport run_lattice(const LatticeCommand& command, const RunLimits& limits, const SlabObserver& observe) {
+RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
+  LatticeCommand command = asked;
   MeshRun run(command.mesh, command.output, command.run, limits);
   RunReport& report = run.report;
   TriangleMesh mesh = run.load_mesh(files_written(command));
   report.lattice = lattice_for(command, mesh, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(*report.lattice);
+  if (std::isinf(command.field.band)) command.field.band = band_of_all(bounding_box(mesh), *report.lattice);
   run.print_warnings();
 
   const bool may_be_empty = !should_have_inside(bounding_box(mesh), *report.lattice);

@@ -30,8 +30,11 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
     case FieldKind::kReal:
     case FieldKind::kDensity:
       return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
-    case FieldKind::kDistance:
-      return real_bytes * (at_surface + blocks_in_the_making);
+    case FieldKind::kDistance: {
+      const std::int64_t longest = std::max({lattice.counts[0], lattice.counts[1], lattice.counts[2]});
+      const bool all = field.background / lattice.spacing.x >= 2 * static_cast<double>(longest);
+      return real_bytes * ((all ? samples : at_surface) + blocks_in_the_making);
+    }
     case FieldKind::kBound:
       return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kCount:

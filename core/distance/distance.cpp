@@ -62,8 +62,8 @@ void for_each_sample(const LatticeBlock& block, const Visit& visit) {
 }  // namespace
 
 struct DistanceEvaluator::Implementation {
-  explicit Implementation(const TriangleMesh& original)
-      : exponent(largest_exponent(original)), to_unit(-exponent), to_world(exponent), mesh(original) {
+  Implementation(const TriangleMesh& original, SimdLevel level)
+      : exponent(largest_exponent(original)), to_unit(-exponent), to_world(exponent), mesh(original), simd(level) {
     for (Vec3& p : mesh.vertices) p = to_unit(p);
     const auto at_origin = [&](std::uint32_t v) { return mesh.vertices[v] == Vec3{}; };
     const bool is_origin = std::ranges::all_of(
@@ -72,7 +72,7 @@ struct DistanceEvaluator::Implementation {
   }
 
   [[nodiscard]] const DistanceTree& nearest() const {
-    std::call_once(tree_built, [this] { tree.emplace(mesh); });
+    std::call_once(tree_built, [this] { tree.emplace(mesh, simd); });
     return *tree;
   }
 
@@ -105,11 +105,7 @@ struct DistanceEvaluator::Implementation {
     const LatticeRows rows = rows_in_scale(lattice, block, to_unit);
     // No sample that is not far is farther from the mesh than four times kFar.
     const double unit_band = std::min(to_unit(band), 4 * kFar);
-    if (descent_is_faster(mesh, unit_band)) {
-      descend_to_distances(nearest(), rows, unit_band, distances);
-    } else {
-      rasterize_distances(mesh, rows, unit_band, distances);
-    }
+    fill_band(nearest(), rows, unit_band, distances);
     constexpr std::size_t kGrain = std::size_t{1} << 14;
     parallel_for(distances.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) distances[n] = std::min(to_world(std::sqrt(distances[n])), band);
@@ -123,16 +119,17 @@ struct DistanceEvaluator::Implementation {
   int exponent;
   PowerOfTwo to_unit, to_world;
   TriangleMesh mesh;
+  SimdLevel simd;
 
  private:
   mutable std::once_flag tree_built;
   mutable std::optional<DistanceTree> tree;
 };
 
-DistanceEvaluator::DistanceEvaluator(const TriangleMesh& mesh) {
+DistanceEvaluator::DistanceEvaluator(const TriangleMesh& mesh, SimdLevel level) {
   check_counts(mesh);
   const DefaultFloatingPoint guard;
-  implementation_ = std::make_unique<Implementation>(mesh);
+  implementation_ = std::make_unique<Implementation>(mesh, level);
 }
 DistanceEvaluator::~DistanceEvaluator() = default;
 DistanceEvaluator::DistanceEvaluator(DistanceEvaluator&&) noexcept = default;

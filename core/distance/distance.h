@@ -7,6 +7,7 @@
 
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/machine/simd.h"
 
 namespace raycone {
 
@@ -14,7 +15,7 @@ class DistanceEvaluator {
  public:
   // Precondition: the vertices that triangles use are finite. A mesh without triangles is infinitely far away. Throws
   // std::length_error for more than kMaxTriangles.
-  explicit DistanceEvaluator(const TriangleMesh& mesh);
+  explicit DistanceEvaluator(const TriangleMesh& mesh, SimdLevel level = SimdLevel::kBest);
   ~DistanceEvaluator();
   DistanceEvaluator(DistanceEvaluator&&) noexcept;
   DistanceEvaluator& operator=(DistanceEvaluator&&) noexcept;

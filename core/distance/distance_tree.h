@@ -7,40 +7,52 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/distance/triangle_pack.h"
+#include "core/machine/simd.h"
 
 namespace raycone {
 
-// Boxes of triangles in nodes of eight, boxes of nodes in nodes of eight, and so on: triangles are split at medians
-// along the longest axis until eight are left, so that every node but the last of a level is full. Embree's point
-// queries are in single precision; this is in double throughout.
+// Packs of eight triangles, boxes of packs in nodes of eight, boxes of nodes in nodes of eight, and so on: triangles
+// are split at medians along the longest axis until eight are left, so that every node but the last of a level is full.
+// Embree's point queries are in single precision; this is in double throughout.
 class DistanceTree {
  public:
-  // `mesh` has at least one triangle and outlives the tree; the largest coordinate of its triangles is in [1/2, 1].
-  explicit DistanceTree(const TriangleMesh& mesh);
-
-  // The least of the triangles' squared distances (core/distance/triangle_distance.h) where that is not above `limit`,
-  // nor beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
-  [[nodiscard]] double squared_distance(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const;
-
- private:
-  static constexpr std::size_t kWidth = 8;
-
-  // The boxes of eight children; empty ones are infinitely far away.
+  // The boxes of eight children; empty ones are infinitely far away. Child i of node n of a level is node 8 n + i of
+  // the level before it; of the first level, it is a pack.
   struct alignas(64) Node {
-    std::array<std::array<double, kWidth>, 3> lower, upper;  // by axis
+    TrianglePack::Columns lower, upper;
     Node();
     void set(std::size_t child, const Box& box);
     [[nodiscard]] Box box() const;
-    // Squared distances from p, but for rounding.
-    [[nodiscard]] std::array<double, kWidth> bounds(const Vec3& p) const;
   };
-  // Child i of node n of a level is node 8 n + i of the level before it; of the first level, triangle 8 n + i of
-  // triangles_.
   using Level = std::vector<Node>;
 
-  const TriangleMesh& mesh_;
-  std::vector<std::uint32_t> triangles_;
+  // `mesh` has at least one triangle, the largest coordinate of its triangles is in [1/2, 1]. Uses the threads that
+  // ThreadLimit allows. Numbers do not depend on the level of SIMD, nor on threads.
+  explicit DistanceTree(const TriangleMesh& mesh, SimdLevel level = SimdLevel::kBest);
+
+  // The least of the triangles' squared distances (core/distance/triangle_distance.h) where that is not above `limit`,
+  // nor beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
+  [[nodiscard]] double squared_distance(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const {
+    return search_(*this, p, limit);
+  }
+
+  // Sets `found` to the packs whose boxes' squared distance from `box` is below `limit`. Thread-safe.
+  void find_packs(const Box& box, double limit, std::vector<std::uint32_t>& found) const {
+    find_packs_(*this, box, limit, found);
+  }
+
+  [[nodiscard]] const std::vector<TrianglePack>& packs() const { return packs_; }
+  // From the parents of packs to the root; none where there is one pack.
+  [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
+  [[nodiscard]] SimdLevel simd() const { return simd_; }
+
+ private:
+  std::vector<TrianglePack> packs_;
   std::vector<Level> levels_;
+  SimdLevel simd_;
+  double (*search_)(const DistanceTree& tree, const Vec3& p, double limit);
+  void (*find_packs_)(const DistanceTree& tree, const Box& box, double limit, std::vector<std::uint32_t>& found);
 };
 
 }  // namespace raycone

@@ -63,6 +63,7 @@ TriangleDistance::TriangleDistance(const Vec3& a, const Vec3& b, const Vec3& c)
     to_w_ = inverse * cross(normal, edges_[0]);
     if (shape_ == Shape::kSlender) sure_from_ = std::max(sure_from_, longest * square(1e-8 * full * inverse));
   }
+  direction_from_ = std::max(sure_from_, 1e-250);
   // What is a few u off is right where it is a few u of the largest coordinate.
   const bool small = longest <= 0x1p-4;
   if (small && shape_ == Shape::kProper) sure_from_ = std::min(sure_from_, 0x1p-24 * square(longest));

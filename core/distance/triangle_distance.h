@@ -21,10 +21,9 @@ class TriangleDistance {
   // [1/2, 1] and those of p are below 2^400 (docs/method.md, "Distances").
   [[nodiscard]] double squared(const Vec3& p) const;
 
-  // Whether the normal and what lies beyond which edge can be trusted, to 1e-11: not so thin as to be a segment.
-  [[nodiscard]] bool has_plane() const { return shape_ != Shape::kFlat; }
-
  private:
+  friend struct TrianglePack;  // has the same numbers in columns
+
   enum class Shape {
     kProper,   // its height is a sixteenth of its longest edge or more
     kSlender,  // 2e-4 or more
@@ -42,6 +41,7 @@ class TriangleDistance {
   Vec3 to_v_, to_w_;                      // a + v ab + w ac is the closest point of the plane, v = (p - a) . to_v_
   double sure_from_;                      // squares from here on need no care,
   double sure_up_to_;                     // nor those that are not above this
+  double direction_from_;                 // from here on the closest point's direction is off by less than 2e-6
   Shape shape_;
 };
 

@@ -32,7 +32,6 @@ WORKING = {
 NOT_AVAILABLE = {
     "lattice": {
         "--tolerance 1e-3": "--tolerance 1e-3",
-        "--field sdf --band all": "--band all",
         "--field solid": "--field solid",
         "--field winding,gradient": "--field winding,gradient",
         "--field label": "--field label",

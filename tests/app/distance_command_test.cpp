@@ -152,6 +152,22 @@ TEST_F(SdfField, PadsTheBoxByTheBandAndOneVoxel) {
   EXPECT_EQ(samples({"--bounds", "0,0,0,1,1,1"}), 11 * 11 * 11);
 }
 
+TEST_F(SdfField, OfBandAllIsNotCutOff) {
+  const std::vector<std::string> all{"--field", "winding,sdf", "--resolution", "8", "--band", "all"};
+  const std::vector<Sample> samples = samples_of(lattice(cube_, "-", all).out);
+  EXPECT_EQ(samples.size(), 16U * 16U * 16U) << "padded by 4 voxels";
+  const TriangleMesh mesh = read_mesh(cube_).parsed.mesh;
+  double farthest = 0.0;
+  for (const Sample& s : samples) {
+    ASSERT_NEAR(std::abs(s.distance), static_cast<double>(direct_distance(mesh, s.position)), 1e-12);
+    ASSERT_EQ(std::signbit(s.distance), s.w >= 0.5);
+    farthest = std::max(farthest, s.distance);
+  }
+  EXPECT_NEAR(farthest, std::sqrt(3.0) * 4 / 7, 1e-12);
+  ASSERT_EQ(lattice(cube_, dir_ / "out.vdb", all).status, 0);
+  EXPECT_EQ(surface_of(dir_ / "out.vdb")->active_voxel_count(), 16U * 16U * 16U);
+}
+
 TEST_F(SdfField, WantsCubicVoxels) {
   const CommandResult result = lattice(cube_, "-", {"--field", "winding,sdf", "--resolution", "11,6,11"});
   EXPECT_EQ(result.status, 1);

@@ -73,6 +73,7 @@ TABLE = [
     Row("batch good --out-dir out/batch --sample uniform=3 --field density", "--rule odd", REFUSED),
     *(Row(words + fields, "--band 2", CHANGES)
       for words in (LATTICE, BATCH) for fields in (" --field sdf", " --field winding,sdf")),
+    *(Row(words + " --field sdf", "--band all", CHANGES) for words in (LATTICE, BATCH)),
     *(Row(words + fields, "--band 2", REFUSED)
       for words in (LATTICE, BATCH) for fields in ("", " --field inside", " --field winding,density")),
     *(Row(words + " --field sdf", "--band 2", REFUSED)

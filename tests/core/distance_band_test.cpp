@@ -1,4 +1,4 @@
-// The two ways to a lattice's distances, against the tree and each other.
+// A lattice's distances by blocks, against a search for each sample.
 #include "core/distance/distance_band.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/distance/triangle_distance.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -45,29 +46,31 @@ void expect_searched(const std::vector<double>& squares, const LatticeRows& rows
   EXPECT_GT(in_band, 0U);
 }
 
-void expect_both_right(const TriangleMesh& mesh, const LatticeRows& rows, double band) {
-  const DistanceTree tree(mesh);
-  std::vector<double> squares(rows.xs.size() * rows.size());
-  rasterize_distances(mesh, rows, band, squares);
-  expect_searched(squares, rows, tree, band);
-  std::ranges::fill(squares, -1.0);
-  descend_to_distances(tree, rows, band, squares);
-  expect_searched(squares, rows, tree, band);
+constexpr SimdLevel kLevels[]{SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512};
+
+// At every level of SIMD that the processor has.
+void expect_right(const TriangleMesh& mesh, const LatticeRows& rows, double band) {
+  for (const SimdLevel level : kLevels) {
+    const DistanceTree tree(mesh, level);
+    std::vector<double> squares(rows.xs.size() * rows.size(), -1.0);
+    fill_band(tree, rows, band, squares);
+    expect_searched(squares, rows, tree, band);
+  }
 }
 
-TEST(DistanceBand, IsTheSameBothWays) {
+TEST(DistanceBand, IsWhatSearchesFind) {
   const double step = 0.05;
   for (const double band : {0.4 * step, 3 * step, 11 * step}) {
-    expect_both_right(test::assorted_triangles(), rows_of(25, 21, 27, step), band);
-    expect_both_right(test::box_mesh({0, 0, 0}, {0.7, 0.8, 0.9}), rows_of(25, 21, 27, step), band);
+    expect_right(test::assorted_triangles(), rows_of(25, 21, 27, step), band);
+    expect_right(test::box_mesh({0, 0, 0}, {0.7, 0.8, 0.9}), rows_of(25, 21, 27, step), band);
   }
 }
 
 TEST(DistanceBand, OfSlabsOfEveryDirection) {
-  expect_both_right(test::assorted_triangles(), rows_of(1, 60, 50, 0.02), 0.06);
-  expect_both_right(test::assorted_triangles(), rows_of(60, 1, 50, 0.02), 0.06);
-  expect_both_right(test::assorted_triangles(), rows_of(60, 50, 1, 0.02), 0.06);
-  expect_both_right(test::assorted_triangles(), rows_of(1, 1, 1, 1.0), 5.0);
+  expect_right(test::assorted_triangles(), rows_of(1, 60, 50, 0.02), 0.06);
+  expect_right(test::assorted_triangles(), rows_of(60, 1, 50, 0.02), 0.06);
+  expect_right(test::assorted_triangles(), rows_of(60, 50, 1, 0.02), 0.06);
+  expect_right(test::assorted_triangles(), rows_of(1, 1, 1, 1.0), 5.0);
 }
 
 // Where coordinates are large beside the triangles, roundings are too.
@@ -79,12 +82,31 @@ TEST(DistanceBand, FarFromTheOrigin) {
   for (double& y : rows.ys) y = unit * (y + far.y);
   for (double& z : rows.zs) z = unit * (z + far.z);
   rows.samples_per_unit = 1 / unit * rows.samples_per_unit;
-  expect_both_right(test::moved(test::assorted_triangles(), {unit, unit, unit}, unit * far), rows, 0.15 * unit);
+  expect_right(test::moved(test::assorted_triangles(), {unit, unit, unit}, unit * far), rows, 0.15 * unit);
 }
 
-TEST(DistanceBand, SmallTrianglesAreSearchedLargeOnesRasterized) {
-  EXPECT_FALSE(descent_is_faster(test::box_mesh({0, 0, 0}, {1, 1, 1}), 0.05));
-  EXPECT_TRUE(descent_is_faster(test::sphere(60), 0.5));
+// Of spheres, all of whose triangles are about equally far from the middle.
+TEST(DistanceBand, OfManySmallTriangles) {
+  const TriangleMesh sphere = test::sphere(20);
+  for (const double band : {0.15, 10.0}) expect_right(sphere, rows_of(19, 23, 17, 0.05), band);
+}
+
+// The least of the triangles' numbers, each found alone.
+TEST(DistanceTree, FindsTheLeastAtEveryLevel) {
+  const TriangleMesh mesh = test::assorted_triangles();
+  test::Random random(4);
+  for (const SimdLevel level : kLevels) {
+    const DistanceTree tree(mesh, level);
+    for (int n = 0; n < 500; ++n) {
+      const Vec3 p = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
+      double least = std::numeric_limits<double>::infinity();
+      for (const Triangle& t : mesh.triangles) {
+        const TriangleDistance triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+        least = std::min(least, triangle.squared(p));
+      }
+      ASSERT_EQ(tree.squared_distance(p), least) << n;
+    }
+  }
 }
 
 }  // namespace

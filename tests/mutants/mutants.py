@@ -276,15 +276,26 @@ MUTANTS = [
 
     # --- Distances ---
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
-        ("core/distance/distance_tree.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
+        ("core/distance/tree_kernel.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
-        ("core/distance/distance_tree.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
+        ("core/distance/tree_kernel.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
     Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
         ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + length(center - from))",
          "std::min(band_, distance + length(center - from))")]),
-    Mutant("bands_without_slack", "what rounds may be just outside of what it is intersected with", [
-        ("core/distance/distance_band.cpp", "reach_ = band + 1e-9 * (band + sides.x + sides.y + sides.z) + 1e-13;",
-         "reach_ = band;")]),
+    Mutant("half_spaces_without_bend", "closest points seen from elsewhere are farther than by their direction", [
+        ("core/distance/block_kernel.cpp", "nearest.distance + bend(nearest.distance, middle.radius) +",
+         "nearest.distance +")]),
+    Mutant("half_spaces_without_turn", "directions to triangles differ", [
+        ("core/distance/block_kernel.cpp", "hn::Add(within, gained)", "within")]),
+    Mutant("unsure_directions", "the closest point of a needle is not known without care", [
+        ("core/distance/block_kernel.cpp", "hn::Ge(some.values, triangles(triangles.pack().direction_from))",
+         "hn::Gt(distances, hn::Zero(d))")]),
+    Mutant("lanes_without_care", "lanes that are not sure are evaluated again", [
+        ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, some.sure)) take_care(pack, slot, n, some.sure, group);",
+         "")]),
+    Mutant("packs_without_care", "triangles of a pack that are not sure are evaluated again", [
+        ("core/distance/tree_kernel.cpp", "if (sure[lane] != 0.0 || squares[i + lane] >= reach) continue;",
+         "if (sure[lane] != 0.0 || squares[i + lane] >= 0) continue;")]),
     Mutant("no_sample_is_far", "lattices may be larger than what squares hold", [
         ("core/distance/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
          "return std::abs(to_unit(coordinate)) <= std::numeric_limits<double>::max();")]),

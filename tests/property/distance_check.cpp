@@ -46,7 +46,7 @@ std::vector<Vec3> samples_of(const Lattice& lattice) {
   return points;
 }
 
-// The mesh and the lattice as both ways take them; no rows where a sample is too far away for these.
+// The mesh and the lattice as they are searched; no rows where a sample is too far away for that.
 struct Scaled {
   TriangleMesh mesh;
   LatticeRows rows;
@@ -71,8 +71,8 @@ struct Scaled {
 };
 
 // Where `found` is not what the tree finds, though that is within the band.
-std::optional<Failure> compare_ways(const Scaled& scaled, const DistanceTree& tree, double band,
-                                    const std::vector<double>& found, const char* way) {
+std::optional<Failure> compare_with_tree(const Scaled& scaled, const DistanceTree& tree, double band,
+                                         const std::vector<double>& found) {
   std::size_t n = 0;
   for (const double z : scaled.rows.zs) {
     for (const double y : scaled.rows.ys) {
@@ -80,7 +80,7 @@ std::optional<Failure> compare_ways(const Scaled& scaled, const DistanceTree& tr
         const double expected = tree.squared_distance({x, y, z}), actual = found[n++];
         if (same_bits(expected, actual) || (std::sqrt(expected) >= band && std::sqrt(actual) >= band)) continue;
         return Failure{{x, y, z},
-                       std::string(way) + " finds the square " + text(actual) + ", the tree " + text(expected) +
+                       "blocks find the square " + text(actual) + ", the tree " + text(expected) +
                            ", of a mesh scaled to 1, band " + text(band)};
       }
     }
@@ -88,16 +88,17 @@ std::optional<Failure> compare_ways(const Scaled& scaled, const DistanceTree& tr
   return std::nullopt;
 }
 
-std::optional<Failure> check_both_ways(const TriangleMesh& mesh, const Lattice& lattice, double band) {
+std::optional<Failure> check_band(const TriangleMesh& mesh, const Lattice& lattice, double band) {
   const Scaled scaled(mesh, lattice);
   if (!scaled.fits()) return std::nullopt;
-  const DistanceTree tree(scaled.mesh);
   const double unit_band = std::min(PowerOfTwo(-largest_exponent(mesh))(band), 0x1p57);
   std::vector<double> squares(scaled.rows.xs.size() * scaled.rows.size());
-  rasterize_distances(scaled.mesh, scaled.rows, unit_band, squares);
-  if (auto failure = compare_ways(scaled, tree, unit_band, squares, "rasterizing")) return failure;
-  descend_to_distances(tree, scaled.rows, unit_band, squares);
-  return compare_ways(scaled, tree, unit_band, squares, "descending");
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    const DistanceTree tree(scaled.mesh, level);
+    fill_band(tree, scaled.rows, unit_band, squares);
+    if (auto failure = compare_with_tree(scaled, tree, unit_band, squares)) return failure;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ std::optional<Failure> check_lattice_distances(const TriangleMesh& mesh, const L
       return Failure{points[n], "distance as a sample " + text(distances[n]) + ", as a point " + text(expected[n]) +
                                     ", band " + text(band)};
     }
-    if (auto failure = check_both_ways(mesh, lattice, band)) return failure;
+    if (auto failure = check_band(mesh, lattice, band)) return failure;
   }
   return std::nullopt;
 }

@@ -24,7 +24,7 @@ struct DistanceCounts {
                                                      DistanceCounts& counts);
 
 // For narrow bands and wide ones, each sample is what it is as a point, cut off at the band, to the bit: by the
-// evaluator, and by both ways of core/distance/distance_band.h.
+// evaluator, and by core/distance/distance_band.h at every level of SIMD.
 [[nodiscard]] std::optional<Failure> check_lattice_distances(const TriangleMesh& mesh, const Lattice& lattice,
                                                              DistanceCounts& counts);
 

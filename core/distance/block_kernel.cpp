@@ -1,0 +1,393 @@
+// The triangles near a block are looked through for each part of it, of 4^3 samples, and those near a part for each
+// group of 2^3. Those are left of which half-spaces do not tell that another triangle is nearer to all of the samples
+// (docs/method.md, "The nearest triangle").
+#include "core/distance/block_kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+// Highway compiles what is between its markers once per SIMD level.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/distance/block_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/distance/triangle_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raycone {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; beyond_error() adds those of distances
+constexpr std::size_t kWidth = TrianglePack::kWidth;
+constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
+constexpr std::size_t kPartSide = 4, kGroupSide = 2;
+constexpr std::size_t kGroup = 8;  // samples
+using Places = hn::RebindToSigned<Doubles>;
+
+// Whatever is compressed into a list may write this far beyond its end.
+void make_room(NearTriangles& list, std::size_t count) {
+  list.count = 0;
+  if (list.places.size() >= count + kWidth) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (auto* const column : {&list.lower[axis], &list.upper[axis], &list.away[axis]}) column->resize(count + kWidth);
+  }
+  list.distances.resize(count + kWidth);
+  list.places.resize(count + kWidth);
+}
+
+// Triangles beyond the last one, for the last lanes: they are too far away to be near anything.
+void close(NearTriangles& list) {
+  constexpr double kFarAway = 1e300;
+  for (std::size_t n = list.count; n < list.count + kWidth; ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) list.lower[axis][n] = list.upper[axis][n] = kFarAway;
+    list.places[n] = 0;
+    list.distances[n] = 0.0;
+  }
+}
+
+struct BoxLanes {
+  VectorLanes lower, upper;
+};
+
+HWY_INLINE BoxLanes boxes_of(const NearTriangles& list, std::size_t n) {
+  return {{hn::LoadU(d, &list.lower[0][n]), hn::LoadU(d, &list.lower[1][n]), hn::LoadU(d, &list.lower[2][n])},
+          {hn::LoadU(d, &list.upper[0][n]), hn::LoadU(d, &list.upper[1][n]), hn::LoadU(d, &list.upper[2][n])}};
+}
+HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
+  return {{hn::Load(d, &pack.lower[0][i]), hn::Load(d, &pack.lower[1][i]), hn::Load(d, &pack.lower[2][i])},
+          {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
+}
+
+// Where triangles are from the middle of some samples. Where directions are not sure, they are 0, and so are the
+// distances. Others grow along `away`, of length 1.
+struct Bearings {
+  Lanes distances;
+  VectorLanes away;
+};
+
+HWY_INLINE Bearings bearings_of(const NearTriangles& list, std::size_t n) {
+  return {hn::LoadU(d, &list.distances[n]),
+          {hn::LoadU(d, &list.away[0][n]), hn::LoadU(d, &list.away[1][n]), hn::LoadU(d, &list.away[2][n])}};
+}
+template <class Triangles>
+HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangles) {
+  const Squares some = squared(triangles, p);
+  const Lanes distances = hn::Sqrt(some.values);
+  const LaneMask sure = hn::Ge(some.values, triangles(triangles.pack().direction_from));
+  const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
+  return {
+      hn::IfThenElseZero(sure, distances),
+      {hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.x)), hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.y)),
+       hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))}};
+}
+
+HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
+                       LaneMask wanted) {
+  const std::size_t at = list.count;
+  hn::CompressStore(bearings.distances, wanted, d, &list.distances[at]);
+  hn::CompressStore(bearings.away.x, wanted, d, &list.away[0][at]);
+  hn::CompressStore(bearings.away.y, wanted, d, &list.away[1][at]);
+  hn::CompressStore(bearings.away.z, wanted, d, &list.away[2][at]);
+  hn::CompressStore(boxes.lower.x, wanted, d, &list.lower[0][at]);
+  hn::CompressStore(boxes.lower.y, wanted, d, &list.lower[1][at]);
+  hn::CompressStore(boxes.lower.z, wanted, d, &list.lower[2][at]);
+  hn::CompressStore(boxes.upper.x, wanted, d, &list.upper[0][at]);
+  hn::CompressStore(boxes.upper.y, wanted, d, &list.upper[1][at]);
+  hn::CompressStore(boxes.upper.z, wanted, d, &list.upper[2][at]);
+  const Places integers;
+  list.count += hn::CompressStore(places, hn::RebindMask(integers, wanted), integers, &list.places[at]);
+}
+
+// The samples of a box from its middle.
+struct Middle {
+  VectorLanes lower, upper;  // of the box that the samples span
+  Vec3 center;
+  double radius;
+  Vec3 extent;  // from there along each axis
+
+  Middle(const LatticeRows& rows, const SampleBox& box) {
+    const Vec3 first{rows.xs[box.begin[0]], rows.ys[box.begin[1]], rows.zs[box.begin[2]]};
+    const Vec3 last{rows.xs[box.end[0] - 1], rows.ys[box.end[1] - 1], rows.zs[box.end[2] - 1]};
+    lower = in_all_lanes(first);
+    upper = in_all_lanes(last);
+    center = 0.5 * (first + last);
+    const Vec3 from_first = center - first, to_last = last - center;
+    extent = {std::max(from_first.x, to_last.x), std::max(from_first.y, to_last.y), std::max(from_first.z, to_last.z)};
+    radius = std::sqrt(raycone::dot(extent, extent));
+  }
+};
+
+double square_of_reach(double reach) { return beyond_error(reach * kSlack * (reach * kSlack)); }
+
+// The triangles of packs that are near the block.
+void find_near(const BlockTask& task, const Middle& middle, NearTriangles& near) {
+  const VectorLanes center = in_all_lanes(middle.center);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  make_room(near, task.packs.size() * kWidth);
+  for (const std::uint32_t number : task.packs) {
+    const TrianglePack& pack = task.tree.packs()[number];
+    for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+      const BoxLanes boxes = boxes_of(pack, i);
+      const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
+      if (hn::AllFalse(d, wanted)) continue;
+      const Places integers;
+      append(near, boxes, bearings_from(center, PackedTriangles(pack, i)),
+             hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
+    }
+  }
+  close(near);
+}
+
+// Triangles at some places of the packs.
+class PlacedTriangles {
+ public:
+  PlacedTriangles(const DistanceTree& tree, hn::Vec<Places> places) : pack_(tree.packs().front()), places_(places) {}
+  HWY_INLINE Lanes operator()(const TrianglePack::Column& column) const {
+    return hn::GatherIndex(d, column.data(), places_);
+  }
+  HWY_INLINE const TrianglePack& pack() const { return pack_; }
+
+ private:
+  const TrianglePack& pack_;
+  hn::Vec<Places> places_;
+};
+
+void take_bearings(const Vec3& p, const DistanceTree& tree, NearTriangles& near) {
+  const VectorLanes ps = in_all_lanes(p);
+  const Places integers;
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const Bearings bearings = bearings_from(ps, PlacedTriangles(tree, hn::LoadU(integers, &near.places[n])));
+    hn::StoreU(bearings.distances, d, &near.distances[n]);
+    hn::StoreU(bearings.away.x, d, &near.away[0][n]);
+    hn::StoreU(bearings.away.y, d, &near.away[1][n]);
+    hn::StoreU(bearings.away.z, d, &near.away[2][n]);
+  }
+}
+
+struct Bearing {
+  double distance;
+  Vec3 away;
+};
+
+// That of the nearest triangle of which anything is known; else an infinite distance.
+Bearing nearest_of(const NearTriangles& near) {
+  Bearing nearest{kNowhere, {}};
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const double distance = near.distances[n];
+    if (distance > 0.0 && distance < nearest.distance) {
+      nearest = {distance, {near.away[0][n], near.away[1][n], near.away[2][n]}};
+    }
+  }
+  return nearest;
+}
+
+// How much farther than by its direction a triangle at this distance gets within the radius at most.
+double bend(double distance, double radius) {
+  return distance > radius / 2 ? radius * radius / (2 * distance) : 2 * (radius - distance);
+}
+
+// More than distances within `radius` of the middle, of about `distance`, are off by, and more than directions are off
+// whose distance is sure.
+double slack_of(double distance, double radius) { return 1e-5 * radius + 1e-8 * distance + 1e-14; }
+
+// Of triangles whose bearings are taken from the middle of some samples, those that may be nearest to one of these.
+void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles& near, NearTriangles& fewer) {
+  const Bearing nearest = nearest_of(near);
+  const Lanes within =
+      hn::Set(d, nearest.distance + bend(nearest.distance, middle.radius) + slack_of(nearest.distance, middle.radius));
+  const VectorLanes away = in_all_lanes(nearest.away);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  const Places integers;
+  make_room(fewer, near.count);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const Bearings bearings = bearings_of(near, n);
+    const VectorLanes turn = minus(away, bearings.away);
+    const Lanes gained = dot({hn::Abs(turn.x), hn::Abs(turn.y), hn::Abs(turn.z)}, in_all_lanes(middle.extent));
+    const LaneMask wanted =
+        hn::And(hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box),
+                hn::Le(bearings.distances, hn::Add(within, gained)));
+    append(fewer, boxes, bearings, hn::LoadU(integers, &near.places[n]), wanted);
+  }
+  close(fewer);
+}
+
+// Eight samples; the last ones are repeated where there are fewer.
+struct Group {
+  alignas(64) std::array<double, kGroup> x, y, z, least;
+  std::array<std::size_t, kGroup> index;  // in BlockTask::squares
+
+  Group(const BlockTask& task, const SampleBox& box) {
+    const LatticeRows& rows = task.rows;
+    for (std::size_t n = 0; n < kGroup; ++n) {
+      const std::size_t i = std::min(box.begin[0] + n % 2, box.end[0] - 1);
+      const std::size_t j = std::min(box.begin[1] + n / 2 % 2, box.end[1] - 1);
+      const std::size_t k = std::min(box.begin[2] + n / 4, box.end[2] - 1);
+      x[n] = rows.xs[i];
+      y[n] = rows.ys[j];
+      z[n] = rows.zs[k];
+      index[n] = (k * rows.ys.size() + j) * rows.xs.size() + i;
+    }
+    least.fill(kNowhere);
+  }
+};
+
+// Samples for which lanes are not sure.
+void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, LaneMask sure, Group& group) {
+  alignas(64) std::array<double, kWidth> is_sure;
+  hn::Store(hn::IfThenElseZero(sure, hn::Set(d, 1.0)), d, is_sure.data());
+  const TriangleDistance triangle = pack.triangle(slot);
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    if (is_sure[lane] != 0.0) continue;
+    const std::size_t n = first + lane;
+    group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}));
+  }
+}
+
+// Returns the largest of the group's least squares.
+HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& group) {
+  Lanes largest = hn::Zero(d);
+  for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
+    const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const Squares some = squared(SameTriangle(pack, slot), ps);
+    const Lanes before = hn::Load(d, &group.least[n]);
+    hn::Store(hn::IfThenElse(some.sure, hn::Min(before, some.values), before), d, &group.least[n]);
+    if (!hn::AllTrue(d, some.sure)) take_care(pack, slot, n, some.sure, group);
+    largest = hn::Max(largest, hn::Load(d, &group.least[n]));
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
+}
+
+// The distance of triangles from a box is this at least. `from`: from the middle, of which the bearings are, to that of
+// the box.
+HWY_INLINE Lanes least_distances(const Bearings& bearings, const VectorLanes& from, const VectorLanes& extent) {
+  const VectorLanes& away = bearings.away;
+  const Lanes least = hn::Sub(hn::Add(bearings.distances, dot(away, from)),
+                              dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
+  return least;
+}
+
+// The number of the triangle that seems to be nearest to the box.
+HWY_INLINE std::size_t likely_nearest(const NearTriangles& near, const VectorLanes& center) {
+  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const VectorLanes to_box = minus(plus(boxes.lower, boxes.upper), plus(center, center));
+    const Lanes square = dot(to_box, to_box);
+    const LaneMask nearer = hn::Lt(square, least);
+    least = hn::IfThenElse(nearer, square, least);
+    number = hn::IfThenElse(nearer, hn::Iota(d, static_cast<double>(n)), number);
+  }
+  const LaneMask is_least = hn::Eq(least, hn::MinOfLanes(d, least));
+  return static_cast<std::size_t>(
+      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere)))));
+}
+
+// Whether the triangle's half-space, of the bearing from `middle`, leaves it nearer to a sample than what was found.
+HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, const Vec3& middle, double slack,
+                              const Group& group) {
+  const Lanes distance = hn::Set(d, near.distances[number] - slack);
+  const VectorLanes away = in_all_lanes({near.away[0][number], near.away[1][number], near.away[2][number]});
+  LaneMask nearer = hn::FirstN(d, 0);
+  for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
+    const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const Lanes bound = hn::Max(hn::Add(distance, dot(away, minus(ps, in_all_lanes(middle)))), hn::Zero(d));
+    nearer = hn::Or(nearer, hn::Le(hn::Mul(bound, bound), hn::Load(d, &group.least[n])));
+  }
+  return !hn::AllFalse(d, nearer);
+}
+
+// `near` with bearings from `middle`.
+void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middle, const NearTriangles& near) {
+  const Middle here(task.rows, box);
+  Group group(task, box);
+  const std::vector<TrianglePack>& packs = task.tree.packs();
+  const auto look_at = [&](std::size_t number) {
+    const auto place = static_cast<std::size_t>(near.places[number]);
+    return beyond_error(lower_to(packs[place / kStride], place % kStride, group));
+  };
+  const VectorLanes from = in_all_lanes(here.center - middle.center), center = in_all_lanes(here.center);
+  const std::size_t first = likely_nearest(near, center);
+  double most = std::min(square_of_reach(task.reach), look_at(first));
+  const double slack = slack_of(std::sqrt(most), middle.radius);
+  const VectorLanes extent = in_all_lanes(here.extent);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const Lanes squares = squared_between(boxes.lower, boxes.upper, here.lower, here.upper);
+    const Lanes distances = hn::Sub(least_distances(bearings_of(near, n), from, extent), hn::Set(d, slack));
+    const auto below = [&](double square) {
+      return hn::And(hn::Lt(squares, hn::Set(d, square)), hn::Le(distances, hn::Set(d, std::sqrt(square))));
+    };
+    LaneMask wanted = below(most);
+    while (!hn::AllFalse(d, wanted)) {
+      const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, wanted));
+      const bool worth_it = n + lane != first && may_be_nearer(near, n + lane, middle.center, slack, group);
+      if (worth_it) most = std::min(most, look_at(n + lane));
+      wanted = hn::AndNot(hn::FirstN(d, lane + 1), worth_it ? hn::And(wanted, below(most)) : wanted);
+    }
+  }
+  for (std::size_t n = 0; n < kGroup; ++n) {
+    double& square = task.squares[group.index[n]];
+    square = std::min(square, group.least[n]);
+  }
+}
+
+// visit(part) of the parts of a box, of `side` samples along each axis.
+template <class Visit>
+HWY_INLINE void for_each_part(const SampleBox& box, std::size_t side, const Visit& visit) {
+  SampleBox part{};
+  const auto set = [&](std::size_t axis, std::size_t begin) {
+    part.begin[axis] = begin;
+    part.end[axis] = std::min(begin + side, box.end[axis]);
+  };
+  for (std::size_t k = box.begin[2]; k < box.end[2]; k += side) {
+    set(2, k);
+    for (std::size_t j = box.begin[1]; j < box.end[1]; j += side) {
+      set(1, j);
+      for (std::size_t i = box.begin[0]; i < box.end[0]; i += side) {
+        set(0, i);
+        visit(part);
+      }
+    }
+  }
+}
+
+void fill_block(const BlockTask& task, BlockScratch& scratch) {
+  const Middle middle(task.rows, task.block);
+  find_near(task, middle, scratch.all);
+  keep_near(task, middle, scratch.all, scratch.of_block);
+  if (scratch.of_block.count == 0) return;
+  for_each_part(task.block, kPartSide, [&](const SampleBox& part) {
+    const Middle of_part(task.rows, part);
+    take_bearings(of_part.center, task.tree, scratch.of_block);
+    keep_near(task, of_part, scratch.of_block, scratch.of_part);
+    if (scratch.of_part.count == 0) return;
+    for_each_part(part, kGroupSide, [&](const SampleBox& box) { fill_group(task, box, of_part, scratch.of_part); });
+  });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace raycone
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace raycone {
+
+BlockKernel block_kernel([[maybe_unused]] SimdLevel level) {
+#if HWY_ARCH_X86
+  const SimdLevel available = available_level(level);
+  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(fill_block);
+  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(fill_block);
+  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(fill_block);
+#endif
+  return &HWY_STATIC_DISPATCH(fill_block);
+}
+
+}  // namespace raycone
+#endif

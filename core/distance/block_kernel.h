@@ -1,0 +1,57 @@
+// Distances from the samples of a small block of a lattice, in SIMD lanes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/crossings/lattice_rows.h"
+#include "core/distance/distance_tree.h"
+
+namespace raycone {
+
+// Samples [begin, end) of each axis.
+struct SampleBox {
+  std::array<std::size_t, 3> begin, end;
+
+  [[nodiscard]] std::size_t side(std::size_t axis) const { return end[axis] - begin[axis]; }
+};
+
+// The largest side of a block that a kernel takes.
+inline constexpr std::size_t kBlockSide = 8;
+
+// Triangles that may be near some samples, in columns of equal length.
+struct NearTriangles {
+  std::array<std::vector<double>, 3> lower, upper;  // their boxes
+  std::vector<std::int64_t> places;                 // in the packs: of the first column's number, counted in numbers
+  std::vector<double> distances;                    // from the middle of part of the samples; 0 where not sure
+  std::array<std::vector<double>, 3> away;          // directions in which these distances grow; 0 where not sure
+  std::size_t count = 0;
+};
+
+// What a task keeps from block to block.
+struct BlockScratch {
+  std::vector<std::uint32_t> packs;
+  NearTriangles all, of_block, of_part;
+};
+
+// Samples and what is known about their nearest triangles.
+struct BlockTask {
+  const DistanceTree& tree;
+  const LatticeRows& rows;
+  SampleBox block;                       // each side at most kBlockSide
+  double reach;                          // a triangle that is farther than this from all samples counts for none
+  std::span<const std::uint32_t> packs;  // all that have a triangle that counts
+  std::span<double> squares;             // of all samples of `rows`, x fastest
+};
+
+// Lowers the squares of the block's samples to those of the nearest triangles (core/distance/triangle_distance.h) where
+// these are not above reach^2. Needs DefaultFloatingPoint.
+using BlockKernel = void (*)(const BlockTask& task, BlockScratch& scratch);
+
+// That of the level, of the best one where the level is not available. Results are the same for every level.
+[[nodiscard]] BlockKernel block_kernel(SimdLevel level);
+
+}  // namespace raycone

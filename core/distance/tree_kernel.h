@@ -1,0 +1,20 @@
+// Searches of a DistanceTree in SIMD lanes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/distance/distance_tree.h"
+
+namespace raycone {
+
+// DistanceTree::squared_distance().
+using NearestSearch = double (*)(const DistanceTree& tree, const Vec3& p, double limit);
+// DistanceTree::find_packs().
+using PackSearch = void (*)(const DistanceTree& tree, const Box& box, double limit, std::vector<std::uint32_t>& found);
+
+// Those of the level, of the best one where the level is not available. Results are the same for every level.
+[[nodiscard]] NearestSearch nearest_search(SimdLevel level);
+[[nodiscard]] PackSearch pack_search(SimdLevel level);
+
+}  // namespace raycone

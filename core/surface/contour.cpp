@@ -151,11 +151,13 @@ void CellContour::fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
   }
   const auto apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
   part_.apexes.push_back(apex_of(loop, tetrahedron));
+  const auto corners = std::span(loop.corners).first(loop.size);
+  const bool at_hole = std::ranges::any_of(
+      corners, [](const LoopCorner& corner) { return corner.edge_point && corner.edge_point->source == kHole; });
   for (std::size_t i = 0; i < loop.size; ++i) {
     const LoopCorner &here = loop.corners[i], &next = loop.corners[(i + 1) % loop.size];
     const EdgePoint* const point = here.edge_point ? here.edge_point : next.edge_point;
-    const EdgePoint* const other = next.edge_point ? next.edge_point : point;
-    add_triangle({here.vertex, next.vertex, apex}, source_of(point->source, other->source));
+    add_triangle({here.vertex, next.vertex, apex}, at_hole ? kHole : point->source);
   }
 }
 

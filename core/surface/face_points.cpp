@@ -55,9 +55,11 @@ std::optional<Vec3> meeting_point(const FaceEdges& face, double tolerance, doubl
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   if (p.source == kHole || q.source == kHole || p.source == q.source) return std::nullopt;
   const Vec3 step = q.position - p.position;
-  // Where one of the points lies on both planes, so does the straight line between them on one.
-  if (std::abs(dot(p.normal, step)) <= tolerance || std::abs(dot(q.normal, step)) <= tolerance) return std::nullopt;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
+  const double moved = 2.0 * margin * std::sqrt(std::max(dot(first, first), dot(second, second)));
+  // Where one of the points lies on both planes, so does the straight line between them on one.
+  const double same = tolerance + moved;
+  if (std::abs(dot(p.normal, step)) <= same || std::abs(dot(q.normal, step)) <= same) return std::nullopt;
   const double pu = dot(p.normal, first), pv = dot(p.normal, second), pw = dot(p.normal, p.position - face.corners[0]);
   const double qu = dot(q.normal, first), qv = dot(q.normal, second), qw = dot(q.normal, q.position - face.corners[0]);
   const double determinant = pu * qv - pv * qu;

@@ -40,6 +40,7 @@ class Merger {
     for (std::uint32_t v = 0; v < state_.size(); ++v) {
       const auto star = faces.of(v);
       star_.emplace_back(star.begin(), star.end());
+      into_.push_back(v);
       if (kept[v]) state_[v] = State::kKept;
     }
     for (std::uint32_t face = 0; face < surface_.mesh.triangles.size(); ++face) {
@@ -49,10 +50,13 @@ class Merger {
   }
 
   // The points at each node first: while all of them are there, one is found that lies in all planes.
-  SurfaceMesh merge() {
+  MergedSurface merge() {
     pull_all(&Merger::target_at_node);
     for (State& state : state_) state = state == State::kStays ? State::kWaits : state;
     pull_all(&Merger::best_target);
+    for (std::uint32_t& target : into_) {
+      while (into_[target] != target) target = into_[target];
+    }
     std::vector<Triangle> triangles;
     std::vector<std::int32_t> sources;
     for (std::size_t face = 0; face < planes_.size(); ++face) {
@@ -62,7 +66,7 @@ class Merger {
     }
     surface_.mesh.triangles = std::move(triangles);
     surface_.sources = std::move(sources);
-    return std::move(surface_);
+    return {std::move(surface_), std::move(into_)};
   }
 
  private:
@@ -252,6 +256,7 @@ class Merger {
       }
     }
     star_[v].clear();
+    into_[v] = target;
   }
 
   SurfaceMesh surface_;
@@ -261,12 +266,13 @@ class Merger {
   std::vector<bool> needles_;
   std::vector<std::vector<std::uint32_t>> star_;  // faces
   std::vector<State> state_;
+  std::vector<std::uint32_t> into_;
 };
 
 }  // namespace
 
-SurfaceMesh merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const std::vector<bool>& kept,
-                         double most) {
+MergedSurface merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const std::vector<bool>& kept,
+                           double most) {
   return Merger(surface, input, kept, most).merge();
 }
 

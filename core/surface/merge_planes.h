@@ -1,6 +1,7 @@
 // Fewer triangles for the same surface.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
@@ -14,7 +15,11 @@ namespace raycone {
 // longer ones. Faces keep their order and sources; vertices keep their numbers, and some are no longer used. Those of
 // `kept` stay. The same surface everywhere, topologically and within `most`; but where planes agree only up to
 // rounding, faces that come as near to others may cross them.
-[[nodiscard]] SurfaceMesh merge_planes(const SurfaceMesh& surface, const TriangleMesh& input,
-                                       const std::vector<bool>& kept, double most);
+struct MergedSurface {
+  SurfaceMesh surface;
+  std::vector<std::uint32_t> into;  // of each vertex, what it was pulled into; itself, where it stayed
+};
+[[nodiscard]] MergedSurface merge_planes(const SurfaceMesh& surface, const TriangleMesh& input,
+                                         const std::vector<bool>& kept, double most);
 
 }  // namespace raycone

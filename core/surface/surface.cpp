@@ -16,9 +16,8 @@ namespace raycone {
 namespace {
 
 void round_to_float(std::vector<Vec3>& vertices) {
-  for (Vec3& p : vertices) {
-    for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis]));
-  }
+  const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  for (Vec3& p : vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 
 // Vertices that no triangle uses are left out.
@@ -86,7 +85,7 @@ class SurfaceMaker {
     const double most = margins.inner / 4.0 * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < 2 * kRounds; ++round) {
-      SurfaceMesh result = merge_planes(surface, mesh_, kept, most);
+      auto [result, into] = merge_planes(surface, mesh_, kept, most);
       const std::vector<bool> touched = faulty_vertices(result.mesh);
       TriangleMesh compact = result.mesh;
       drop_unused_vertices(compact);
@@ -95,7 +94,7 @@ class SurfaceMaker {
         result.mesh = std::move(compact);
         return result;
       }
-      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[v];
+      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[into[v]];
     }
     return surface;
   }

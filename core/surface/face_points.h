@@ -26,6 +26,9 @@ class FacePoints {
   FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const DistanceEvaluator& distance,
              double tolerance, const SurfaceMargins& margins);
   FacePoints() = default;
+  // These points, of faces numbered 16 * cell + face, increasing.
+  FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
+      : faces_(std::move(faces)), positions_(std::move(positions)) {}
 
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
 

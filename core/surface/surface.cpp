@@ -16,7 +16,11 @@ namespace raycone {
 namespace {
 
 void round_to_float(std::vector<Vec3>& vertices) {
-  const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  // Volatile, since GCC 12.2 leaves some of several numbers out when it vectorizes this (-ftree-slp-vectorize).
+  const auto rounded = [](double x) {
+    const volatile auto single = static_cast<float>(x);
+    return static_cast<double>(single);
+  };
   for (Vec3& p : vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 

@@ -24,6 +24,7 @@ WORKING = {
     "lattice": ["lattice", CUBE, "-o", "out.csv", "--resolution", "3"],
     "points": ["points", CUBE, "points.csv", "-o", "out.csv"],
     "slice": ["slice", CUBE, "-o", "out.png", "--size", "4"],
+    "surface": ["surface", CUBE, "-o", "out.ply", "--resolution", "3"],
     "info": ["info", CUBE],
     "batch": ["batch", CUBE, "--out-dir", "batch", "--resolution", "3"],
     "report": ["report", "done"],
@@ -57,6 +58,12 @@ NOT_AVAILABLE = {
         "--format npz": "--format npz",
     },
     "slice": {"--normalize cube": "--normalize", "--padding 5%": "--padding 5%"},
+    "surface": {
+        "--normalize cube": "--normalize",
+        "--thicken 0.1": "--thicken",
+        "--simplify 0.1": "--simplify 0.1",
+        "--padding 5%": "--padding 5%",
+    },
     "info": {"--normalize cube": "--normalize"},
     "batch": {
         "--tolerance 1e-3": "--tolerance 1e-3",
@@ -69,9 +76,6 @@ NOT_AVAILABLE = {
 
 # Whole command lines, and what they name.
 NOT_AVAILABLE_LINES = {
-    "surface mesh.obj -o out.ply": "surface",
-    "surface --help": "surface",
-    "help surface": "surface",
     "info model.3mf": "model.3mf",
     "info cube.ply.gz": "cube.ply.gz",
     "info compressed --mesh-format stl": "compressed",

@@ -212,7 +212,6 @@ class NotYet(Contract):
                     self.assertNotIn(named, listed)
         for line, named in NOT_AVAILABLE_LINES.items():
             self.assertEqual(self.refused(line.split(), named), "raycone: %s: not available yet\n" % named)
-        self.assertNotIn("surface ", self.works(["--help"]).stdout)
         with open("compressed", "rb") as file:
             result = run(["info", "-"], stdin=file)
         self.assertEqual((result.returncode, result.stderr), (1, "raycone: -: not available yet\n"))

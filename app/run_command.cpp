@@ -12,6 +12,7 @@
 #include "app/run/run_limits.h"
 #include "app/run/run_points.h"
 #include "app/run/run_slice.h"
+#include "app/run/run_surface.h"
 #include "app/run/written_files.h"
 #include "io/files/counted.h"
 #include "io/files/output_file.h"
@@ -28,8 +29,9 @@ void print(const std::string& text) {
 RunReport evaluate(const LatticeCommand& command, const RunLimits& limits) { return run_lattice(command, limits); }
 RunReport evaluate(const PointsCommand& command, const RunLimits& limits) { return run_points(command, limits); }
 RunReport evaluate(const SliceCommand& command, const RunLimits& limits) { return run_slice(command, limits); }
+RunReport evaluate(const SurfaceCommand& command, const RunLimits& limits) { return run_surface(command, limits); }
 
-// From a mesh to files about it: lattice, points, slice.
+// From a mesh to files about it: lattice, points, slice, surface.
 template <typename EvaluatingCommand>
 ExitCode dispatch(const EvaluatingCommand& command) {
   within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {

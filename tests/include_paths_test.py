@@ -16,6 +16,8 @@ STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings
 BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings"],
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],
+          "core/surface": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections",
+                           "core/crossings", "core/boundary", "core/evaluation", "core/distance"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]
@@ -28,7 +30,8 @@ APP = {"app/text": [],
        "app/command_line": ["app/options"],
        "app/report": ["app/process", "io/mesh", "core/evaluation", "core/orientation"],
        "app/picture": ["core/data"],
-       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance", "core/intersections"],
+       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance", "core/intersections",
+                   "core/surface"],
        "app/batch": ["app/run"],
        "app/manual": ["app/command_line"]}
 

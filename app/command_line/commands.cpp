@@ -7,19 +7,20 @@
 #include "app/command_line/points_options.h"
 #include "app/command_line/report_options.h"
 #include "app/command_line/slice_options.h"
+#include "app/command_line/surface_options.h"
 
 namespace raycone {
 
 const std::vector<CommandEntry>& commands() {
   static const std::vector<CommandEntry> all{{lattice_spec(), parse_lattice}, {points_spec(), parse_points},
-                                             {slice_spec(), parse_slice},     {info_spec(), parse_info},
-                                             {batch_spec(), parse_batch},     {report_spec(), parse_report},
-                                             {help_spec(), parse_help}};
+                                             {slice_spec(), parse_slice},     {surface_spec(), parse_surface},
+                                             {info_spec(), parse_info},       {batch_spec(), parse_batch},
+                                             {report_spec(), parse_report},   {help_spec(), parse_help}};
   return all;
 }
 
 const std::set<std::string>& later_commands() {
-  static const std::set<std::string> names{"surface"};
+  static const std::set<std::string> names;
   return names;
 }
 

@@ -9,6 +9,7 @@
 #include "app/options/lattice_command.h"
 #include "app/options/points_command.h"
 #include "app/options/slice_command.h"
+#include "app/options/surface_command.h"
 
 namespace raycone {
 
@@ -17,7 +18,7 @@ struct PrintCommand {
   std::string text;
 };
 
-using Command =
-    std::variant<LatticeCommand, PointsCommand, SliceCommand, InfoCommand, BatchCommand, ReportCommand, PrintCommand>;
+using Command = std::variant<LatticeCommand, PointsCommand, SliceCommand, SurfaceCommand, InfoCommand, BatchCommand,
+                             ReportCommand, PrintCommand>;
 
 }  // namespace raycone

@@ -51,6 +51,19 @@ Json to_object(const Verification& verification) {
   return object;
 }
 
+// What was checked is said to be so: a surface with a fault is never written.
+Json to_object(const SurfaceReport& surface) {
+  return {{"vertices", surface.vertices},
+          {"faces", surface.faces},
+          {"components", surface.components},
+          {"closed", true},
+          {"manifold", true},
+          {"self_intersections", 0},
+          {"max_distance", surface.max_distance},
+          {"hole_area", surface.hole_area},
+          {"dropped_area", surface.dropped_area}};
+}
+
 Json names_of(const std::vector<Warning>& warnings) {
   Json names = Json::array();
   for (const Warning& warning : warnings) names.push_back(warning.name);
@@ -143,6 +156,7 @@ std::string to_json(const RunReport& report) {
                 {"warning_lines", lines_of(report.warnings)},
                 {"seconds", to_object(report.seconds)}};
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
+  if (report.surface) document["surface"] = to_object(*report.surface);
   if (report.verification) {
     document["verify"] = to_object(*report.verification);
     document["seconds"]["verify"] = report.seconds.verify;

@@ -19,6 +19,10 @@ std::string verification_clause(const Verification& verification) {
   return clause;
 }
 
+std::string surface_clause(const std::optional<SurfaceReport>& surface) {
+  return surface ? ", surface of " + counted(surface->faces, "face") : "";
+}
+
 }  // namespace
 
 std::string summary_line(const RunReport& report) {
@@ -29,7 +33,7 @@ std::string summary_line(const RunReport& report) {
   char verify[32] = "";
   if (report.verification) std::snprintf(verify, sizeof verify, ", verify %.2f", s.verify);
   return report.mesh + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") +
-         ", " + counted(report.samples, "sample") + times + verify + ") -> " +
+         ", " + counted(report.samples, "sample") + surface_clause(report.surface) + times + verify + ") -> " +
          (report.output == "-" ? "standard output" : report.output) +
          (report.verification ? verification_clause(*report.verification) : "");
 }

@@ -34,6 +34,16 @@ struct Verification {
   std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
 };
 
+// What `raycone surface` made; the surface has been checked.
+struct SurfaceReport {
+  std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;
+  std::uint64_t components = 0;
+  double max_distance = 0.0;  // of vertices from the mesh, but in holes; world units
+  double hole_area = 0.0;
+  double dropped_area = 0.0;
+};
+
 struct RunReport {
   std::string mesh;                     // files as named on the command line
   std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
@@ -52,6 +62,7 @@ struct RunReport {
   int threads = 0;
   Tally tally;
   std::optional<Verification> verification;  // where asked for
+  std::optional<SurfaceReport> surface;      // where one was made
   std::uint64_t peak_memory_bytes = 0;
   std::vector<Warning> warnings;
   Seconds seconds;

@@ -183,6 +183,12 @@ Box widened(Box box, const WorldPadding& padding) {
   return box;
 }
 
+Lattice with_layers(Lattice lattice, std::int64_t layers) {
+  add_samples(lattice, VoxelPadding{layers});
+  check_finite(lattice);
+  return lattice;
+}
+
 Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<Warning>& warnings) {
   Box box = request.bounds.value_or(mesh_box);
   if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, *padding);

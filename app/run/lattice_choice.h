@@ -16,6 +16,12 @@ namespace raycone {
 [[nodiscard]] Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request,
                                      std::vector<Warning>& warnings);
 
+// With this many samples more at either end of every axis. Throws as choose_lattice().
+[[nodiscard]] Lattice with_layers(Lattice lattice, std::int64_t layers);
+
+// With this many samples more at either end of every axis. Throws as choose_lattice().
+[[nodiscard]] Lattice with_layers(Lattice lattice, std::int64_t layers);
+
 // Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, const WorldPadding& padding);
 

@@ -34,6 +34,7 @@ struct MeshToEvaluate {
   OrientationCounts orientation;
   std::vector<ExteriorEdge> edges;
   MeshDefects defects;
+  std::vector<std::uint32_t> places;  // of its faces among those read; empty where they are the same
 };
 
 // The one place for all that is done. What the user should know about that and about the result is appended to

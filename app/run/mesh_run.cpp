@@ -38,6 +38,7 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
                                [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings); });
   report.orientation = input.orientation;
   edges_ = std::move(input.edges);
+  places_ = std::move(input.places);
   return std::move(input.mesh);
 }
 

@@ -42,6 +42,9 @@ class MeshRun {
   // exterior_edges() of that mesh, once.
   [[nodiscard]] std::vector<ExteriorEdge> take_edges() { return std::move(edges_); }
 
+  // The place among the faces of the file of a face of that mesh.
+  [[nodiscard]] std::uint32_t place_of(std::uint32_t face) const { return places_.empty() ? face : places_[face]; }
+
   // Prints what the report has by now; throws InputError with --strict.
   void print_warnings() const;
 
@@ -66,6 +69,7 @@ class MeshRun {
   const RunOptions& options_;
   const RunLimits& limits_;
   std::vector<ExteriorEdge> edges_;
+  std::vector<std::uint32_t> places_;
   std::optional<Stopwatch> total_;
   std::optional<Progress> progress_;
 };

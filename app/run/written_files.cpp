@@ -25,6 +25,13 @@ std::vector<WrittenFile> files_written(const OutputFiles& output, bool text) {
   return written;
 }
 
+std::vector<std::string> inputs_of(const MeshOptions& mesh,
+                                   const std::variant<LatticeRequest, GridReference>& lattice) {
+  std::vector<std::string> inputs{mesh.path};
+  if (const auto* const grid = std::get_if<GridReference>(&lattice)) inputs.push_back(grid->path);
+  return inputs;
+}
+
 }  // namespace
 
 std::vector<WrittenFile> files_written(const LatticeCommand& command) {
@@ -41,17 +48,17 @@ std::vector<WrittenFile> files_written(const SliceCommand& command) {
   return written;
 }
 
+std::vector<WrittenFile> files_written(const SurfaceCommand& command) {
+  return files_written(command.output, is_text(command.format));
+}
+
 std::vector<WrittenFile> files_written(const InfoCommand& command) {
   std::vector<WrittenFile> written{{"-", "output"}};
   if (command.mark) written.push_back({*command.mark, "marked mesh"});
   return written;
 }
 
-std::vector<std::string> inputs_of(const LatticeCommand& command) {
-  std::vector<std::string> inputs{command.mesh.path};
-  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) inputs.push_back(grid->path);
-  return inputs;
-}
+std::vector<std::string> inputs_of(const LatticeCommand& command) { return inputs_of(command.mesh, command.lattice); }
 
 std::vector<std::string> inputs_of(const PointsCommand& command) {
   std::vector<std::string> inputs{command.mesh.path};
@@ -60,6 +67,8 @@ std::vector<std::string> inputs_of(const PointsCommand& command) {
 }
 
 std::vector<std::string> inputs_of(const SliceCommand& command) { return {command.mesh.path}; }
+
+std::vector<std::string> inputs_of(const SurfaceCommand& command) { return inputs_of(command.mesh, command.lattice); }
 
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {
   std::vector<std::optional<FileIdentity>> read;

@@ -10,6 +10,7 @@
 #include "app/options/points_command.h"
 #include "app/options/run_options.h"
 #include "app/options/slice_command.h"
+#include "app/options/surface_command.h"
 #include "app/report/run_report.h"
 #include "io/files/output_file.h"
 
@@ -24,12 +25,14 @@ struct WrittenFile {
 [[nodiscard]] std::vector<WrittenFile> files_written(const LatticeCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const PointsCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const SliceCommand& command);
+[[nodiscard]] std::vector<WrittenFile> files_written(const SurfaceCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const InfoCommand& command);
 
 // The files that a command names to be read, the mesh first.
 [[nodiscard]] std::vector<std::string> inputs_of(const LatticeCommand& command);
 [[nodiscard]] std::vector<std::string> inputs_of(const PointsCommand& command);
 [[nodiscard]] std::vector<std::string> inputs_of(const SliceCommand& command);
+[[nodiscard]] std::vector<std::string> inputs_of(const SurfaceCommand& command);
 
 // Throws UsageError where one of `written` would replace or grow one of `inputs` ("-": standard input) or another of
 // `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,

@@ -129,7 +129,11 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
     ++left;
   }
   mesh.triangles.resize(left);
-  return {std::move(mesh), counts};
+  std::vector<std::uint32_t> places;
+  for (std::size_t i = 0; counts.dropped_duplicates > 0 && i < fate.size(); ++i) {
+    if (fate[i] != FaceFate::kDropped) places.push_back(static_cast<std::uint32_t>(i));
+  }
+  return {std::move(mesh), counts, std::move(places)};
 }
 
 OrientedMesh turned_to_agree(TriangleMesh mesh) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/data/triangle_mesh.h"
 
@@ -23,6 +24,8 @@ struct OrientationCounts {
 struct OrientedMesh {
   TriangleMesh mesh;
   OrientationCounts counts;  // all 0 but with kFlip and kAuto
+  // The place of each face in the mesh as it was; empty where none was dropped.
+  std::vector<std::uint32_t> places = {};
 };
 
 // The mesh with its faces turned. Vertices stay as they are, faces in their order and with their first corner. kAuto:

@@ -30,6 +30,7 @@ POINTS = "points cubes.obj points.csv -o out/a.csv --report out/report.json"
 SAMPLE = "points cubes.obj -o out/a.npz --report out/report.json --sample uniform=5"
 NEAR = "points cubes.obj -o out/a.npz --sample near=5:0.1"
 SLICE = "slice cubes.obj -o out/a.png --size 8 --report out/report.json"
+SURFACE = "surface cubes.obj -o out/a.ply --resolution 5 --report out/report.json"
 INFO = "info cubes.obj"
 BATCH = "batch good --out-dir out/batch --resolution 5"
 
@@ -39,16 +40,17 @@ RUN = ["--threads 1", "--memory-limit 4G", "--timeout 1000", "--progress never",
 TABLE = [
     # --- Meshes
     *(Row(words.replace("cubes.obj", "nameless"), "--mesh-format obj", CHANGES)
-      for words in (LATTICE, POINTS, SLICE, INFO)),
+      for words in (LATTICE, POINTS, SLICE, SURFACE, INFO)),
     Row("batch nameless --out-dir out/batch --resolution 4", "--mesh-format obj", CHANGES),
-    *(Row(words.replace("cubes.obj", "seam.obj"), "--weld none", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO)),
+    *(Row(words.replace("cubes.obj", "seam.obj"), "--weld none", CHANGES)
+      for words in (LATTICE, POINTS, SLICE, SURFACE, INFO)),
     Row("batch seam.obj --out-dir out/batch --resolution 4", "--weld none", CHANGES),
     *(Row(words, option, CHANGES)
-      for words in (LATTICE, POINTS, SLICE, INFO, BATCH) for option in ("--scale 2", "--up y-to-z")),
-    *(Row(words, "--normalize sphere:3", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO, BATCH, SAMPLE)),
+      for words in (LATTICE, POINTS, SLICE, SURFACE, INFO, BATCH) for option in ("--scale 2", "--up y-to-z")),
+    *(Row(words, "--normalize sphere:3", CHANGES) for words in (LATTICE, POINTS, SLICE, SURFACE, INFO, BATCH, SAMPLE)),
     Row(SLICE + " --normal 1,1,0", "--up 1,0,0", CHANGES),
     Row(SLICE, "--up 1,0,0", REFUSED),
-    *(Row(words, "--orient flip", CHANGES) for words in (LATTICE, POINTS, INFO, BATCH, SLICE)),
+    *(Row(words, "--orient flip", CHANGES) for words in (LATTICE, POINTS, INFO, BATCH, SLICE, SURFACE)),
     # --- Lattices
     *(Row(words, option, CHANGES)
       for words in (LATTICE, BATCH)
@@ -114,26 +116,36 @@ TABLE = [
     Row(SLICE, "--origin .1,.1,.1", REFUSED),
     Row(SLICE + " --normal 1,1,0", "--axis x", REFUSED),
     Row(SLICE + " --normal 1,1,0", "--at 10%", REFUSED),
+    # --- Surfaces
+    *(Row(SURFACE, option, CHANGES)
+      for option in ("--bounds -1,-1,-1,3,3,3", "--padding .5", "--padding 2v", "--resolution 6", "--centers",
+                     "--rule odd", "--simplify none")),
+    Row(SURFACE, "--simplify 0", HARMLESS),  # the default
+    Row(SURFACE, "--voxel-size .25", REFUSED),
+    Row(SURFACE, "--like grid.vdb", REFUSED),
+    *(Row(SURFACE.replace(" --resolution 5", ""), option, CHANGES) for option in ("--voxel-size .25", "--like grid.vdb")),
     # --- Output
     *(Row(re.sub("-o out/a.... ", "", words), "-o out/b" + end, CHANGES)
-      for words, end in ((LATTICE, ".csv"), (POINTS, ".csv"), (SAMPLE, ".npz"), (SLICE, ".png"))),
+      for words, end in ((LATTICE, ".csv"), (POINTS, ".csv"), (SAMPLE, ".npz"), (SLICE, ".png"),
+                         (SURFACE, ".stl"))),
     *(Row(words, twice, REFUSED)
-      for words in (LATTICE, POINTS, SLICE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
+      for words in (LATTICE, POINTS, SLICE, SURFACE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
     *(Row(words + " --field winding", "--field inside", REFUSED) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "npz", "vti", "nrrd", "nii", "nii.gz")),
     Row(LATTICE, "--format csv", HARMLESS),
     Row(POINTS, "--format npy", CHANGES),
     Row("slice cubes.obj -o out/a --size 8", "--format png", CHANGES),
-    *(Row(words.replace("out/a", "old"), "--no-clobber", CHANGES) for words in (LATTICE, POINTS, SLICE)),
+    *(Row(SURFACE, "--format " + name, CHANGES) for name in ("stl", "obj", "off")),
+    *(Row(words.replace("out/a", "old"), "--no-clobber", CHANGES) for words in (LATTICE, POINTS, SLICE, SURFACE)),
     Row("lattice cubes.obj -o - --resolution 2", "--no-clobber", HARMLESS),
     Row(BATCH, "--no-clobber", HARMLESS),
     Row("info cubes.obj", "--no-clobber", REFUSED),
     Row("info open.obj --mark old.ply", "--no-clobber", CHANGES),
     *(Row(words, option, CHANGES)
-      for words in (LATTICE, POINTS, SLICE) for option in ("--report out/r.json", "--depfile out/a.d")),
+      for words in (LATTICE, POINTS, SLICE, SURFACE) for option in ("--report out/r.json", "--depfile out/a.d")),
     *(Row(words, "--depfile out/a.d", REFUSED)
       for words in ("lattice cubes.obj -o - --resolution 2", "points cubes.obj points.csv",
-                    "slice cubes.obj -o - --size 8")),
+                    "slice cubes.obj -o - --size 8", "surface cubes.obj -o - --resolution 5")),
     *(Row(FILE + end, "--double", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
     *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("vdb", "npy", "npz", "vti")),
     *(Row(FILE + end, "--dtype f16", CHANGES) for end in ("vdb", "npy", "npz")),
@@ -194,8 +206,10 @@ TABLE = [
     Row("report done -o out/page.html", "--output out/other.html", REFUSED),
     *(Row("report done -o out/page.html", option, HARMLESS) for option in RUN),
     # --- All of them
-    *(Row(words, option, HARMLESS) for words in (LATTICE, POINTS, SAMPLE, SLICE, INFO, BATCH) for option in RUN),
-    *(Row(words.replace("cubes.obj", "short.obj"), "--strict", CHANGES) for words in (LATTICE, POINTS, SLICE, INFO)),
+    *(Row(words, option, HARMLESS) for words in (LATTICE, POINTS, SAMPLE, SLICE, SURFACE, INFO, BATCH)
+      for option in RUN),
+    *(Row(words.replace("cubes.obj", "short.obj"), "--strict", CHANGES)
+      for words in (LATTICE, POINTS, SLICE, SURFACE, INFO)),
 ]
 
 

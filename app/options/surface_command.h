@@ -1,0 +1,25 @@
+// `raycone surface`: a closed mesh of the set where a rule holds.
+#pragma once
+
+#include <variant>
+
+#include "app/options/lattice_request.h"
+#include "app/options/mesh_options.h"
+#include "app/options/output_options.h"
+#include "app/options/run_options.h"
+#include "core/data/rule.h"
+#include "io/mesh/write_surface.h"
+
+namespace raycone {
+
+struct SurfaceCommand {
+  MeshOptions mesh;
+  RunOptions run;
+  OutputFiles output;
+  SurfaceFormat format = SurfaceFormat::kPly;
+  std::variant<LatticeRequest, GridReference> lattice;
+  Rule rule;
+  bool merge_planes = true;
+};
+
+}  // namespace raycone

@@ -1,0 +1,36 @@
+// Whether a surface is what it is said to be.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/intersections/self_intersections.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// What is wrong with a mesh; all of it 0 where it is right.
+struct SurfaceFaults {
+  std::uint64_t edges = 0;             // that are not of two faces in opposite directions
+  std::uint64_t links = 0;             // vertices whose faces are no single fan around them
+  std::uint64_t degenerate_faces = 0;  // of zero area
+  std::uint64_t equal_vertices = 0;    // at the position of another one
+  std::uint64_t nodes = 0;             // of the lattice on the wrong side
+  SelfIntersections intersections{};
+
+  [[nodiscard]] bool none() const {
+    return edges + links + degenerate_faces + equal_vertices + nodes + intersections.pairs == 0;
+  }
+};
+
+// Looks for all of them, exactly. So a mesh without faults is closed, a 2-manifold and free of self-intersections, with
+// the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a triangle.
+[[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside);
+
+// "3 edges, 1 pair of faces that intersect"
+[[nodiscard]] std::string described(const SurfaceFaults& faults);
+
+}  // namespace raycone

@@ -1,0 +1,243 @@
+#include "core/surface/contour.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "core/machine/threads.h"
+#include "core/surface/planes_point.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kCellsPerPart = 512;
+
+// A corner of a loop: a vertex of the surface, and the edge point where it is one.
+struct LoopCorner {
+  std::uint32_t vertex;
+  const EdgePoint* edge_point;
+};
+struct Loop {
+  std::array<LoopCorner, 8> corners;
+  std::size_t size = 0;
+  bool has_face_point = false;
+
+  void add(std::uint32_t vertex, const EdgePoint* point) { corners[size++] = {vertex, point}; }
+};
+
+// What some cells contribute. Apexes are numbered from kFirstApex on, until all parts are joined.
+struct ContourPart {
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> sources;
+  std::vector<Vec3> apexes;
+};
+constexpr std::uint32_t kFirstApex = 0x80000000;
+
+class CellContour {
+ public:
+  CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
+              double tolerance, double margin, ContourPart& part)
+      : cells_(cells),
+        edge_points_(edge_points),
+        face_points_(face_points),
+        tolerance_(tolerance),
+        margin_(margin),
+        part_(part) {}
+
+  void add(std::uint32_t cell) {
+    cell_ = cell;
+    corner_cells_.fill(kUnknown);
+    for (const kuhn::Tetrahedron& tetrahedron : kuhn::kTetrahedra) {
+      const Loop loop = loop_of(tetrahedron);
+      if (loop.size > 0) fill(loop, tetrahedron);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
+
+  [[nodiscard]] bool is_inside(unsigned corner) const { return cells_.cells()[cell_].is_inside(corner); }
+  [[nodiscard]] std::uint32_t cell_of(unsigned corner) {
+    if (corner_cells_[corner] == kUnknown) corner_cells_[corner] = cells_.cell_at(cell_, corner);
+    return corner_cells_[corner];
+  }
+  void add_edge(Loop& loop, unsigned a, unsigned b) {
+    const unsigned low = std::min(a, b), high = std::max(a, b);
+    const std::uint32_t edge = cells_.cells()[cell_of(low)].edge(high ^ low);
+    loop.add(edge, &edge_points_[edge]);
+  }
+  void add_face(Loop& loop, unsigned a, unsigned b, unsigned c) {
+    std::array<unsigned, 3> corners{a, b, c};
+    std::ranges::sort(corners);
+    const std::size_t face = kuhn::face_number(corners[1] ^ corners[0], corners[2] ^ corners[0]);
+    const auto found = face_points_.find(cell_of(corners[0]), face);
+    if (!found) return;
+    loop.add(cells_.edges() + *found, nullptr);
+    loop.has_face_point = true;
+  }
+
+  [[nodiscard]] Loop loop_of(const kuhn::Tetrahedron& tetrahedron);
+  [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
+    return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
+  }
+  void fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
+  void fill_flat(const Loop& loop);
+  [[nodiscard]] Vec3 apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  void add_triangle(const Triangle& triangle, std::int32_t source) {
+    part_.triangles.push_back(triangle);
+    part_.sources.push_back(source);
+  }
+
+  const SurfaceCells& cells_;
+  std::span<const EdgePoint> edge_points_;
+  const FacePoints& face_points_;
+  double tolerance_, margin_;
+  ContourPart& part_;
+  std::uint32_t cell_ = 0;
+  std::array<std::uint32_t, kuhn::kCorners> corner_cells_{};
+};
+
+// Corners are reordered by transpositions, each of which turns the loop around.
+Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
+  std::array<unsigned, 4> corner = tetrahedron.corners;
+  const auto inside = static_cast<std::size_t>(std::ranges::count_if(corner, [&](unsigned c) { return is_inside(c); }));
+  Loop loop;
+  if (inside == 0 || inside == corner.size()) return loop;
+  bool positive = tetrahedron.positive;
+  const auto swap_corners = [&](std::size_t a, std::size_t b) {
+    if (a == b) return;
+    std::swap(corner[a], corner[b]);
+    positive = !positive;
+  };
+  if (inside == 2) {
+    for (std::size_t i = 0, next = 0; i < corner.size(); ++i) {
+      if (is_inside(corner[i])) swap_corners(next++, i);
+    }
+    const auto [a, b, c, d] = corner;  // a and b inside
+    add_edge(loop, a, c);
+    add_face(loop, a, c, d);
+    add_edge(loop, a, d);
+    add_face(loop, a, b, d);
+    add_edge(loop, b, d);
+    add_face(loop, b, c, d);
+    add_edge(loop, b, c);
+    add_face(loop, a, b, c);
+  } else {
+    const bool lone_inside = inside == 1;
+    const auto lone = std::ranges::find_if(corner, [&](unsigned c) { return is_inside(c) == lone_inside; });
+    swap_corners(0, static_cast<std::size_t>(lone - corner.begin()));
+    const auto [a, b, c, d] = corner;
+    add_edge(loop, a, b);
+    add_face(loop, a, b, c);
+    add_edge(loop, a, c);
+    add_face(loop, a, c, d);
+    add_edge(loop, a, d);
+    add_face(loop, a, d, b);
+    if (!lone_inside) positive = !positive;
+  }
+  if (!positive) std::reverse(loop.corners.begin(), loop.corners.begin() + static_cast<std::ptrdiff_t>(loop.size));
+  return loop;
+}
+
+std::int32_t source_of(std::int32_t a, std::int32_t b) { return a == kHole || b == kHole ? kHole : a; }
+
+void CellContour::fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
+  if (!loop.has_face_point) {
+    fill_flat(loop);
+    return;
+  }
+  const auto apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
+  part_.apexes.push_back(apex_of(loop, tetrahedron));
+  const auto corners = std::span(loop.corners).first(loop.size);
+  const bool at_hole = std::ranges::any_of(
+      corners, [](const LoopCorner& corner) { return corner.edge_point && corner.edge_point->source == kHole; });
+  for (std::size_t i = 0; i < loop.size; ++i) {
+    const LoopCorner &here = loop.corners[i], &next = loop.corners[(i + 1) % loop.size];
+    const EdgePoint* const point = here.edge_point ? here.edge_point : next.edge_point;
+    add_triangle({here.vertex, next.vertex, apex}, at_hole ? kHole : point->source);
+  }
+}
+
+// A loop of four is cut along its shorter diagonal.
+void CellContour::fill_flat(const Loop& loop) {
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    const auto &p = loop.corners[a], &q = loop.corners[b], &r = loop.corners[c];
+    const std::int32_t source = source_of(p.edge_point->source, q.edge_point->source);
+    add_triangle({p.vertex, q.vertex, r.vertex}, source_of(source, r.edge_point->source));
+  };
+  if (loop.size == 3) {
+    add(0, 1, 2);
+    return;
+  }
+  const auto diagonal = [&](std::size_t a, std::size_t b) {
+    const Vec3 step = position(loop.corners[b]) - position(loop.corners[a]);
+    return dot(step, step);
+  };
+  const std::size_t from = diagonal(0, 2) <= diagonal(1, 3) ? 0 : 1;
+  add(from, from + 1, from + 2);
+  add(from + 2, (from + 3) % 4, from);
+}
+
+Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
+  std::array<Vec3, 4> corners;
+  std::ranges::transform(tetrahedron.corners, corners.begin(),
+                         [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
+  std::array<PointOnPlane, 4> planes;
+  std::size_t count = 0, face_points = 0;
+  Vec3 of_all, of_faces;
+  for (std::size_t i = 0; i < loop.size; ++i) {
+    const LoopCorner& corner = loop.corners[i];
+    const Vec3 from_first = position(corner) - corners[0];
+    of_all = of_all + from_first;
+    if (!corner.edge_point) {
+      of_faces = of_faces + from_first;
+      ++face_points;
+    } else if (corner.edge_point->source != kHole) {
+      planes[count++] = {from_first, corner.edge_point->normal};
+    }
+  }
+  const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
+                                      : (1.0 / static_cast<double>(loop.size)) * of_all;
+  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), middle, tolerance_);
+  if (meeting && is_within(corners, *meeting, margin_)) return corners[0] + *meeting;
+  return corners[0] + moved_within(corners, middle, margin_);
+}
+
+}  // namespace
+
+SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
+                    double tolerance, const SurfaceMargins& margins) {
+  const std::size_t count = cells.cells().size();
+  std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part) {
+      CellContour contour(cells, edge_points, face_points, tolerance, margins.inner, parts[part]);
+      for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
+        contour.add(static_cast<std::uint32_t>(cell));
+      }
+    }
+  });
+  SurfaceMesh surface;
+  std::vector<Vec3>& vertices = surface.mesh.vertices;
+  for (const EdgePoint& point : edge_points) vertices.push_back(point.position);
+  vertices.insert(vertices.end(), face_points.positions().begin(), face_points.positions().end());
+  for (const ContourPart& part : parts) {
+    const std::size_t first_apex = vertices.size();
+    vertices.insert(vertices.end(), part.apexes.begin(), part.apexes.end());
+    for (Triangle triangle : part.triangles) {
+      for (std::uint32_t& corner : triangle) {
+        if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex);
+      }
+      surface.mesh.triangles.push_back(triangle);
+    }
+    surface.sources.insert(surface.sources.end(), part.sources.begin(), part.sources.end());
+    if (vertices.size() >= kFirstApex || surface.mesh.triangles.size() > kMaxTriangles)
+      throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
+  }
+  return surface;
+}
+
+}  // namespace raycone

@@ -1,0 +1,28 @@
+// The triangles between the points of a surface on the edges and faces of a lattice's tetrahedra.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/surface/edge_points.h"
+#include "core/surface/face_points.h"
+#include "core/surface/surface_cells.h"
+
+namespace raycone {
+
+struct SurfaceMesh {
+  TriangleMesh mesh;
+  std::vector<std::int32_t> sources;  // of each triangle: a triangle of the input, or kHole
+};
+
+// In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.
+// Without face points the loop is filled by one or two triangles, else by a cone from a point within the tetrahedron:
+// where all planes at its points meet, or on the line between its face points. Vertices are first the edge points in
+// their order, then the face points, then those apexes. Fronts look from inside to outside. The same for any number of
+// threads. docs/method.md, "Surfaces", shows that the triangles meet nowhere but in shared vertices and edges.
+[[nodiscard]] SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                                  const FacePoints& face_points, double tolerance, const SurfaceMargins& margins);
+
+}  // namespace raycone

@@ -1,0 +1,242 @@
+#include "core/surface/edge_points.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <span>
+
+#include "core/machine/threads.h"
+#include "core/surface/edge_crossing.h"
+
+namespace raycone {
+namespace {
+
+// Hits that are nearer to each other, as fractions of an edge, are one: of triangles that share an edge.
+constexpr double kSameHit = 0x1p-40;
+
+// From its inside end to its outside end.
+struct MixedEdge {
+  Vec3 inside, outside;
+  std::uint32_t number;
+
+  [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
+};
+
+// An edge of which more has to be known than where it meets triangles.
+struct OpenEdge {
+  MixedEdge edge;
+  std::vector<SegmentHit> hits;  // one for each place
+  std::size_t first_probe = 0;
+};
+
+// The rule along edges, a continuous function between triangles: positive inside.
+class RuleAlong {
+ public:
+  RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
+
+  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const {
+    std::vector<double> values(points.size());
+    evaluator_.evaluate(points, values);
+    for (double& w : values) w = holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
+    return values;
+  }
+  [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
+
+ private:
+  const WindingNumberEvaluator& evaluator_;
+  const Rule& rule_;
+};
+
+// Where the rule ceases to hold between two places of an edge, bracketed.
+struct Bracket {
+  MixedEdge edge;
+  double low, high;                          // inside, outside
+  double low_value = 0.0, high_value = 0.0;  // positive or 0, negative or 0
+  int stays = 0;                             // how often in a row the same end was kept: > 0 low, < 0 high
+};
+
+class EdgePointFinder {
+ public:
+  EdgePointFinder(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells, double margin)
+      : mesh_(mesh), rule_(rule), cells_(cells), margin_(margin), points_(cells.edges()) {}
+
+  std::vector<EdgePoint> find() {
+    find_hits();
+    decide_open_edges();
+    find_roots();
+    return std::move(points_);
+  }
+
+ private:
+  void find_hits();
+  void decide_open_edges();
+  void decide(const OpenEdge& open, std::span<const double> probes);
+  void find_roots();
+
+  void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
+    const Triangle& t = mesh_.triangles[hit.triangle];
+    const Vec3 normal = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+    points_[edge.number] = {edge.point(within(hit.at)), normal, static_cast<std::int32_t>(hit.triangle)};
+  }
+  [[nodiscard]] double within(double at) const { return std::clamp(at, margin_, 1.0 - margin_); }
+
+  const TriangleMesh& mesh_;
+  const RuleAlong& rule_;
+  const SurfaceCells& cells_;
+  double margin_;
+  std::vector<EdgePoint> points_;
+  std::vector<OpenEdge> open_;
+  std::vector<Bracket> brackets_;
+};
+
+// Places where the edge meets triangles, one hit for each.
+void keep_places(std::vector<SegmentHit>& hits) {
+  const auto same = [](const SegmentHit& a, const SegmentHit& b) { return b.at - a.at <= kSameHit; };
+  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+}
+
+void EdgePointFinder::find_hits() {
+  const CellTriangles triangles(mesh_, cells_);
+  std::mutex mutex;
+  parallel_for(cells_.cells().size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<SegmentHit> hits;
+    std::vector<OpenEdge> open;
+    for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
+      const SurfaceCell& cell = cells_.cells()[n];
+      const Vec3 low = cells_.corner(cell, 0);
+      for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
+        if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
+        const Vec3 high = cells_.corner(cell, direction);
+        const MixedEdge edge{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)};
+        find_segment_hits(edge.inside, edge.outside, mesh_, triangles.of(n), hits);
+        keep_places(hits);
+        // A closed mesh changes w nowhere else.
+        if (rule_.is_closed() && hits.size() == 1) {
+          set_hit(edge, hits.front());
+        } else {
+          open.push_back({edge, hits});
+        }
+      }
+    }
+    const std::scoped_lock lock(mutex);
+    std::ranges::move(open, std::back_inserter(open_));
+  });
+  std::ranges::sort(open_, {}, [](const OpenEdge& open) { return open.edge.number; });
+}
+
+// Just before and just behind each place, or between places where w is constant there.
+std::vector<double> probes_of(const OpenEdge& open, bool closed) {
+  constexpr double kStep = 0x1p-24;
+  std::vector<double> probes;
+  for (std::size_t i = 0; i < open.hits.size(); ++i) {
+    const double before = i > 0 ? open.hits[i - 1].at : 0.0, here = open.hits[i].at;
+    const double behind = i + 1 < open.hits.size() ? open.hits[i + 1].at : 1.0;
+    if (!closed) probes.push_back(here - std::min(kStep, (here - before) / 4));
+    probes.push_back(closed ? here + (behind - here) / 2 : here + std::min(kStep, (behind - here) / 4));
+  }
+  return probes;
+}
+
+void EdgePointFinder::decide_open_edges() {
+  std::vector<Vec3> points;
+  for (OpenEdge& open : open_) {
+    open.first_probe = points.size();
+    for (const double probe : probes_of(open, rule_.is_closed())) points.push_back(open.edge.point(probe));
+  }
+  const std::vector<double> values = rule_.at(points);
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const std::size_t end = i + 1 < open_.size() ? open_[i + 1].first_probe : values.size();
+    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe));
+  }
+}
+
+void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes) {
+  const std::size_t probes_per_hit = rule_.is_closed() ? 1 : 2;
+  double inside_until = 0.0;
+  for (std::size_t i = 0; i < open.hits.size(); ++i) {
+    const double here = open.hits[i].at;
+    const bool last = i + 1 == open.hits.size();
+    // Next to an end the rule is what it is there, whatever rounding makes of the probe.
+    const bool before = rule_.is_closed() || here == 0.0 || probes[probes_per_hit * i] >= 0.0;
+    const bool behind = !(last && (rule_.is_closed() || here == 1.0)) && probes[probes_per_hit * (i + 1) - 1] >= 0.0;
+    if (!before) {
+      brackets_.push_back({open.edge, inside_until, here});
+      return;
+    }
+    if (!behind) {
+      set_hit(open.edge, open.hits[i]);
+      return;
+    }
+    inside_until = here;
+  }
+  brackets_.push_back({open.edge, inside_until, 1.0});
+}
+
+// The next place to look at: by the secant, with the value of an end that stays halved (the Illinois rule; Dowell,
+// Jarratt 1971); halfway where that does not get on.
+double next_place(const Bracket& bracket, int round) {
+  constexpr int kEveryRound = 3;
+  const double middle = bracket.low + (bracket.high - bracket.low) / 2;
+  if (round % kEveryRound == kEveryRound - 1) return middle;
+  const double weight = bracket.low_value / (bracket.low_value - bracket.high_value);
+  const double secant = bracket.low + weight * (bracket.high - bracket.low);
+  return secant > bracket.low && secant < bracket.high ? secant : middle;
+}
+
+void narrow(Bracket& bracket, double at, double value) {
+  constexpr double kHalf = 0.5;
+  if (value >= 0.0) {
+    bracket.low = at;
+    bracket.low_value = value;
+    bracket.stays = std::min(bracket.stays, 0) - 1;
+    if (bracket.stays < -1) bracket.high_value *= kHalf;
+  } else {
+    bracket.high = at;
+    bracket.high_value = value;
+    bracket.stays = std::max(bracket.stays, 0) + 1;
+    if (bracket.stays > 1) bracket.low_value *= kHalf;
+  }
+}
+
+void EdgePointFinder::find_roots() {
+  constexpr int kRounds = 90;          // a third of them halve the bracket
+  constexpr double kNarrow = 0x1p-34;  // of an edge
+  std::vector<Bracket*> waiting;
+  std::vector<Vec3> points;
+  for (Bracket& bracket : brackets_) {
+    waiting.push_back(&bracket);
+    points.push_back(bracket.edge.point(bracket.low));
+    points.push_back(bracket.edge.point(bracket.high));
+  }
+  // At a triangle the value may be that of its other side.
+  const std::vector<double> ends = rule_.at(points);
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    waiting[i]->low_value = std::max(ends[2 * i], 0.0);
+    waiting[i]->high_value = std::min(ends[2 * i + 1], 0.0);
+  }
+  for (int round = 0; round < kRounds && !waiting.empty(); ++round) {
+    std::vector<double> places;
+    points.clear();
+    for (const Bracket* const bracket : waiting) {
+      places.push_back(next_place(*bracket, round));
+      points.push_back(bracket->edge.point(places.back()));
+    }
+    const std::vector<double> values = rule_.at(points);
+    for (std::size_t i = 0; i < waiting.size(); ++i) narrow(*waiting[i], places[i], values[i]);
+    std::erase_if(waiting, [](const Bracket* bracket) { return bracket->high - bracket->low <= kNarrow; });
+  }
+  for (const Bracket& bracket : brackets_) {
+    const double at = bracket.low + (bracket.high - bracket.low) / 2;
+    points_[bracket.edge.number] = {bracket.edge.point(within(at)), {}, kHole};
+  }
+}
+
+}  // namespace
+
+std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const Rule& rule,
+                                   const SurfaceCells& cells, const SurfaceMargins& margins) {
+  return EdgePointFinder(mesh, RuleAlong(evaluator, rule), cells, margins.inner).find();
+}
+
+}  // namespace raycone

@@ -1,0 +1,36 @@
+// The points of a surface on the edges of a lattice.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/rule.h"
+#include "core/data/triangle_mesh.h"
+#include "core/evaluation/winding_number.h"
+#include "core/surface/cell_triangles.h"
+#include "core/surface/surface_cells.h"
+
+namespace raycone {
+
+inline constexpr std::int32_t kHole = -1;  // in place of a triangle
+
+struct EdgePoint {
+  Vec3 position;
+  Vec3 normal;                  // of the triangle, length 1; zero in holes
+  std::int32_t source = kHole;  // the triangle that the edge leaves the inside by
+};
+
+// How far points stay away from where they may not be, as fractions of an edge, or of barycentric coordinates of a
+// face or a cell.
+struct SurfaceMargins {
+  double inner = 0x1p-30;
+};
+
+// For each mixed edge the point nearest to its inside end where the rule ceases to hold: on the first triangle that
+// carries the winding number across, or where it passes a threshold by itself, as it does in holes. Positions are moved
+// by no more than the margin. The same for any number of threads. Needs evaluator and cells of this mesh.
+[[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                                                 const Rule& rule, const SurfaceCells& cells,
+                                                 const SurfaceMargins& margins);
+
+}  // namespace raycone

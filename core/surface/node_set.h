@@ -1,0 +1,53 @@
+// The nodes of a lattice that are inside.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "core/data/lattice.h"
+#include "core/data/rule.h"
+#include "core/evaluation/winding_number.h"
+
+namespace raycone {
+
+// A bit for each node of a lattice, in rows along x. Nodes are numbered x fastest, from 0.
+class NodeSet {
+ public:
+  // Empty.
+  explicit NodeSet(const Lattice& lattice);
+
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] std::int64_t count(int axis) const { return lattice_.counts[static_cast<std::size_t>(axis)]; }
+
+  [[nodiscard]] bool holds(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return (row(j, k)[i / 64] >> (i % 64) & 1U) != 0;
+  }
+  void insert(std::int64_t i, std::int64_t j, std::int64_t k) {
+    words_[static_cast<std::size_t>((k * count(1) + j) * words_per_row_ + i / 64)] |= std::uint64_t{1} << (i % 64);
+  }
+
+  // The bits of a row, 64 a word; those behind its end are 0.
+  [[nodiscard]] const std::uint64_t* row(std::int64_t j, std::int64_t k) const {
+    return words_.data() + (k * count(1) + j) * words_per_row_;
+  }
+  [[nodiscard]] std::int64_t words_per_row() const { return words_per_row_; }
+
+  [[nodiscard]] bool empty() const;
+  // Whether a node of the lattice's outermost layers is in it.
+  [[nodiscard]] bool reaches_border() const;
+
+ private:
+  Lattice lattice_;
+  std::int64_t words_per_row_;
+  std::vector<std::uint64_t> words_;
+};
+
+// The nodes where `rule` holds. Exact. `done`, where given, grows by one per node. The same for any number of threads.
+[[nodiscard]] NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
+                                   std::atomic<std::uint64_t>* done = nullptr);
+
+// What nodes_inside() takes at most, in bytes.
+[[nodiscard]] double node_set_bytes(const Lattice& lattice);
+
+}  // namespace raycone

@@ -1,0 +1,173 @@
+#include "core/surface/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/distance/distance.h"
+#include "core/machine/floating_point.h"
+#include "core/surface/cell_triangles.h"
+#include "core/surface/merge_planes.h"
+
+namespace raycone {
+namespace {
+
+void round_to_float(std::vector<Vec3>& vertices) {
+  // Volatile, since GCC 12.2 leaves some of several numbers out when it vectorizes this (-ftree-slp-vectorize).
+  const auto rounded = [](double x) {
+    const volatile auto single = static_cast<float>(x);
+    return static_cast<double>(single);
+  };
+  for (Vec3& p : vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
+}
+
+// Vertices that no triangle uses are left out.
+void drop_unused_vertices(TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xFFFFFFFF;
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kUnused);
+  std::vector<Vec3> used;
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& corner : t) {
+      if (number[corner] == kUnused) {
+        number[corner] = static_cast<std::uint32_t>(used.size());
+        used.push_back(mesh.vertices[corner]);
+      }
+      corner = number[corner];
+    }
+  }
+  mesh.vertices = std::move(used);
+}
+
+// One attempt at a surface after the other.
+class SurfaceMaker {
+ public:
+  SurfaceMaker(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+               const SurfaceOptions& options)
+      : mesh_(mesh),
+        evaluator_(evaluator),
+        inside_(inside),
+        options_(options),
+        cells_(inside),
+        distance_(mesh),
+        tolerance_(plane_tolerance(mesh, inside.lattice())) {}
+
+  SurfaceMesh make() {
+    constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
+    const double least = surface_margin(inside_.lattice(), options_.single_precision);
+    for (const double factor : kWidened) {
+      const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
+      points_ = edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
+      FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
+      for (int round = 0; round < kRounds; ++round) {
+        if (std::optional<SurfaceMesh> surface = attempt(sharp, margins)) return std::move(*surface);
+        sharp = sharp.without(involved(sharp));
+      }
+    }
+    throw SurfaceFailure(described(faults_));
+  }
+
+ private:
+  static constexpr double kMostMargin = 0x1p-4;
+  static constexpr int kRounds = 4;
+
+  std::optional<SurfaceMesh> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
+    SurfaceMesh surface = contour(cells_, points_, sharp, tolerance_, margins);
+    if (options_.single_precision) round_to_float(surface.mesh.vertices);
+    faults_ = faults_of(surface.mesh, inside_);
+    failed_ = surface.mesh;
+    if (!faults_.none()) return std::nullopt;
+    if (!options_.merge_planes) return surface;
+    return merged(std::move(surface), margins);
+  }
+
+  // What merging spoils is not merged.
+  SurfaceMesh merged(SurfaceMesh surface, const SurfaceMargins& margins) {
+    const Vec3& h = inside_.lattice().spacing;
+    const double most = margins.inner / 4.0 * std::min({h.x, h.y, h.z});
+    std::vector<bool> kept(surface.mesh.vertices.size(), false);
+    for (int round = 0; round < 2 * kRounds; ++round) {
+      auto [result, into] = merge_planes(surface, mesh_, kept, most);
+      const std::vector<bool> touched = faulty_vertices(result.mesh);
+      TriangleMesh compact = result.mesh;
+      drop_unused_vertices(compact);
+      faults_ = faults_of(compact, inside_);
+      if (faults_.none()) {
+        result.mesh = std::move(compact);
+        return result;
+      }
+      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[into[v]];
+    }
+    return surface;
+  }
+
+  // Vertices near faces that intersect: those of these faces, and of their neighbours.
+  [[nodiscard]] static std::vector<bool> faulty_vertices(const TriangleMesh& mesh) {
+    const std::vector<bool> faulty = self_intersections(mesh).of_triangle;
+    std::vector<bool> vertices(mesh.vertices.size(), false);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (!faulty[i]) continue;
+      for (const std::uint32_t corner : mesh.triangles[i]) vertices[corner] = true;
+    }
+    return vertices;
+  }
+
+  // The face points of cells with faces that intersect. Where faults are of other kinds, all of them.
+  [[nodiscard]] std::vector<bool> involved(const FacePoints& sharp) const {
+    const std::size_t count = sharp.positions().size(), first = points_.size();
+    std::vector<bool> dropped(count, faults_.intersections.pairs == 0);
+    const std::vector<bool> near = faulty_vertices(failed_);
+    for (const Triangle& t : failed_.triangles) {
+      if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
+      for (const std::uint32_t corner : t) {
+        if (corner >= first && corner < first + count) dropped[corner - first] = true;
+      }
+    }
+    return dropped;
+  }
+
+  const TriangleMesh& mesh_;
+  const WindingNumberEvaluator& evaluator_;
+  const NodeSet& inside_;
+  const SurfaceOptions& options_;
+  SurfaceCells cells_;
+  DistanceEvaluator distance_;
+  double tolerance_;
+  std::vector<EdgePoint> points_;
+  SurfaceFaults faults_;
+  TriangleMesh failed_;
+};
+
+double largest_coordinate(const Lattice& lattice) {
+  double largest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    largest = std::max({largest, std::abs(low), std::abs(lattice.coordinate(axis, lattice.index_max(axis)))});
+  }
+  return largest;
+}
+
+}  // namespace
+
+double surface_margin(const Lattice& lattice, bool single_precision) {
+  constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8;
+  const Vec3& h = lattice.spacing;
+  const double rounding = (single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice);
+  return std::max(kLeast, kRoundings * rounding / std::min({h.x, h.y, h.z}));
+}
+
+SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+                           const SurfaceOptions& options) {
+  const DefaultFloatingPoint guard;
+  constexpr double kMost = 0x1p-5;
+  const double margin = surface_margin(inside.lattice(), options.single_precision);
+  if (!(margin <= kMost)) {
+    throw LatticeTooFine(std::string("voxels are too small for ") + (options.single_precision ? "single" : "double") +
+                         " precision so far from the origin");
+  }
+  return SurfaceMaker(mesh, evaluator, inside, options).make();
+}
+
+}  // namespace raycone

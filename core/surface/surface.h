@@ -1,0 +1,46 @@
+// The closed surface between the inside and the outside nodes of a lattice.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+
+#include "core/data/rule.h"
+#include "core/data/triangle_mesh.h"
+#include "core/evaluation/winding_number.h"
+#include "core/surface/certificate.h"
+#include "core/surface/contour.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+struct SurfaceOptions {
+  Rule rule;
+  bool merge_planes = true;       // faces of one plane, which changes no point of the surface
+  bool single_precision = false;  // vertices are rounded to float
+};
+
+// A surface with faults, in spite of all: an error of the program. what() says which.
+class SurfaceFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The lattice is so fine that coordinates cannot tell its cells apart. what() says by how much.
+class LatticeTooFine : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The surface that separates `inside`, which nodes_inside() found by `evaluator` of `mesh` and the rule, from the other
+// nodes: closed, oriented outward, 2-manifold, without self-intersections; all of that has been checked, exactly, on
+// the vertices returned. They lie on the mesh (where the source is a triangle) or where the winding number passes a
+// threshold of the rule (kHole), at most by the margin off. The same for any number of threads.
+// Preconditions: !inside.empty(), !inside.reaches_border(); `mesh` is welded and its used vertices are finite.
+// Throws SurfaceFailure, LatticeTooFine, std::length_error for more than 2^31 - 1 faces.
+[[nodiscard]] SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                                         const NodeSet& inside, const SurfaceOptions& options);
+
+// The margin that a lattice is given at first, as a fraction of a voxel.
+[[nodiscard]] double surface_margin(const Lattice& lattice, bool single_precision);
+
+}  // namespace raycone

@@ -1,0 +1,68 @@
+#include "core/surface/surface_cells.h"
+
+#include <algorithm>
+#include <cassert>
+#include <stdexcept>
+
+namespace raycone {
+
+SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
+  assert(!nodes.reaches_border());
+  rows_.reserve(static_cast<std::size_t>(lattice_.counts[1] * lattice_.counts[2]) + 1);
+  for (std::int64_t k = 0; k < lattice_.counts[2]; ++k) {
+    for (std::int64_t j = 0; j < lattice_.counts[1]; ++j) {
+      rows_.push_back(static_cast<std::uint32_t>(cells_.size()));
+      if (j + 1 < lattice_.counts[1] && k + 1 < lattice_.counts[2]) add_row(nodes, j, k);
+    }
+  }
+  rows_.push_back(static_cast<std::uint32_t>(cells_.size()));
+}
+
+void SurfaceCells::add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
+  constexpr std::uint32_t kMostEdges = 0x7FFFFFF0;
+  const std::array rows{nodes.row(j, k), nodes.row(j + 1, k), nodes.row(j, k + 1), nodes.row(j + 1, k + 1)};
+  const std::int64_t words = nodes.words_per_row();
+  for (std::int64_t word = 0; word < words; ++word) {
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    for (const std::uint64_t* const row : rows) {
+      const std::uint64_t here = row[word], next = here >> 1U | (word + 1 < words ? row[word + 1] << 63U : 0);
+      any |= here | next;
+      all &= here & next;
+    }
+    for (std::uint64_t left = any & ~all; left != 0; left &= left - 1) {
+      const std::int64_t i = word * 64 + std::countr_zero(left);
+      SurfaceCell cell{{i, j, k}, 0, edges_};
+      for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
+        const auto [x, y, z] = node_at(cell, corner);
+        if (x < lattice_.counts[0] && nodes.holds(x, y, z)) cell.inside |= static_cast<std::uint8_t>(1U << corner);
+      }
+      cells_.push_back(cell);
+      edges_ += static_cast<std::uint32_t>(std::popcount(cell.mixed_directions()));
+      if (edges_ > kMostEdges) throw std::length_error("raycone: a surface of more than 2147483632 lattice edges");
+    }
+  }
+}
+
+Vec3 SurfaceCells::position(const std::array<std::int64_t, 3>& node) const {
+  return {lattice_.coordinate(0, lattice_.index_min[0] + node[0]),
+          lattice_.coordinate(1, lattice_.index_min[1] + node[1]),
+          lattice_.coordinate(2, lattice_.index_min[2] + node[2])};
+}
+
+std::uint32_t SurfaceCells::first_from(std::uint32_t begin, std::uint32_t end, std::int64_t x) const {
+  const auto first = cells_.begin() + begin, last = cells_.begin() + end;
+  const auto found =
+      std::lower_bound(first, last, x, [](const SurfaceCell& cell, std::int64_t at) { return cell.node[0] < at; });
+  return static_cast<std::uint32_t>(found - cells_.begin());
+}
+
+std::uint32_t SurfaceCells::cell_at(std::uint32_t cell, unsigned corner) const {
+  if (corner == 0) return cell;
+  const auto [i, j, k] = node_at(cells_[cell], corner);
+  if (corner == 1) return cell + 1;
+  const std::uint32_t found = first_from(row_begin(j, k), row_end(j, k), i);
+  assert(found < row_end(j, k) && cells_[found].node[0] == i);
+  return found;
+}
+
+}  // namespace raycone

@@ -1,0 +1,307 @@
+// The closed surface between nodes: closed, embedded and where the mesh is, for any labels of nodes and any points.
+#include "core/surface/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/distance/distance.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/mesh_statistics.h"
+#include "core/surface/edge_crossing.h"
+#include "core/surface/merge_planes.h"
+#include "core/surface/surface_cells.h"
+#include "core/surface/surface_measures.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+constexpr SurfaceMargins kMargins;
+
+Lattice lattice_of(std::int64_t side, double spacing = 1.0) {
+  return {{-0.3, 0.2, 0.1}, {spacing, spacing, spacing}, {-1, 2, 0}, {side, side, side}};
+}
+
+NodeSet nodes_where(const Lattice& lattice,
+                    const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& inside) {
+  NodeSet nodes(lattice);
+  for (std::int64_t k = 1; k + 1 < lattice.counts[2]; ++k) {
+    for (std::int64_t j = 1; j + 1 < lattice.counts[1]; ++j) {
+      for (std::int64_t i = 1; i + 1 < lattice.counts[0]; ++i) {
+        if (inside(i, j, k)) nodes.insert(i, j, k);
+      }
+    }
+  }
+  return nodes;
+}
+
+// Often as near to an end as is allowed, where that is asked for.
+double random_place(Random& random, bool to_margin) {
+  const double extremes = to_margin ? uniform(random, 0.0, 4.0) : 4.0;
+  if (extremes < 1.0) return kMargins.inner;
+  if (extremes < 2.0) return 1.0 - kMargins.inner;
+  return uniform(random, 0.01, 0.99);
+}
+
+std::vector<EdgePoint> random_edge_points(const SurfaceCells& cells, Random& random, bool to_margin) {
+  std::vector<EdgePoint> points(cells.edges());
+  for (const SurfaceCell& cell : cells.cells()) {
+    for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
+      if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
+      const Vec3 low = cells.corner(cell, 0), high = cells.corner(cell, direction);
+      points[cell.edge(direction)].position = low + random_place(random, to_margin) * (high - low);
+    }
+  }
+  return points;
+}
+
+// On half of the mixed faces, anywhere within.
+FacePoints random_face_points(const SurfaceCells& cells, Random& random) {
+  std::vector<std::uint64_t> faces;
+  std::vector<Vec3> positions;
+  for (std::size_t n = 0; n < cells.cells().size(); ++n) {
+    const SurfaceCell& cell = cells.cells()[n];
+    for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
+      const auto [first, second] = kuhn::kFaces[face];
+      const bool mixed = cell.is_inside(0) != cell.is_inside(first) || cell.is_inside(0) != cell.is_inside(second);
+      if (!mixed || uniform(random, 0.0, 1.0) < 0.5) continue;
+      const double a = random_place(random, false), b = random_place(random, false), c = random_place(random, false);
+      const double sum = a + b + c;
+      const double u = a / sum, v = b / sum;
+      const Vec3 low = cells.corner(cell, 0);
+      faces.push_back(16 * n + face);
+      positions.push_back(low + u * (cells.corner(cell, first) - low) + v * (cells.corner(cell, second) - low));
+    }
+  }
+  return {faces, positions};
+}
+
+// Face points next to the margin of others would need a wider one: rounding then spoils what is thin twice over. Such
+// points are dropped by closed_surface().
+SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, bool with_face_points) {
+  const DefaultFloatingPoint guard;
+  const SurfaceCells cells(nodes);
+  const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
+  const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
+  return faults_of(contour(cells, points, face_points, 0.0, kMargins).mesh, nodes);
+}
+
+TEST(Surface, IsRightForEachLabellingOfACell) {
+  Random random(1);
+  for (unsigned label = 1; label < 256; ++label) {
+    const NodeSet nodes = nodes_where(lattice_of(4), [&](auto i, auto j, auto k) {
+      return (label >> static_cast<unsigned>((i - 1) + 2 * (j - 1) + 4 * (k - 1)) & 1U) != 0;
+    });
+    for (const bool with_face_points : {false, true}) {
+      const SurfaceFaults faults = faults_of_random_surface(nodes, random, with_face_points);
+      ASSERT_TRUE(faults.none()) << label << ": " << described(faults);
+    }
+  }
+}
+
+TEST(Surface, IsRightForRandomLabels) {
+  Random random(2);
+  for (int round = 0; round < 60; ++round) {
+    const double density = uniform(random, 0.05, 0.95);
+    const NodeSet nodes = nodes_where(lattice_of(3 + round % 5, round % 2 == 0 ? 1.0 : 0.013),
+                                      [&](auto, auto, auto) { return uniform(random, 0.0, 1.0) < density; });
+    if (nodes.empty()) continue;
+    const SurfaceFaults faults = faults_of_random_surface(nodes, random, round % 3 != 0);
+    ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
+  }
+}
+
+// The certificate has to see what is wrong.
+TEST(SurfaceCertificate, FindsEachFault) {
+  Random random(3);
+  const DefaultFloatingPoint guard;
+  const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
+  const SurfaceCells cells(nodes);
+  const SurfaceMesh surface = contour(cells, random_edge_points(cells, random, true), {}, 0.0, kMargins);
+  ASSERT_TRUE(faults_of(surface.mesh, nodes).none());
+  TriangleMesh open = surface.mesh;
+  open.triangles.pop_back();
+  EXPECT_EQ(faults_of(open, nodes).edges, 3U);
+  EXPECT_GT(faults_of(open, nodes).links, 0U);
+  EXPECT_GT(faults_of(test::reversed(surface.mesh), nodes).nodes, 0U);
+  TriangleMesh twice = surface.mesh;
+  twice.vertices.push_back(twice.vertices[0]);
+  EXPECT_EQ(faults_of(twice, nodes).equal_vertices, 1U);
+  TriangleMesh pierced = surface.mesh;
+  pierced.vertices[0] = pierced.vertices[0] + Vec3{7.0, 7.0, 7.0};
+  EXPECT_GT(faults_of(pierced, nodes).intersections.pairs, 0U);
+  TriangleMesh pinched = surface.mesh;
+  const auto last = static_cast<std::uint32_t>(pinched.vertices.size() - 1);
+  for (Triangle& t : pinched.triangles) std::ranges::replace(t, last, 0U);
+  EXPECT_GT(faults_of(pinched, nodes).links + faults_of(pinched, nodes).edges, 0U);
+}
+
+TEST(SegmentHit, IsExactAboutEnds) {
+  const DefaultFloatingPoint guard;
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, a, b, c), 0.5);
+  EXPECT_EQ(segment_hit({0.25, 0.25, 0}, {0.25, 0.25, 1}, a, b, c), 0.0);
+  EXPECT_EQ(segment_hit({0.25, 0.25, 1}, {0.25, 0.25, 0}, a, b, c), 1.0);
+  EXPECT_EQ(segment_hit({1, 0, -1}, {1, 0, 1}, a, b, c), 0.5);                                  // through a corner
+  EXPECT_EQ(segment_hit({std::nextafter(1.0, 2.0), 0, -1}, {1, 0, 1}, a, b, c), std::nullopt);  // and beside it
+  EXPECT_EQ(segment_hit({-1, 0.25, 0}, {1, 0.25, 0}, a, b, c), std::nullopt);                   // in its plane
+  EXPECT_EQ(segment_hit({0.25, 0.25, 0x1p-1074}, {0.25, 0.25, 1}, a, b, c), std::nullopt);
+  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, a, b, {2, 0, 0}), std::nullopt);  // without area
+}
+
+// By angles that are no special ones.
+TriangleMesh rotated(TriangleMesh mesh) {
+  const Vec3 u{0.36, 0.48, -0.8}, v{-0.8, 0.6, 0.0}, w{0.48, 0.64, 0.6};
+  for (Vec3& p : mesh.vertices) p = {dot(u, p), dot(v, p), dot(w, p)};
+  return mesh;
+}
+
+// A wedge with an angle of some degrees.
+TriangleMesh wedge() {
+  TriangleMesh mesh = test::box_mesh({0, 0, 0}, {3, 1, 1});
+  for (Vec3& p : mesh.vertices) {
+    if (p.x > 1.0) p.z = p.z * 0.25;
+  }
+  return mesh;
+}
+
+struct Made {
+  SurfaceMesh surface;
+  Lattice lattice;
+};
+
+Made surface_of(const TriangleMesh& mesh, std::int64_t side, const SurfaceOptions& options = {}) {
+  const Box box = bounding_box(mesh);
+  const Vec3 size = box.upper - box.lower;
+  const double h = std::max({size.x, size.y, size.z}) / static_cast<double>(side - 3);
+  const Lattice lattice{box.lower, {h, h, h}, {-1, -1, -1}, {side + 1, side + 1, side + 1}};
+  const WindingNumberEvaluator evaluator(mesh);
+  const NodeSet nodes = nodes_inside(evaluator, options.rule, lattice);
+  Made made{closed_surface(mesh, evaluator, nodes, options), lattice};
+  EXPECT_TRUE(faults_of(made.surface.mesh, nodes).none());
+  return made;
+}
+
+double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& mesh) {
+  std::vector<double> distances(points.size());
+  DistanceEvaluator(mesh).evaluate(points, distances);
+  return *std::ranges::max_element(distances);
+}
+
+// How many of the points are within 1e-9 voxels of the mesh, which is about the margin.
+double part_at(const std::vector<Vec3>& points, const TriangleMesh& mesh, double voxel) {
+  std::vector<double> distances(points.size());
+  DistanceEvaluator(mesh).evaluate(points, distances);
+  const auto near = std::ranges::count_if(distances, [&](double d) { return d <= 2e-9 * voxel; });
+  return static_cast<double>(near) / static_cast<double>(points.size());
+}
+
+std::vector<Vec3> points_of_edges(const TriangleMesh& mesh) {
+  std::vector<Vec3> points;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 &a = mesh.vertices[t[i]], &b = mesh.vertices[t[(i + 1) % 3]];
+      for (int n = 1; n < 100; ++n) points.push_back(a + (n / 100.0) * (b - a));
+    }
+  }
+  return points;
+}
+
+// Where a sharp edge passes between two outside nodes that are neighbours, the lattice does not see it: a quarter
+// of its length or so. It is cut off there, by less than a voxel.
+TEST(Surface, KeepsSharpEdges) {
+  for (const TriangleMesh& shape : {test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}), wedge()}) {
+    const TriangleMesh mesh = rotated(shape);
+    const auto [surface, lattice] = surface_of(mesh, 24, {.rule = {}, .merge_planes = false});
+    const double h = lattice.spacing.x;
+    EXPECT_GT(part_at(points_of_edges(mesh), surface.mesh, h), 0.7);
+    EXPECT_GT(part_at(surface.mesh.vertices, mesh, h), 0.98);
+    EXPECT_LT(largest_distance_of(points_of_edges(mesh), surface.mesh), h);
+    EXPECT_LT(largest_distance_of(surface.mesh.vertices, mesh), h);
+    const double volume = mesh_statistics(mesh).signed_volume.value_or(0.0);
+    EXPECT_NEAR(mesh_statistics(surface.mesh).signed_volume.value_or(0.0), volume, 0.01 * volume);
+  }
+}
+
+TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {
+  const TriangleMesh mesh = rotated(wedge());
+  const auto [fine, lattice] = surface_of(mesh, 20, {.rule = {}, .merge_planes = false});
+  const auto [merged, same_lattice] = surface_of(mesh, 20);
+  EXPECT_LT(4 * merged.mesh.triangles.size(), fine.mesh.triangles.size());
+  EXPECT_LE(largest_distance_of(fine.mesh.vertices, merged.mesh), 1e-9 * lattice.spacing.x);
+}
+
+TEST(Surface, OfAnAlignedBoxHasFewFaces) {
+  const auto [surface, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 24);
+  EXPECT_LT(surface.mesh.triangles.size(), 60U);
+}
+
+TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
+  const TriangleMesh mesh = rotated(test::open_box());
+  const auto [surface, lattice] = surface_of(mesh, 20);
+  std::vector<Vec3> at_hole;
+  for (std::size_t i = 0; i < surface.sources.size(); ++i) {
+    if (surface.sources[i] == kHole) at_hole.push_back(surface.mesh.vertices[surface.mesh.triangles[i][0]]);
+  }
+  ASSERT_GT(at_hole.size(), 10U);
+  std::vector<double> w(at_hole.size());
+  WindingNumberEvaluator(mesh).evaluate(at_hole, w);
+  // Points next to the hole's rim are on triangles, the others within 2^-34 of an edge of the right place.
+  const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
+  EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));
+  EXPECT_GT(measure_surface(surface, mesh, lattice).hole_area, 0.0);
+}
+
+TEST(Surface, InSinglePrecisionIsRightThere) {
+  SurfaceOptions options;
+  options.single_precision = true;
+  const TriangleMesh mesh = rotated(test::sphere(7));
+  for (const auto& [surface, lattice] :
+       {surface_of(mesh, 17, options), surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 17, options)}) {
+    for (const Vec3& p : surface.mesh.vertices) {
+      for (const double x : {p.x, p.y, p.z}) ASSERT_EQ(x, static_cast<double>(static_cast<float>(x)));
+    }
+  }
+}
+
+TEST(Surface, FollowsItsRule) {
+  const TriangleMesh twice = test::joined(test::sphere(6), test::moved(test::sphere(6), {1, 1, 1}, {0.4, 0, 0}));
+  SurfaceOptions both;
+  both.rule = {RuleKind::kThreshold, 1.5};
+  const double of_both = mesh_statistics(surface_of(twice, 20, both).surface.mesh).signed_volume.value_or(0.0);
+  const double of_any = mesh_statistics(surface_of(twice, 20).surface.mesh).signed_volume.value_or(0.0);
+  const double of_one = mesh_statistics(test::sphere(6)).signed_volume.value_or(0.0);
+  // Each volume is off by what the lattice rounds: 2 % at 20 samples.
+  EXPECT_NEAR(of_both + of_any, 2.0 * of_one, 0.02 * of_one);
+  EXPECT_LT(of_both, 0.8 * of_one);
+}
+
+TEST(Surface, OfALatticeThatIsTooFineIsRefused) {
+  const TriangleMesh mesh = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {1, 1, 1}, {1e15, 1e15, 1e15});
+  EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
+}
+
+TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh wall = box;
+  wall.vertices.insert(wall.vertices.end(), {{0.5, 0.2, 0.2}, {0.5, 0.8, 0.2}, {0.5, 0.2, 0.8}});
+  const auto first = static_cast<std::uint32_t>(box.vertices.size());
+  wall.triangles.push_back({first, first + 1, first + 2});
+  const auto [surface, lattice] = surface_of(box, 20);
+  EXPECT_NEAR(measure_surface(surface, wall, lattice).dropped_area, 0.18, 1e-12);
+  EXPECT_EQ(measure_surface(surface, box, lattice).dropped_area, 0.0);
+}
+
+}  // namespace
+}  // namespace raycone

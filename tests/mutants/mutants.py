@@ -367,6 +367,12 @@ MUTANTS = [
     Mutant("volume_sign_not_exact", "the sign of a volume is exact", [
         ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles.size()) + 16.0) * 0x1p-52 * terms + 0x1p-900",
          "0.0")]),
+    Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
+        ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+    Mutant("signatures_drop_out", "a vertex of more faces than signatures may have twins", [
+        ("core/mesh/vertex_links.h", "const bool no_place = _mm_extract_epi16(before, 7) != 0;", "const bool no_place = false;")]),
+    Mutant("labels_are_components", "labels that a triangle joins are one component", [
+        ("core/mesh/components.cpp", "    sets.join(a, c);\n", "")]),
     Mutant("surface_is_not_the_mean", "on its own samples an open piece counts with the mean of both sides", [
         ("core/orientation/surface_field.cpp", "of_near[i] + 0.5 * points[places[i]].side",
          "of_near[i]")]),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "core/exact/volume_sign.h"
 #include "core/machine/threads.h"
@@ -40,10 +41,14 @@ std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, co
   std::iota(from_outside.begin(), from_outside.end(), 0U);
   std::stable_sort(from_outside.begin(), from_outside.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return around[a].size() < around[b].size(); });
+  std::vector<std::optional<CanonicalFace>> first(patches.size());  // of those that were asked for
+  const auto first_face = [&](std::uint32_t i) {
+    if (!first[i]) first[i] = first_canonical_face(patches[i].surface.faces, vertices);
+    return *first[i];
+  };
   const auto is_farther_out = [&](std::uint32_t a, std::uint32_t b) {
     if (around[a].size() != around[b].size()) return around[a].size() < around[b].size();
-    return first_canonical_face(patches[b].surface.faces, vertices) <
-           first_canonical_face(patches[a].surface.faces, vertices);
+    return first_face(b) < first_face(a);
   };
   std::vector<int> turn(patches.size());
   for (const std::uint32_t i : from_outside) {

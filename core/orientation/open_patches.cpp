@@ -11,6 +11,7 @@
 #include "core/orientation/canonical_face.h"
 #include "core/orientation/crossing_votes.h"
 #include "core/orientation/dipole_tree.h"
+#include "core/orientation/ray_sums.h"
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
 #include "core/orientation/turn_problem.h"
@@ -109,12 +110,13 @@ class OpenSurfaceTurner {
     for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
     constant_.assign(samples_.size(), -0.5);
     if (closed_.empty()) return;
-    std::vector<FieldPoint> points;
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
-      points.push_back({samples_[k].at, k < first_sample_.back() ? 0 : samples_[k].side});
+    std::vector<Vec3> points;
+    for (const SurfaceSample& sample : samples_) points.push_back(sample.at);
+    // There is no boundary: crossings are all. On the faces themselves it is the mean of both sides.
+    const std::vector<RaySum> sums = ray_sums(closed_, vertices_, points);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      constant_[k] += static_cast<double>(sums[k].winding) + (k < first_sample_.back() ? 0.0 : 0.5 * samples_[k].side);
     }
-    const std::vector<double> w = SurfaceField(closed_, vertices_, false).winding_numbers(points);
-    for (std::size_t k = 0; k < w.size(); ++k) constant_[k] += w[k];
   }
 
   [[nodiscard]] bool is_own(std::size_t surface, std::size_t sample) const {

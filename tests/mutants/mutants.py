@@ -350,11 +350,11 @@ MUTANTS = [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),
     Mutant("nesting_on_surface_counts", "vertices on the other surface say nothing about nesting", [
-        ("core/orientation/nesting.cpp", "          if (places[j].on_surface) continue;\n",
+        ("core/orientation/nesting.cpp", "        if (sum->on_surface) continue;\n",
          "")]),
     Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
-        ("core/orientation/nesting.cpp", "          (places[j].winding == 0 ? misses : hits)[j]",
-         "          if (places[j].winding != 0) hits[j]")]),
+        ("core/orientation/nesting.cpp", "(sum->winding == 0 ? misses : hits) = true;",
+         "if (sum->winding != 0) hits = true;")]),
     Mutant("copies_vote_for_the_first", "faces that are there both ways have no opinion", [
         ("core/orientation/unique_faces.cpp", "votes += as_first ? 1 : -1;",
          "votes += as_first ? 1 : 0;")]),

@@ -32,9 +32,11 @@ std::vector<ClosedSurface> surfaces_of(const std::vector<ClosedPatch>& patches) 
 
 }  // namespace
 
-std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
-  std::vector<int> outward = outward_signs(patches, vertices);
-  if (patches.size() < 2) return outward;
+ClosedTurns turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
+  const std::vector<int> outward = outward_signs(patches, vertices);
+  ClosedTurns result{outward, std::vector<std::uint32_t>(patches.size())};
+  std::iota(result.outermost.begin(), result.outermost.end(), 0U);
+  if (patches.size() < 2) return result;
   const std::vector<std::vector<std::uint32_t>> around = surfaces_around(surfaces_of(patches), vertices);
 
   std::vector<std::uint32_t> from_outside(patches.size());
@@ -50,9 +52,8 @@ std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, co
     if (around[a].size() != around[b].size()) return around[a].size() < around[b].size();
     return first_face(b) < first_face(a);
   };
-  std::vector<int> turn(patches.size());
+  std::vector<int>& turn = result.turn;
   for (const std::uint32_t i : from_outside) {
-    turn[i] = outward[i];
     // Surfaces that pass through themselves or touch may each be around the other: neither is the parent then.
     std::vector<std::uint32_t> outer = around[i];
     std::erase_if(outer, [&](std::uint32_t j) { return around[j].size() >= around[i].size(); });
@@ -60,8 +61,9 @@ std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, co
     const std::uint32_t parent = *std::max_element(outer.begin(), outer.end(), is_farther_out);
     const int as_stored = patches[i].stored * patches[parent].stored;
     turn[i] = as_stored != 0 ? as_stored * turn[parent] : -outward[i] * outward[parent] * turn[parent];
+    result.outermost[i] = result.outermost[parent];
   }
-  return turn;
+  return result;
 }
 
 }  // namespace raycone

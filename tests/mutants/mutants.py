@@ -379,6 +379,14 @@ MUTANTS = [
     Mutant("flat_piece_depends_on_order", "the orientation of a flat piece depends on coordinates only", [
         ("core/orientation/closed_patches.cpp", "return first_canonical_face(surface.faces, vertices).sign;",
          "return 1;")]),
+    Mutant("no_cavities_in_open_bodies", "a closed patch in an open body is a cavity", [
+        ("core/orientation/open_bodies.cpp", ": -turns.turn[i] * around[n];", ": turns.turn[i] * around[n];")]),
+    Mutant("open_body_stored_is_forgotten", "a closed patch keeps its relation to an open body", [
+        ("core/orientation/open_bodies.cpp", "as_stored != 0 ? as_stored * around[n]", "as_stored == 2 ? as_stored * around[n]")]),
+    Mutant("open_body_around_one_sample", "a patch is in an open body if all of its samples are", [
+        ("core/orientation/open_bodies.cpp", "*least > 0.5 ? 1", "*most > 0.5 ? 1")]),
+    Mutant("cavity_without_its_content", "what lies in a patch is turned with it", [
+        ("core/orientation/open_bodies.cpp", "if (reversed[turns.outermost[i]])", "if (reversed[i])")]),
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),

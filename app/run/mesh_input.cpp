@@ -76,8 +76,9 @@ MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options
   OrientedMesh oriented = orient(std::move(mesh), options.orient);
   if (const std::uint64_t cut = oriented.counts.cut_edges) warnings.push_back(unorientable(cut));
   MeshToEvaluate result{std::move(oriented.mesh), oriented.counts, {}, {}, std::move(oriented.places)};
-  result.edges = exterior_edges(result.mesh);
-  result.defects = mesh_defects(result.mesh, result.edges);
+  VertexLinks links(result.mesh.vertices.size());
+  result.edges = exterior_edges(result.mesh, &links);
+  result.defects = mesh_defects(result.mesh, result.edges, links);
   std::ranges::move(warnings_about(result.defects), std::back_inserter(warnings));
   return result;
 }

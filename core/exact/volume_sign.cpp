@@ -8,17 +8,17 @@
 namespace raycone {
 namespace {
 
-// Differences, two products and the sums round each term by less than (n + 16) u of its magnitude; what underflows is
-// below 2^-1070 a term.
+// Differences, two products and the sums round each term by less than (n + 16) u of its magnitude.
 int sure_volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices) {
   const Vec3 origin = vertices[triangles.front()[0]];
+  constexpr double kUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
   double sum = 0.0, terms = 0.0;
   for (const Triangle& t : triangles) {
     const Vec3 a = vertices[t[0]] - origin, b = vertices[t[1]] - origin, c = vertices[t[2]] - origin;
     sum += dot(a, cross(b, c));
-    terms += std::abs(a.x) * (std::abs(b.y * c.z) + std::abs(b.z * c.y)) +
-             std::abs(a.y) * (std::abs(b.z * c.x) + std::abs(b.x * c.z)) +
-             std::abs(a.z) * (std::abs(b.x * c.y) + std::abs(b.y * c.x));
+    terms += std::abs(a.x) * (std::abs(b.y * c.z) + std::abs(b.z * c.y) + kUnderflow) +
+             std::abs(a.y) * (std::abs(b.z * c.x) + std::abs(b.x * c.z) + kUnderflow) +
+             std::abs(a.z) * (std::abs(b.x * c.y) + std::abs(b.y * c.x) + kUnderflow);
   }
   const double trust = (static_cast<double>(triangles.size()) + 16.0) * 0x1p-52 * terms + 0x1p-900;
   return static_cast<int>(sum > trust) - static_cast<int>(sum < -trust);  // neither where something overflows

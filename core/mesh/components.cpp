@@ -4,6 +4,73 @@
 #include <numeric>
 
 namespace raycone {
+namespace {
+
+// Sets of labels, numbered from 0.
+class LabelSets {
+ public:
+  explicit LabelSets(std::uint32_t labels) : count_(labels), parent_(labels) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    if (parent_[a] == parent_[b]) return;
+    const std::uint32_t i = root(a), j = root(b);
+    if (i == j) return;
+    parent_[std::max(i, j)] = std::min(i, j);
+    --count_;
+  }
+
+  // Per label the number of its set; sets are numbered by their lowest labels.
+  [[nodiscard]] std::vector<std::uint32_t> numbers() const {
+    std::vector<std::uint32_t> numbers(parent_.size());
+    std::uint32_t next = 0;
+    for (std::uint32_t l = 0; l < parent_.size(); ++l) numbers[l] = parent_[l] == l ? next++ : numbers[parent_[l]];
+    return numbers;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t root(std::uint32_t l) {
+    while (parent_[l] != l) l = parent_[l] = parent_[parent_[l]];
+    return l;
+  }
+
+  std::uint32_t count_;
+  std::vector<std::uint32_t> parent_;  // lower than their children
+};
+
+}  // namespace
+
+// Each vertex gets the label of the lower one that it is linked to: labels are as many as vertices that have no lower
+// neighbour, few nearly always. The triangles then say which labels are one component.
+Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
+  Components components{0, std::vector<std::uint32_t>(mesh.vertices.size(), Components::kUnused)};
+  std::vector<std::uint32_t>& label = components.of_vertex;
+  for (std::size_t v = 0; v < label.size(); ++v) {
+    if (const std::uint32_t lower = links.lower(v); lower != v) {
+      label[v] = label[lower];
+    } else if (links.is_used(v)) {
+      label[v] = components.count++;
+    }
+  }
+  if (components.count < 2) return components;
+  LabelSets sets(components.count);
+  for (const Triangle& t : mesh.triangles) {
+    const std::uint32_t a = label[t[0]], b = label[t[1]], c = label[t[2]];
+    if (a == b && a == c) continue;
+    sets.join(a, b);
+    sets.join(a, c);
+    if (sets.count() == 1) break;
+  }
+  components.count = sets.count();
+  const std::vector<std::uint32_t> numbers = sets.numbers();
+  for (std::uint32_t& l : label) {
+    if (l != Components::kUnused) l = numbers[l];
+  }
+  return components;
+}
 
 Components components_of(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/vertex_links.h"
 
 namespace raycone {
 
@@ -16,5 +17,7 @@ struct Components {
 
 // Numbered by increasing lowest vertex.
 [[nodiscard]] Components components_of(const TriangleMesh& mesh);
+// The same, sooner. Precondition: all triangles are noted in `links`.
+[[nodiscard]] Components components_of(const TriangleMesh& mesh, const VertexLinks& links);
 
 }  // namespace raycone

@@ -95,9 +95,10 @@ void for_each_traversal(const Triangle& t, const Visit& visit) {
   }
 }
 
-// Net counts of the edges with their lower vertex in a range, by increasing low, then high.
-std::vector<ExteriorEdge> exterior_edges_of(const TriangleMesh& mesh, std::size_t first_vertex,
-                                            std::size_t last_vertex) {
+// Net counts of the edges with their lower vertex in a range, by increasing low, then high. If `links` are given, the
+// triangles with their lowest vertex in that range are noted there.
+std::vector<ExteriorEdge> exterior_edges_of(const TriangleMesh& mesh, std::size_t first_vertex, std::size_t last_vertex,
+                                            VertexLinks* links) {
   Cancellation cancellation(first_vertex, last_vertex);
   constexpr std::size_t kAhead = 16;  // triangles: their vertices may be anywhere in memory
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -105,6 +106,11 @@ std::vector<ExteriorEdge> exterior_edges_of(const TriangleMesh& mesh, std::size_
       for_each_traversal(mesh.triangles[i + kAhead], [&](std::uint32_t low, std::uint32_t, bool) {
         if (cancellation.has(low)) cancellation.prefetch(low);
       });
+      if (links) links->prefetch(VertexLinks::lowest_of(mesh.triangles[i + kAhead]));
+    }
+    if (links) {
+      const std::uint32_t lowest = VertexLinks::lowest_of(mesh.triangles[i]);
+      if (cancellation.has(lowest)) links->note(mesh.triangles[i], lowest);
     }
     for_each_traversal(mesh.triangles[i], [&](std::uint32_t low, std::uint32_t high, bool forward) {
       if (cancellation.has(low)) cancellation.add(low, high, forward);
@@ -121,14 +127,14 @@ std::vector<ExteriorEdge> exterior_edges_of(const TriangleMesh& mesh, std::size_
 }
 
 // By increasing low, then high. Each thread goes through all triangles, for a range of lower vertices.
-std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh) {
+std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh, VertexLinks* links) {
   constexpr std::size_t kMaxRanges = 8;  // more would only read the triangles more often
   const std::size_t ranges = std::min<std::size_t>(kMaxRanges, static_cast<std::size_t>(thread_count()));
   std::vector<std::vector<ExteriorEdge>> parts(ranges);
   parallel_for(ranges, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t vertices = mesh.vertices.size();
-      parts[n] = exterior_edges_of(mesh, vertices * n / ranges, vertices * (n + 1) / ranges);
+      parts[n] = exterior_edges_of(mesh, vertices * n / ranges, vertices * (n + 1) / ranges, links);
     }
   });
   std::vector<ExteriorEdge> edges;
@@ -202,8 +208,8 @@ class Chains {
 
 }  // namespace
 
-std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh) {
-  std::vector<ExteriorEdge> edges = unordered_exterior_edges(mesh);
+std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh, VertexLinks* links) {
+  std::vector<ExteriorEdge> edges = unordered_exterior_edges(mesh, links);
   std::stable_sort(edges.begin(), edges.end(), [](const ExteriorEdge& a, const ExteriorEdge& b) {
     return std::abs(a.multiplicity) < std::abs(b.multiplicity);
   });

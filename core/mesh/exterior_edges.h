@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/vertex_links.h"
 
 namespace raycone {
 
@@ -18,7 +19,8 @@ struct ExteriorEdge {
 
 // All exterior edges of a welded mesh, by increasing |multiplicity|, those of one |multiplicity| strung into chains (an
 // edge's `to` is the next one's `from` wherever possible). Order and directions depend on the coordinates of the edges
-// only, and but for the signs of the multiplicities not on the orientation of the mesh.
-[[nodiscard]] std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh);
+// only, and but for the signs of the multiplicities not on the orientation of the mesh. If `links` are given, with
+// nothing noted yet, all triangles are noted there on the way. Uses the threads that ThreadLimit allows.
+[[nodiscard]] std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh, VertexLinks* links = nullptr);
 
 }  // namespace raycone

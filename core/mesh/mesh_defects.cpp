@@ -14,20 +14,36 @@
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
-#include "core/mesh/edge_uses.h"
 #include "core/mesh/opposite_faces.h"
 
 namespace raycone {
 namespace {
 
-// Such an edge counts twice in the boundary, so that most meshes need no look at the others.
+// Such an edge counts twice in the boundary, so that most meshes need no look at their triangles.
 std::uint64_t count_inconsistent_edges(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
-  if (std::ranges::none_of(edges, [](const ExteriorEdge& e) { return std::abs(e.multiplicity) == 2; })) return 0;
-  std::uint64_t count = 0;
-  for_each_edge(mesh, [&count](const EdgeUse& use) {
-    count += (use.forward == 2 && use.backward == 0) || (use.forward == 0 && use.backward == 2);
-  });
-  return count;
+  struct DoubleEdge {
+    std::uint32_t low, high;
+    std::uint64_t uses = 0;
+  };
+  std::vector<DoubleEdge> doubles;
+  for (const ExteriorEdge& e : edges) {
+    if (std::abs(e.multiplicity) == 2) doubles.push_back({std::min(e.from, e.to), std::max(e.from, e.to)});
+  }
+  if (doubles.empty()) return 0;
+  const auto ends = [](const DoubleEdge& e) { return std::pair(e.low, e.high); };
+  std::ranges::sort(doubles, {}, ends);
+  std::vector<bool> at_one(mesh.vertices.size(), false);
+  for (const DoubleEdge& e : doubles) at_one[e.low] = at_one[e.high] = true;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t from = t[corner], to = t[corner < 2 ? corner + 1 : 0];
+      if (!at_one[from] || !at_one[to]) continue;
+      const auto edge = std::pair(std::min(from, to), std::max(from, to));
+      const auto it = std::ranges::lower_bound(doubles, edge, {}, ends);
+      if (it != doubles.end() && ends(*it) == edge) ++it->uses;
+    }
+  }
+  return static_cast<std::uint64_t>(std::ranges::count(doubles, 2U, &DoubleEdge::uses));
 }
 
 // Six times a signed volume, and what rounding may have done to it.
@@ -42,8 +58,8 @@ struct Volume {
     faces += other.faces;
     return *this;
   }
-  // Each product is off by a few units in the last place, each addition by one of the sum so far; what underflows is
-  // below 2^-1070 a term. 0 where that leaves the sign in doubt, or where something overflows.
+  // Each product is off by a few units in the last place, each addition by one of the sum so far. 0 where that leaves
+  // the sign in doubt, or where something overflows.
   [[nodiscard]] int sure_sign() const {
     const double rounding = (static_cast<double>(faces) + 16.0) * std::numeric_limits<double>::epsilon() * terms;
     const double trust = rounding + 0x1p-900;
@@ -51,14 +67,13 @@ struct Volume {
   }
 };
 
-// Of the tetrahedron of a face and a point near it.
-Volume volume_of(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& from) {
-  const Vec3 a = p - from, b = q - from, c = r - from;
-  const double x1 = b.y * c.z, x2 = b.z * c.y, y1 = b.z * c.x, y2 = b.x * c.z, z1 = b.x * c.y, z2 = b.y * c.x;
-  return {a.x * (x1 - x2) + a.y * (y1 - y2) + a.z * (z1 - z2),
-          std::abs(a.x) * (std::abs(x1) + std::abs(x2)) + std::abs(a.y) * (std::abs(y1) + std::abs(y2)) +
-              std::abs(a.z) * (std::abs(z1) + std::abs(z2)),
-          1};
+// Of the prism between a face and the plane x = from.x: the sum over a closed surface does not depend on the plane.
+Volume volume_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) {
+  const double x1 = a.x - from.x, x2 = b.x - from.x, x3 = c.x - from.x;
+  const double forth = (b.y - a.y) * (c.z - a.z), back = (b.z - a.z) * (c.y - a.y);
+  constexpr double kUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
+  return {(x1 + x2 + x3) * (forth - back),
+          (std::abs(x1) + std::abs(x2) + std::abs(x3)) * (std::abs(forth) + std::abs(back) + kUnderflow), 1};
 }
 
 // Of a closed mesh of one component, in any order: only its sure sign is used.
@@ -239,15 +254,15 @@ class ClosedComponents {
 
 }  // namespace
 
-MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges) {
+MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges, const VertexLinks& links) {
   if (welded.triangles.empty()) return {};
   const DefaultFloatingPoint guard;
   Components components;
   std::vector<std::uint32_t> opposite;
   parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      if (n == 0) components = components_of(welded);
-      if (n == 1) opposite = opposite_faces(welded);
+      if (n == 0) components = components_of(welded, links);
+      if (n == 1) opposite = opposite_faces(welded, links);
     }
   });
   MeshDefects defects;

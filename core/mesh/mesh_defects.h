@@ -18,10 +18,11 @@ struct MeshDefects {
   bool negative_volume = false;  // the mesh as a whole is closed, and its volume is negative
 };
 
-// Defects of a welded mesh with these exterior_edges(). Signs of volumes are exact: that of a double-sided sheet is 0,
-// and not negative. Where floating point cannot vouch for one, this takes some microseconds for each face that has no
-// opposite. The result does not depend on the order of faces, nor on the number of threads.
-// Precondition: all vertices of triangles finite. Uses the threads that ThreadLimit allows.
-[[nodiscard]] MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges);
+// Defects of a welded mesh with these exterior_edges(), which noted all triangles in `links`. Signs of volumes are
+// exact: that of a double-sided sheet is 0, and not negative. Where floating point cannot vouch for one, this takes
+// some microseconds for each face that has no opposite. The result does not depend on the order of faces, nor on the
+// number of threads. Precondition: all vertices of triangles finite. Uses the threads that ThreadLimit allows.
+[[nodiscard]] MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorEdge>& edges,
+                                       const VertexLinks& links);
 
 }  // namespace raycone

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "core/exact/volume_sign.h"
 #include "core/machine/threads.h"
@@ -31,23 +32,28 @@ std::vector<ClosedSurface> surfaces_of(const std::vector<ClosedPatch>& patches) 
 
 }  // namespace
 
-std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
-  std::vector<int> outward = outward_signs(patches, vertices);
-  if (patches.size() < 2) return outward;
+ClosedTurns turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
+  const std::vector<int> outward = outward_signs(patches, vertices);
+  ClosedTurns result{outward, std::vector<std::uint32_t>(patches.size())};
+  std::iota(result.outermost.begin(), result.outermost.end(), 0U);
+  if (patches.size() < 2) return result;
   const std::vector<std::vector<std::uint32_t>> around = surfaces_around(surfaces_of(patches), vertices);
 
   std::vector<std::uint32_t> from_outside(patches.size());
   std::iota(from_outside.begin(), from_outside.end(), 0U);
   std::stable_sort(from_outside.begin(), from_outside.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return around[a].size() < around[b].size(); });
+  std::vector<std::optional<CanonicalFace>> first(patches.size());  // of those that were asked for
+  const auto first_face = [&](std::uint32_t i) {
+    if (!first[i]) first[i] = first_canonical_face(patches[i].surface.faces, vertices);
+    return *first[i];
+  };
   const auto is_farther_out = [&](std::uint32_t a, std::uint32_t b) {
     if (around[a].size() != around[b].size()) return around[a].size() < around[b].size();
-    return first_canonical_face(patches[b].surface.faces, vertices) <
-           first_canonical_face(patches[a].surface.faces, vertices);
+    return first_face(b) < first_face(a);
   };
-  std::vector<int> turn(patches.size());
+  std::vector<int>& turn = result.turn;
   for (const std::uint32_t i : from_outside) {
-    turn[i] = outward[i];
     // Surfaces that pass through themselves or touch may each be around the other: neither is the parent then.
     std::vector<std::uint32_t> outer = around[i];
     std::erase_if(outer, [&](std::uint32_t j) { return around[j].size() >= around[i].size(); });
@@ -55,8 +61,9 @@ std::vector<int> turn_closed_patches(const std::vector<ClosedPatch>& patches, co
     const std::uint32_t parent = *std::max_element(outer.begin(), outer.end(), is_farther_out);
     const int as_stored = patches[i].stored * patches[parent].stored;
     turn[i] = as_stored != 0 ? as_stored * turn[parent] : -outward[i] * outward[parent] * turn[parent];
+    result.outermost[i] = result.outermost[parent];
   }
-  return turn;
+  return result;
 }
 
 }  // namespace raycone

@@ -1,15 +1,13 @@
 #include "core/orientation/nesting.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
+#include <cstddef>
+#include <limits>
 #include <numeric>
-#include <optional>
 #include <utility>
 
-#include "core/crossings/crossings.h"
-#include "core/crossings/projected_grid.h"
 #include "core/machine/threads.h"
+#include "core/orientation/ray_sums.h"
 
 namespace raycone {
 namespace {
@@ -53,91 +51,86 @@ std::vector<std::vector<std::uint32_t>> boxes_around(const std::vector<Box>& box
   return around;
 }
 
-// Rays through the surfaces that may be around others.
-class SurfaceRays {
- public:
-  SurfaceRays(const std::vector<ClosedSurface>& surfaces, const std::vector<std::vector<std::uint32_t>>& around,
-              const std::vector<Vec3>& vertices) {
-    std::vector<bool> wanted(surfaces.size(), false);
-    for (const auto& outer : around) {
-      for (const std::uint32_t j : outer) wanted[j] = true;
+// Vertices of a surface, each once: the first ones that its faces come to, up to `most`. `seen_by` is per vertex the
+// number of the surface at which it was seen last.
+std::vector<std::uint32_t> vertices_of(const ClosedSurface& surface, std::uint32_t number, std::size_t most,
+                                       std::vector<std::uint32_t>& seen_by) {
+  std::vector<std::uint32_t> found;
+  for (const Triangle& t : surface.faces) {
+    for (const std::uint32_t v : t) {
+      if (std::exchange(seen_by[v], number) == number) continue;
+      found.push_back(v);
+      if (found.size() == most) return found;
     }
-    mesh_.vertices = vertices;
-    for (std::uint32_t j = 0; j < surfaces.size(); ++j) {
-      if (!wanted[j]) continue;
-      mesh_.triangles.insert(mesh_.triangles.end(), surfaces[j].faces.begin(), surfaces[j].faces.end());
-      surface_.insert(surface_.end(), surfaces[j].faces.size(), j);
-    }
-    if (!mesh_.triangles.empty()) grid_.emplace(mesh_);
   }
-
-  // Where a point lies.
-  struct Place {
-    std::int64_t winding = 0;
-    bool on_surface = false;
-  };
-  // places[i] of `surfaces[i]`, all of which are wanted.
-  void find(const Vec3& q, std::span<const std::uint32_t> surfaces, std::span<Place> places) const {
-    const Row row{q.y, q.z, {&q.x, 1}, 0.0};
-    grid_->for_each_candidate(q, [&](std::uint32_t triangle) {
-      const auto it = std::find(surfaces.begin(), surfaces.end(), surface_[triangle]);
-      if (it == surfaces.end()) return;
-      const Triangle& t = mesh_.triangles[triangle];
-      const TriangleCrossing crossing =
-          triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
-      Place& place = places[static_cast<std::size_t>(it - surfaces.begin())];
-      if (crossing.crossed > 0) place.winding += crossing.sigma;
-      if (crossing.on_begin < crossing.on_end) place.on_surface = true;
-    });
-  }
-
- private:
-  TriangleMesh mesh_;
-  std::vector<std::uint32_t> surface_;  // per triangle
-  std::optional<ProjectedGrid> grid_;
-};
-
-std::vector<std::uint32_t> vertices_of(const ClosedSurface& surface) {
-  std::vector<std::uint32_t> all;
-  all.reserve(3 * surface.faces.size());
-  for (const Triangle& t : surface.faces) all.insert(all.end(), t.begin(), t.end());
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all;
+  return found;
 }
 
-// Those of `outer` within which all vertices of the surface lie that are not on them. In blocks, so that one that does
-// not hold the first vertices costs no more.
-std::vector<std::uint32_t> holders(const ClosedSurface& surface, std::vector<std::uint32_t> outer,
-                                   const std::vector<Vec3>& vertices, const SurfaceRays& rays) {
-  const std::vector<std::uint32_t> used = vertices_of(surface);
-  std::vector<std::uint32_t> holding;  // by at least one vertex
-  constexpr std::size_t kSmallBlock = 16, kGrain = 256;
-  for (std::size_t done = 0, block = kSmallBlock; done < used.size() && !outer.empty(); done += block, block *= 4) {
-    const std::size_t count = std::min(block, used.size() - done);
-    std::vector<std::atomic<bool>> misses(outer.size()), hits(outer.size());
-    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      std::vector<SurfaceRays::Place> places;
-      for (std::size_t i = begin; i < end; ++i) {
-        places.assign(outer.size(), {});
-        rays.find(vertices[used[done + i]], outer, places);
-        for (std::size_t j = 0; j < outer.size(); ++j) {
-          if (places[j].on_surface) continue;
-          (places[j].winding == 0 ? misses : hits)[j].store(true, std::memory_order_relaxed);
-        }
+// Which surfaces lie within which, as far as the vertices tell that have been looked at.
+class NestingCandidates {
+ public:
+  NestingCandidates(const std::vector<ClosedSurface>& surfaces, const std::vector<Vec3>& vertices,
+                    std::vector<std::vector<std::uint32_t>> around)
+      : surfaces_(surfaces), vertices_(vertices), around_(std::move(around)) {}
+
+  // Keeps those around a surface within which up to `most` of its vertices lie: all that are not on them, and one.
+  void look_at(std::size_t most) {
+    const std::vector<std::vector<std::uint32_t>> used = used_vertices(most);
+    std::vector<std::vector<std::uint32_t>> within(surfaces_.size());
+    for (std::uint32_t i = 0; i < surfaces_.size(); ++i) {
+      for (const std::uint32_t outer : around_[i]) within[outer].push_back(i);
+    }
+    std::vector<std::vector<std::uint32_t>> dropped(surfaces_.size());
+    parallel_for(surfaces_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t outer = begin; outer < end; ++outer) {
+        if (!within[outer].empty()) dropped[outer] = not_within(outer, within[outer], used, most);
       }
     });
-    std::vector<std::uint32_t> left;
-    for (std::size_t j = 0; j < outer.size(); ++j) {
-      if (misses[j]) continue;
-      left.push_back(outer[j]);
-      if (hits[j]) holding.push_back(outer[j]);
+    for (std::uint32_t outer = 0; outer < surfaces_.size(); ++outer) {
+      for (const std::uint32_t i : dropped[outer]) std::erase(around_[i], outer);
     }
-    outer = std::move(left);
   }
-  std::erase_if(outer, [&](std::uint32_t j) { return std::ranges::count(holding, j) == 0; });
-  return outer;
-}
+
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> take() { return std::move(around_); }
+
+ private:
+  // Of the surfaces that have others around them.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> used_vertices(std::size_t most) const {
+    constexpr std::uint32_t kNoSurface = 0xFFFFFFFF;
+    std::vector<std::uint32_t> seen_by(vertices_.size(), kNoSurface);
+    std::vector<std::vector<std::uint32_t>> used(surfaces_.size());
+    for (std::uint32_t i = 0; i < surfaces_.size(); ++i) {
+      if (!around_[i].empty()) used[i] = vertices_of(surfaces_[i], i, most, seen_by);
+    }
+    return used;
+  }
+
+  // A surface of which all vertices that were looked at are on the other one is dropped only if these are all.
+  [[nodiscard]] std::vector<std::uint32_t> not_within(std::size_t outer, const std::vector<std::uint32_t>& inner,
+                                                      const std::vector<std::vector<std::uint32_t>>& used,
+                                                      std::size_t most) const {
+    std::vector<Vec3> points;
+    for (const std::uint32_t i : inner) {
+      for (const std::uint32_t v : used[i]) points.push_back(vertices_[v]);
+    }
+    const std::vector<RaySum> sums = ray_sums(surfaces_[outer].faces, vertices_, points);
+    std::vector<std::uint32_t> dropped;
+    auto sum = sums.begin();
+    for (const std::uint32_t i : inner) {
+      bool misses = false, hits = false;
+      for (const auto end = sum + static_cast<std::ptrdiff_t>(used[i].size()); sum != end; ++sum) {
+        if (sum->on_surface) continue;
+        (sum->winding == 0 ? misses : hits) = true;
+      }
+      if (misses || (!hits && used[i].size() < most)) dropped.push_back(i);
+    }
+    return dropped;
+  }
+
+  const std::vector<ClosedSurface>& surfaces_;
+  const std::vector<Vec3>& vertices_;
+  std::vector<std::vector<std::uint32_t>> around_;
+};
 
 }  // namespace
 
@@ -145,13 +138,12 @@ std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<Closed
                                                         const std::vector<Vec3>& vertices) {
   std::vector<Box> boxes;
   for (const ClosedSurface& surface : surfaces) boxes.push_back(box_of(surface, vertices));
-  std::vector<std::vector<std::uint32_t>> around = boxes_around(boxes);
-  const SurfaceRays rays(surfaces, around, vertices);
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (around[i].empty()) continue;
-    around[i] = holders(surfaces[i], std::move(around[i]), vertices, rays);
-    std::sort(around[i].begin(), around[i].end());
-  }
+  NestingCandidates candidates(surfaces, vertices, boxes_around(boxes));
+  constexpr std::size_t kFew = 16, kAll = std::numeric_limits<std::size_t>::max();
+  candidates.look_at(kFew);  // enough nearly always where one is not around
+  candidates.look_at(kAll);
+  std::vector<std::vector<std::uint32_t>> around = candidates.take();
+  for (auto& outer : around) std::sort(outer.begin(), outer.end());
   return around;
 }
 

@@ -1,19 +1,18 @@
 #include "core/orientation/open_patches.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
-#include "core/exact/scale.h"
 #include "core/machine/threads.h"
 #include "core/orientation/canonical_face.h"
 #include "core/orientation/crossing_votes.h"
 #include "core/orientation/dipole_tree.h"
+#include "core/orientation/ray_sums.h"
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
 #include "core/orientation/turn_problem.h"
+#include "core/orientation/unit_box.h"
 
 namespace raycone {
 namespace {
@@ -22,31 +21,6 @@ namespace {
 // near, and from afar as dipoles of a tree.
 constexpr std::size_t kFewSurfaces = 1500;
 constexpr std::size_t kLargestSurfaces = 48;
-
-// The vertices of the faces in [0, 1]^3, up to rounding. Others are not moved along, and may be anywhere.
-std::vector<Vec3> in_unit_box(const std::vector<Vec3>& vertices, const Box& box) {
-  double size = 0.0;  // a quarter of it, which cannot overflow
-  for (int axis = 0; axis < 3; ++axis) size = std::max(size, 0.25 * box.upper[axis] - 0.25 * box.lower[axis]);
-  int exponent = 0;
-  std::frexp(size, &exponent);
-  const PowerOfTwo scale(-exponent);
-  const Vec3 corner = 0.25 * box.lower;
-  std::vector<Vec3> moved;
-  moved.reserve(vertices.size());
-  for (const Vec3& p : vertices) moved.push_back(scale(0.25 * p - corner));
-  return moved;
-}
-
-void add_to(Box& box, const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices) {
-  for (const Triangle& t : faces) {
-    for (const std::uint32_t v : t) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
-        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
-      }
-    }
-  }
-}
 
 // Turned so that its first face runs around its corners by rising coordinates.
 struct TurningSurface {
@@ -109,12 +83,13 @@ class OpenSurfaceTurner {
     for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
     constant_.assign(samples_.size(), -0.5);
     if (closed_.empty()) return;
-    std::vector<FieldPoint> points;
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
-      points.push_back({samples_[k].at, k < first_sample_.back() ? 0 : samples_[k].side});
+    std::vector<Vec3> points;
+    for (const SurfaceSample& sample : samples_) points.push_back(sample.at);
+    // There is no boundary: crossings are all. On the faces themselves it is the mean of both sides.
+    const std::vector<RaySum> sums = ray_sums(closed_, vertices_, points);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      constant_[k] += static_cast<double>(sums[k].winding) + (k < first_sample_.back() ? 0.0 : 0.5 * samples_[k].side);
     }
-    const std::vector<double> w = SurfaceField(closed_, vertices_, false).winding_numbers(points);
-    for (std::size_t k = 0; k < w.size(); ++k) constant_[k] += w[k];
   }
 
   [[nodiscard]] bool is_own(std::size_t surface, std::size_t sample) const {
@@ -267,11 +242,9 @@ class OpenSurfaceTurner {
 
 std::vector<int> turn_open_surfaces(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
                                     const std::vector<Vec3>& vertices) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const OpenSurface& surface : surfaces) add_to(box, surface.faces, vertices);
-  add_to(box, closed, vertices);
-  return OpenSurfaceTurner(surfaces, closed, in_unit_box(vertices, box)).turn();
+  std::vector<const std::vector<Triangle>*> faces{&closed};
+  for (const OpenSurface& surface : surfaces) faces.push_back(&surface.faces);
+  return OpenSurfaceTurner(surfaces, closed, in_unit_box(vertices, faces)).turn();
 }
 
 }  // namespace raycone

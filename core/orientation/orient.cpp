@@ -9,6 +9,7 @@
 #include "core/mesh/equal_vertices.h"
 #include "core/orientation/closed_patches.h"
 #include "core/orientation/face_edges.h"
+#include "core/orientation/open_bodies.h"
 #include "core/orientation/open_patches.h"
 #include "core/orientation/patches.h"
 #include "core/orientation/pieces.h"
@@ -60,36 +61,68 @@ std::vector<Vec3> scaled_vertices(const TriangleMesh& mesh) {
   return vertices;
 }
 
-// For each piece 1 or -1.
-std::vector<int> turn_pieces(std::vector<PieceFaces> pieces, const Pieces& kinds, const std::vector<Vec3>& vertices) {
-  std::vector<std::size_t> closed_numbers, open_numbers;
-  std::vector<ClosedPatch> closed;
-  std::vector<OpenSurface> open;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (kinds.is_closed[i]) {
-      closed_numbers.push_back(i);
-      closed.push_back({{std::move(pieces[i].faces)}, pieces[i].stored});
-    } else {
-      open_numbers.push_back(i);
-      open.push_back({std::move(pieces[i].faces)});
-    }
+void append(const std::vector<Triangle>& faces, int turn, std::vector<Triangle>& to) {
+  for (Triangle t : faces) {
+    if (turn < 0) reverse(t);
+    to.push_back(t);
   }
-  std::vector<int> turn(pieces.size(), 1);
-  const std::vector<int> turn_of_closed = turn_closed_patches(closed, vertices);
-  for (std::size_t i = 0; i < closed.size(); ++i) turn[closed_numbers[i]] = turn_of_closed[i];
-  if (open.empty()) return turn;
-
-  std::vector<Triangle> settled;
-  for (std::size_t i = 0; i < closed.size(); ++i) {
-    for (Triangle t : closed[i].surface.faces) {
-      if (turn_of_closed[i] < 0) reverse(t);
-      settled.push_back(t);
-    }
-  }
-  const std::vector<int> turn_of_open = turn_open_surfaces(open, settled, vertices);
-  for (std::size_t i = 0; i < open.size(); ++i) turn[open_numbers[i]] = turn_of_open[i];
-  return turn;
 }
+
+// The pieces of a mesh, closed and open ones apart.
+class PieceTurner {
+ public:
+  PieceTurner(std::vector<PieceFaces> pieces, const Pieces& kinds, const std::vector<Vec3>& vertices)
+      : vertices_(vertices), turn_(pieces.size(), 1) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (kinds.is_closed[i]) {
+        closed_numbers_.push_back(i);
+        closed_.push_back({{std::move(pieces[i].faces)}, pieces[i].stored});
+      } else {
+        open_numbers_.push_back(i);
+        open_.push_back({std::move(pieces[i].faces)});
+        open_stored_.push_back(pieces[i].stored);
+      }
+    }
+  }
+
+  // For each piece 1 or -1.
+  std::vector<int> turn() {
+    ClosedTurns of_closed = turn_closed_patches(closed_, vertices_);
+    if (!open_.empty()) {
+      std::vector<int> of_open = turn_open_surfaces(open_, settled(of_closed.turn), vertices_);
+      // What lies in a cavity may have to be turned, too.
+      if (turn_within_open_bodies(closed_, bodies(of_open), vertices_, of_closed)) {
+        of_open = turn_open_surfaces(open_, settled(of_closed.turn), vertices_);
+      }
+      for (std::size_t i = 0; i < open_.size(); ++i) turn_[open_numbers_[i]] = of_open[i];
+    }
+    for (std::size_t i = 0; i < closed_.size(); ++i) turn_[closed_numbers_[i]] = of_closed.turn[i];
+    return std::move(turn_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<Triangle> settled(const std::vector<int>& turn) const {
+    std::vector<Triangle> faces;
+    for (std::size_t i = 0; i < closed_.size(); ++i) append(closed_[i].surface.faces, turn[i], faces);
+    return faces;
+  }
+
+  [[nodiscard]] OpenBodies bodies(const std::vector<int>& turn) const {
+    OpenBodies bodies;
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      append(open_[i].faces, turn[i], bodies.turned);
+      if (open_stored_[i] != 0) append(open_[i].faces, open_stored_[i], bodies.as_stored);
+    }
+    return bodies;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  std::vector<int> turn_;
+  std::vector<std::size_t> closed_numbers_, open_numbers_;
+  std::vector<ClosedPatch> closed_;
+  std::vector<OpenSurface> open_;
+  std::vector<int> open_stored_;
+};
 
 // What becomes of a face of the mesh.
 enum class FaceFate : std::uint8_t { kAsStored, kReversed, kDropped };
@@ -142,8 +175,8 @@ OrientedMesh turned_to_agree(TriangleMesh mesh) {
   const FaceEdges edges(unique.corners, mesh.vertices.size());
   const Patches patches = find_patches(unique.corners, edges, mesh.vertices);
   const Pieces pieces = find_pieces(patches, edges, unique.vote);
-  const std::vector<int> turn_of_piece =
-      turn_pieces(faces_of_pieces(unique, patches, pieces), pieces, scaled_vertices(mesh));
+  const std::vector<Vec3> vertices = scaled_vertices(mesh);
+  const std::vector<int> turn_of_piece = PieceTurner(faces_of_pieces(unique, patches, pieces), pieces, vertices).turn();
   std::vector<std::int8_t> turn(patches.sign);
   for (std::size_t face = 0; face < turn.size(); ++face) {
     const std::uint32_t patch = patches.of_face[face];

@@ -1,4 +1,4 @@
-// Crossings of few rays with many triangles.
+// Crossings of rays with many triangles.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,16 @@
 
 namespace raycone {
 
-// For each point q the sum of the signs of the triangles that the ray q + t x, t > 0, crosses. Exact. No structure over
-// the triangles is built: each looks for the rays that it may meet, so that the time is that of going through the
-// triangles once. Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
-[[nodiscard]] std::vector<std::int64_t> ray_sums(const TriangleMesh& mesh, std::span<const Vec3> points);
+// Where a point lies with respect to faces.
+struct RaySum {
+  std::int64_t winding = 0;  // the sum of the signs of the triangles that the ray q + t x, t > 0, crosses
+  bool on_surface = false;   // on a closed triangle
+};
+
+// For each point. Exact. No structure over the triangles is built: each looks for the rays that it may meet, so that
+// the time is that of going through the triangles once, and of the crossings. Uses the threads that ThreadLimit allows;
+// needs DefaultFloatingPoint.
+[[nodiscard]] std::vector<RaySum> ray_sums(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+                                           std::span<const Vec3> points);
 
 }  // namespace raycone

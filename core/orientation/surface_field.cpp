@@ -59,13 +59,6 @@ TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>
 
 }  // namespace
 
-double SurfaceDipole::at(const Vec3& q) const {
-  const Vec3 r = centre - q;
-  const double distance = length(r);
-  if (!(distance > 0.0)) return 0.0;
-  return dot(area, r) / (4.0 * std::numbers::pi * distance * distance * distance);
-}
-
 SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
   Box box{vertices[faces.front()[0]], vertices[faces.front()[0]]};
   std::array<__int128, 3> area{};
@@ -93,7 +86,8 @@ SurfaceField::Large::Large(TriangleMesh its_mesh)
     : mesh(std::move(its_mesh)), boundary(mesh), cone(boundary, SimdLevel::kBest) {}
 
 std::vector<double> SurfaceField::Large::winding_numbers(std::span<const Vec3> points) const {
-  const std::vector<std::int64_t> crossings = ray_sums(mesh, points);
+  std::vector<std::int64_t> crossings;
+  for (const RaySum& sum : ray_sums(mesh.triangles, mesh.vertices, points)) crossings.push_back(sum.winding);
   std::vector<double> values(crossings.begin(), crossings.end());
   if (boundary.exterior_edges() == 0) return values;
   const std::size_t tiles = (points.size() + kTile - 1) / kTile;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -19,7 +21,12 @@ struct SurfaceDipole {
   double radius = 0.0;  // of a sphere about the centre that holds the surface
 
   // Winding number, turns; good from afar.
-  [[nodiscard]] double at(const Vec3& q) const;
+  [[nodiscard]] double at(const Vec3& q) const {
+    const Vec3 r = centre - q;
+    const double square = dot(r, r);
+    if (!(square > 0.0)) return 0.0;
+    return dot(area, r) / (4.0 * std::numbers::pi * square * std::sqrt(square));
+  }
 };
 
 // About the middle of the surface's box; `reversed`: of the faces the other way round. Coordinates in [0, 1]. Does not

@@ -11,22 +11,27 @@
 namespace raycone {
 namespace {
 
-// In (0, 1], as if random (splitmix64 over the coordinates; Steele, Lea, Flood 2014).
-double number_of(const CanonicalFace& face) {
-  std::uint64_t state = 0;
-  for (const Vec3& corner : face.corners) {
-    for (int axis = 0; axis < 3; ++axis) {
-      state = (state ^ std::bit_cast<std::uint64_t>(corner[axis])) + 0x9E3779B97F4A7C15;
-      state = (state ^ state >> 30) * 0xBF58476D1CE4E5B9;
-      state = (state ^ state >> 27) * 0x94D049BB133111EB;
-      state ^= state >> 31;
-    }
-  }
-  return static_cast<double>((state >> 11) + 1) * 0x1p-53;
+std::uint64_t mixed(std::uint64_t state) {
+  state = (state ^ state >> 30) * 0xBF58476D1CE4E5B9;
+  state = (state ^ state >> 27) * 0x94D049BB133111EB;
+  return state ^ state >> 31;
 }
 
-double area_of(const CanonicalFace& face) {
-  const Vec3 normal = cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
+std::uint64_t hash_of(const Vec3& p) {
+  std::uint64_t state = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    state = mixed((state ^ std::bit_cast<std::uint64_t>(p[axis])) + 0x9E3779B97F4A7C15);
+  }
+  return state;
+}
+
+// In (0, 1], as if random (splitmix64 over the coordinates; Steele, Lea, Flood 2014), whatever the order of corners.
+double number_of(const Vec3& p, const Vec3& q, const Vec3& r) {
+  return static_cast<double>((mixed(hash_of(p) + hash_of(q) + hash_of(r)) >> 11) + 1) * 0x1p-53;
+}
+
+double area_of(const Vec3& p, const Vec3& q, const Vec3& r) {
+  const Vec3 normal = cross(q - p, r - p);
   return 0.5 * std::sqrt(dot(normal, normal));
 }
 
@@ -40,11 +45,44 @@ struct RankedFace {
   }
 };
 
-void keep_first(std::vector<RankedFace>& ranked, std::size_t count) {
-  if (ranked.size() <= count) return;
-  std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
-  ranked.resize(count);
-}
+// The first `count` of those that it was given, nearly without work for others.
+class FirstRanked {
+ public:
+  explicit FirstRanked(std::size_t count) : count_(count) {}
+
+  void add(const Triangle& t, const std::vector<Vec3>& vertices) {
+    const Vec3 &p = vertices[t[0]], &q = vertices[t[1]], &r = vertices[t[2]];
+    const double number = number_of(p, q, r);
+    // What the order of corners changes is less; exactly that decides which faces come near being taken.
+    constexpr double kRounding = 1e-14;
+    const double most = area_of(p, q, r) + kRounding * (dot(q - p, q - p) + dot(r - p, r - p));
+    if (most < least_ * number) return;
+    const CanonicalFace face = canonical_face(t, vertices);
+    const double area = area_of(face.corners[0], face.corners[1], face.corners[2]);
+    if (!(area > 0.0 && std::isfinite(area))) return;
+    ranked_.push_back({area / number, area, face});
+    if (ranked_.size() > 4 * count_ + kSpare) cut();
+  }
+
+  std::vector<RankedFace> take() {
+    cut();
+    return std::move(ranked_);
+  }
+
+ private:
+  static constexpr std::size_t kSpare = 256;
+
+  void cut() {
+    if (ranked_.size() <= count_) return;
+    std::nth_element(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(count_), ranked_.end());
+    ranked_.resize(count_);
+    least_ = std::ranges::min(ranked_, {}, &RankedFace::priority).priority;
+  }
+
+  std::size_t count_;
+  double least_ = 0.0;  // lower priorities are not among the first
+  std::vector<RankedFace> ranked_;
+};
 
 // The sign of the normal's component, exactly.
 int normal_sign(const CanonicalFace& face, int axis) {
@@ -69,23 +107,17 @@ std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, co
   std::vector<RankedFace> ranked;
   std::mutex mutex;
   parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<RankedFace> part;
-    for (std::size_t i = begin; i < end; ++i) {
-      const CanonicalFace face = canonical_face(faces[i], vertices);
-      const double area = area_of(face);
-      if (area > 0.0 && std::isfinite(area)) part.push_back({area / number_of(face), area, face});
-      if (part.size() > 4 * count + kGrain) keep_first(part, count + 1);
-    }
-    keep_first(part, count + 1);
+    FirstRanked first(count + 1);
+    for (std::size_t i = begin; i < end; ++i) first.add(faces[i], vertices);
+    const std::vector<RankedFace> part = first.take();
     const std::lock_guard<std::mutex> lock(mutex);
     ranked.insert(ranked.end(), part.begin(), part.end());
   });
-  keep_first(ranked, count + 1);
   std::sort(ranked.begin(), ranked.end());
   double least = 0.0;  // what each sample stands for at least
   if (ranked.size() > count) {
-    least = ranked.back().priority;
-    ranked.pop_back();
+    least = ranked[count].priority;
+    ranked.resize(count);
   }
   std::vector<SurfaceSample> samples;
   for (const RankedFace& r : ranked) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -18,7 +19,9 @@ const TriangleMesh kCubeMesh = box_mesh({0, 0, 0}, {1, 1, 1});
 
 MeshDefects defects_of(const TriangleMesh& mesh) {
   const TriangleMesh welded = weld(mesh, {});
-  return mesh_defects(welded, exterior_edges(welded));
+  VertexLinks links(welded.vertices.size());
+  const std::vector<ExteriorEdge> edges = exterior_edges(welded, &links);
+  return mesh_defects(welded, edges, links);
 }
 
 std::uint64_t reversed_in(const TriangleMesh& mesh) { return defects_of(mesh).reversed_components; }
@@ -131,6 +134,39 @@ TEST(MeshDefects, AreThoseOfAnyScaleAndSignOfZero) {
   TriangleMesh zeros = reversed(kCubeMesh);
   for (Vec3& v : zeros.vertices) v = {v.x == 0 ? -0.0 : v.x, v.y == 0 ? -0.0 : v.y, v.z};
   EXPECT_EQ(defects_of(joined(kCubeMesh, zeros)).cancelling_pairs, 12U);
+}
+
+// Products of y and z are rounded to a few units of what is left of doubles there.
+TEST(MeshDefects, SignOfAVolumeIsExactWhereProductsUnderflow) {
+  Random random(31);
+  int reversed_ones = 0;
+  for (int n = 0; n < 200; ++n) {
+    const auto number = [&] { return std::floor(uniform(random, -20, 20)); };
+    TriangleMesh tetrahedron{{}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    for (int corner = 0; corner < 4; ++corner) tetrahedron.vertices.push_back({number(), number(), number()});
+    const auto expected = reversed_in(tetrahedron);
+    EXPECT_EQ(reversed_in(moved(tetrahedron, {0x1p600, 0x1p-539, 0x1p-539}, {})), expected) << "mesh " << n;
+    EXPECT_EQ(reversed_in(moved(tetrahedron, {0x1p-539, 0x1p600, 0x1p-539}, {})), expected) << "mesh " << n;
+    reversed_ones += static_cast<int>(expected);
+  }
+  EXPECT_GT(reversed_ones, 60);
+}
+
+// The signatures of a vertex have eight places; every second triangle of a larger fan is there the other way round.
+TEST(MeshDefects, OppositeFacesAreFoundAtVerticesOfManyFaces) {
+  Random random(37);
+  for (const std::uint32_t faces : {1U, 7U, 8U, 9U, 40U}) {
+    TriangleMesh fan_of_many;
+    for (std::uint32_t v = 0; v <= faces + 1; ++v) fan_of_many.vertices.push_back({1.0 * v, 1.0 * v * v, 1});
+    std::uint64_t pairs = 0;
+    for (std::uint32_t v = 1; v <= faces; ++v) {
+      fan_of_many.triangles.push_back({0, v, v + 1});
+      if (v % 2 == 0) continue;
+      fan_of_many.triangles.push_back({v + 1, v, 0});
+      ++pairs;
+    }
+    EXPECT_EQ(defects_of(shuffled(fan_of_many, random)).cancelling_pairs, pairs) << faces;
+  }
 }
 
 TEST(MeshDefects, DoNotDependOnTheOrderOfFaces) {

@@ -361,6 +361,39 @@ TEST(Orient, TurnsAHoleyHollowSphere) {
   expect_restored(joined(outer, inner));
 }
 
+// Without the faces around one of its vertices.
+TriangleMesh sphere_with_a_hole(double radius) {
+  TriangleMesh sphere = sphere_of(radius, {}, 10);
+  std::erase_if(sphere.triangles, [](const Triangle& t) { return std::ranges::count(t, 50U) > 0; });
+  return sphere;
+}
+
+TEST(Orient, KeepsAClosedCavityInAnOpenBodyHollow) {
+  const TriangleMesh body = sphere_with_a_hole(1);
+  expect_restored(joined(body, test::reversed(sphere_of(0.5))));
+  expect_restored(joined(test::reversed(sphere_of(0.5, {0.1, 0.2, 0})), body));
+  // What lies in the cavity, closed or open, is turned with it.
+  expect_restored(joined(joined(body, sphere_of(0.3)), test::reversed(sphere_of(0.6))));
+  expect_restored(joined(joined(body, sphere_with_a_hole(0.3)), test::reversed(sphere_of(0.6))));
+}
+
+TEST(Orient, KeepsTheRelationOfAClosedPatchToAnOpenBody) {
+  const TriangleMesh both_outward = joined(sphere_with_a_hole(1), sphere_of(0.5));
+  EXPECT_EQ(set_of_faces(automatic(both_outward)), set_of_faces(both_outward));
+  EXPECT_EQ(set_of_faces(automatic(test::reversed(both_outward))), set_of_faces(both_outward));
+  for (const std::size_t face : {std::size_t{0}, both_outward.triangles.size() - 1}) {
+    TriangleMesh broken = both_outward;
+    reverse(broken.triangles[face]);
+    EXPECT_LT(test::direct_winding_number(automatic(broken), {0.1, 0, 0}), 0.5) << face;
+  }
+}
+
+TEST(Orient, TakesWhatIsPartlyInAnOpenBodyForNoCavity) {
+  const TriangleMesh body = sphere_with_a_hole(1);
+  expect_restored(joined(body, box_mesh({0.2, -0.1, -0.1}, {2, 0.1, 0.1})));
+  expect_restored(joined(body, sphere_of(0.5, {2, 0, 0})));
+}
+
 TEST(Orient, TurnsManySeparateTriangles) {
   // More than the number of surfaces that each act on every sample.
   Random random(13);

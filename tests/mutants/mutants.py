@@ -368,11 +368,11 @@ MUTANTS = [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),
     Mutant("nesting_on_surface_counts", "vertices on the other surface say nothing about nesting", [
-        ("core/orientation/nesting.cpp", "          if (places[j].on_surface) continue;\n",
+        ("core/orientation/nesting.cpp", "        if (sum->on_surface) continue;\n",
          "")]),
     Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
-        ("core/orientation/nesting.cpp", "          (places[j].winding == 0 ? misses : hits)[j]",
-         "          if (places[j].winding != 0) hits[j]")]),
+        ("core/orientation/nesting.cpp", "(sum->winding == 0 ? misses : hits) = true;",
+         "if (sum->winding != 0) hits = true;")]),
     Mutant("copies_vote_for_the_first", "faces that are there both ways have no opinion", [
         ("core/orientation/unique_faces.cpp", "votes += as_first ? 1 : -1;",
          "votes += as_first ? 1 : 0;")]),
@@ -385,12 +385,26 @@ MUTANTS = [
     Mutant("volume_sign_not_exact", "the sign of a volume is exact", [
         ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles.size()) + 16.0) * 0x1p-52 * terms + 0x1p-900",
          "0.0")]),
+    Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
+        ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+    Mutant("signatures_drop_out", "a vertex of more faces than signatures may have twins", [
+        ("core/mesh/vertex_links.h", "const bool no_place = _mm_extract_epi16(before, 7) != 0;", "const bool no_place = false;")]),
+    Mutant("labels_are_components", "labels that a triangle joins are one component", [
+        ("core/mesh/components.cpp", "    sets.join(a, c);\n", "")]),
     Mutant("surface_is_not_the_mean", "on its own samples an open piece counts with the mean of both sides", [
         ("core/orientation/surface_field.cpp", "of_near[i] + 0.5 * points[places[i]].side",
          "of_near[i]")]),
     Mutant("flat_piece_depends_on_order", "the orientation of a flat piece depends on coordinates only", [
         ("core/orientation/closed_patches.cpp", "return first_canonical_face(surface.faces, vertices).sign;",
          "return 1;")]),
+    Mutant("no_cavities_in_open_bodies", "a closed patch in an open body is a cavity", [
+        ("core/orientation/open_bodies.cpp", ": -turns.turn[i] * around[n];", ": turns.turn[i] * around[n];")]),
+    Mutant("open_body_stored_is_forgotten", "a closed patch keeps its relation to an open body", [
+        ("core/orientation/open_bodies.cpp", "as_stored != 0 ? as_stored * around[n]", "as_stored == 2 ? as_stored * around[n]")]),
+    Mutant("open_body_around_one_sample", "a patch is in an open body if all of its samples are", [
+        ("core/orientation/open_bodies.cpp", "*least > 0.5 ? 1", "*most > 0.5 ? 1")]),
+    Mutant("cavity_without_its_content", "what lies in a patch is turned with it", [
+        ("core/orientation/open_bodies.cpp", "if (reversed[turns.outermost[i]])", "if (reversed[i])")]),
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),

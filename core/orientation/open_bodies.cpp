@@ -1,0 +1,92 @@
+#include "core/orientation/open_bodies.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/machine/threads.h"
+#include "core/orientation/surface_field.h"
+#include "core/orientation/surface_samples.h"
+#include "core/orientation/unit_box.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kMostPatches = 1000;
+
+// An outermost closed patch.
+struct OutermostPatch {
+  std::uint32_t number;
+  std::vector<SurfaceSample> samples;  // the largest first
+};
+
+std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& patches, const ClosedTurns& turns,
+                                              const std::vector<Vec3>& vertices) {
+  std::vector<OutermostPatch> all;
+  for (std::uint32_t i = 0; i < patches.size(); ++i) {
+    if (turns.outermost[i] == i) all.push_back({i, {}});
+  }
+  constexpr std::size_t kSamples = 1024, kLeast = 4, kMost = 64;
+  const std::size_t each = std::clamp(kSamples / all.size(), kLeast, kMost);
+  parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      all[n].samples = sample_surface(patches[all[n].number].surface.faces, vertices, each);
+    }
+  });
+  std::erase_if(all, [](const OutermostPatch& patch) { return patch.samples.empty(); });
+  std::ranges::sort(all, [](const OutermostPatch& a, const OutermostPatch& b) {
+    const SurfaceSample &first = a.samples.front(), &other = b.samples.front();
+    return first.weight != other.weight ? first.weight > other.weight : first.face < other.face;
+  });
+  if (all.size() > kMostPatches) all.resize(kMostPatches);
+  return all;
+}
+
+// For each patch 1 or -1 where the faces wind around all of its samples by more than half a turn, one way; else 0.
+std::vector<int> winding_around(const std::vector<OutermostPatch>& patches, const std::vector<Triangle>& faces,
+                                const std::vector<Vec3>& vertices) {
+  std::vector<int> result(patches.size(), 0);
+  if (faces.empty()) return result;
+  std::vector<FieldPoint> points;
+  for (const OutermostPatch& patch : patches) {
+    for (const SurfaceSample& sample : patch.samples) points.push_back({sample.at, 0});
+  }
+  const std::vector<double> w = SurfaceField(faces, vertices, false).winding_numbers(points);
+  auto it = w.begin();
+  for (std::size_t n = 0; n < patches.size(); ++n) {
+    const auto end = it + static_cast<std::ptrdiff_t>(patches[n].samples.size());
+    const auto [least, most] = std::minmax_element(it, end);
+    result[n] = *least > 0.5 ? 1 : *most < -0.5 ? -1 : 0;
+    it = end;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const OpenBodies& bodies,
+                             const std::vector<Vec3>& vertices, ClosedTurns& turns) {
+  if (patches.empty() || bodies.turned.empty()) return false;
+  std::vector<const std::vector<Triangle>*> faces{&bodies.turned};
+  for (const ClosedPatch& patch : patches) faces.push_back(&patch.surface.faces);
+  const std::vector<Vec3> moved = in_unit_box(vertices, faces);
+  const std::vector<OutermostPatch> outermost = outermost_patches(patches, turns, moved);
+  const std::vector<int> around = winding_around(outermost, bodies.turned, moved);
+  if (std::ranges::count(around, 0) == std::ssize(around)) return false;
+
+  const std::vector<int> around_as_stored = winding_around(outermost, bodies.as_stored, moved);
+  std::vector<std::uint8_t> reversed(patches.size(), 0);
+  for (std::size_t n = 0; n < outermost.size(); ++n) {
+    if (around[n] == 0) continue;
+    const std::uint32_t i = outermost[n].number;
+    const int as_stored = patches[i].stored * around_as_stored[n];
+    const int turn = as_stored != 0 ? as_stored * around[n] : -turns.turn[i] * around[n];
+    reversed[i] = turn != turns.turn[i];
+  }
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (reversed[turns.outermost[i]]) turns.turn[i] = -turns.turn[i];
+  }
+  return std::ranges::count(reversed, 1) > 0;
+}
+
+}  // namespace raycone

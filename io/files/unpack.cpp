@@ -199,6 +199,7 @@ class UnpackingSource final : public ByteSource {
   PackedInput take_input() {
     PackedInput input(std::move(source_), name_, begun_);
     begun_.clear();
+    at_end_ = false;
     return input;
   }
 

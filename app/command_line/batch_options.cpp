@@ -24,20 +24,19 @@ const std::set<std::string> kOfBatches{"--format", "--threads", "--memory-limit"
 
 // `formats`: those of lattices.
 OptionGroup batch_group(const std::string& formats) {
-  return {
-      "Batch",
-      {{"--out-dir", "DIR", "Directory for the outputs and results.csv"},
-       {"--format", formats + "|npz|none", "Format of outputs (default: vdb; npz of samples); none: results.csv only"},
-       {"--full-names", "", "Keep the mesh's extension in the output's name: a.stl.vdb"},
-       {"-0,--null", "", "Paths in lists end with NUL, not with a line feed"},
-       {"--jobs", "J", "Number of meshes at a time (default: as --threads allows)"},
-       {"--shard", "I/N|slurm", "Do only part I of N; slurm: the part of this array task"},
-       {"--retry-failed", "", "Try failed meshes again"},
-       {"--keep-going", "", "Go on when a mesh fails (default)"},
-       {"--fail-fast", "", "Stop when a mesh fails"},
-       {"--exit-zero", "", "Exit with status 0 although meshes failed; results.csv has them"},
-       {"--prune", "", "Remove the rows of meshes that are gone"},
-       {"--dry-run", "", "List what would be done and why, and do nothing"}}};
+  return {"Batch",
+          {{"--out-dir", "DIR", "Directory for the outputs and results.csv"},
+           {"--format", formats + "|none", "Format of outputs (default: vdb; npz of samples); none: results.csv only"},
+           {"--full-names", "", "Keep the mesh's extension in the output's name: a.stl.vdb"},
+           {"-0,--null", "", "Paths in lists end with NUL, not with a line feed"},
+           {"--jobs", "J", "Number of meshes at a time (default: as --threads allows)"},
+           {"--shard", "I/N|slurm", "Do only part I of N; slurm: the part of this array task"},
+           {"--retry-failed", "", "Try failed meshes again"},
+           {"--keep-going", "", "Go on when a mesh fails (default)"},
+           {"--fail-fast", "", "Stop when a mesh fails"},
+           {"--exit-zero", "", "Exit with status 0 although meshes failed; results.csv has them"},
+           {"--prune", "", "Remove the rows of meshes that are gone"},
+           {"--dry-run", "", "List what would be done and why, and do nothing"}}};
 }
 
 OptionGroup batch_run_group() {

@@ -87,7 +87,7 @@ OptionGroup mesh_group() {
            {"--orient", "keep|flip|auto", "Turn no face, all, or those that make the mesh agree and face outward"},
            {"--scale", "S", "Multiply all coordinates by S"},
            {"--up", "y-to-z", "Turn (x, y, z) into (x, -z, y), as Blender does to glTF and OBJ"},
-           {"--normalize", "cube|sphere[:SIZE]", "Move the mesh to the origin and scale it to SIZE (default: 1)"}}};
+           {"--normalize", "cube|sphere", "Move the mesh to the origin and scale it to size 1; cube:SIZE: to SIZE"}}};
 }
 
 MeshOptions parse_mesh(const Values& values) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <utility>
 
 namespace raycone {
 
@@ -9,12 +10,15 @@ std::vector<std::string> given_options(const Values& values, const OptionNames& 
   static const std::set<std::string> without_effect{
       "--depfile", "--engine", "--format", "--memory-limit", "--no-clobber", "--output", "--progress", "--quiet",
       "--report",  "--simd",   "--strict", "--threads",      "--timeout",    "--values", "--verify"};
+  static const std::set<std::string> defaults{"--field=winding",      "--band=3",  "--orient=keep", "--resolution=64",
+                                              "--rule=threshold=0.5", "--scale=1", "--seed=1",      "--tolerance=0",
+                                              "--weld=exact"};
   std::vector<std::string> options;
   for (const auto& [name, given] : values.all()) {
     if (!name.starts_with("--") || without_effect.contains(name)) continue;
-    if (name == "--tolerance" && given.back() == "0") continue;  // the default, on some command lines stated
     const std::string value = name == "--like" ? std::filesystem::path(given.back()).filename().string() : given.back();
-    options.push_back(known.flags.contains(name) ? name : name + '=' + value);
+    std::string option = known.flags.contains(name) ? name : name + '=' + value;
+    if (!defaults.contains(option)) options.push_back(std::move(option));
   }
   return options;
 }

@@ -10,7 +10,8 @@
 namespace raycone {
 
 // The options that results depend on, "--name=value" or "--name", by name: not those that say where results go, what a
-// run may use or what it prints. Files are named without their directories. `known`: the command's.
+// run may use or what it prints, and not what would hold anyway. Files are named without their directories. `known`:
+// the command's.
 [[nodiscard]] std::vector<std::string> given_options(const Values& values, const OptionNames& known);
 
 }  // namespace raycone

@@ -11,7 +11,7 @@ namespace {
 
 bool is_small(char c) { return 'a' <= c && c <= 'z'; }
 bool is_capital(char c) { return 'A' <= c && c <= 'Z'; }
-bool is_in_word(char c) { return is_small(c) || ('0' <= c && c <= '9') || c == '-'; }
+bool is_in_word(char c) { return is_small(c) || ('0' <= c && c <= '9') || c == '-' || c == '.'; }
 
 // "abs=T" as "abs=", "sdf[,...]" as "sdf".
 std::string leading_word(std::string_view alternative) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -166,7 +165,6 @@ std::string to_json(const RunReport& report) {
 
 std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields, const std::string& rule) {
   Json document{{"raycone_version", kVersion},
-                {"mesh", std::filesystem::path(report.mesh).filename().string()},
                 {"sha256", report.sha256},
                 {"options", report.options},
                 {"fields", fields},

@@ -13,8 +13,8 @@ namespace raycone {
 [[nodiscard]] std::string to_json(const RunReport& report);
 [[nodiscard]] std::string to_json(const MeshInfo& info);
 
-// How a file was made, in one line, without line feed: the version, the mesh by name and hash, the options that were
-// given, the fields, their rule (where it is not empty), the transform. The same whatever the directories and threads.
+// How a file was made, in one line, without line feed: the version, the hash of the mesh, the options that were
+// given, the fields, their rule (where it is not empty), the transform. The same whatever files are called.
 [[nodiscard]] std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields,
                                           const std::string& rule);
 

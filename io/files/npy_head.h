@@ -12,14 +12,14 @@
 namespace raycone {
 
 struct NpyHead {
-  std::string type;  // as NumPy writes it, "<f8" for instance; empty for structured values
+  std::string type;  // as NumPy writes it, "<f8" for instance
   bool fortran_order = false;
   std::vector<std::uint64_t> shape;
   std::string shape_text;
   std::uint64_t data_offset = 0;
 };
 
-// Consumes the head. Throws InputError.
+// Consumes the head. Throws InputError, also about structured values.
 [[nodiscard]] NpyHead read_npy_head(InputBuffer& input);
 
 // Waits until `count` bytes are pending; throws InputError where the input ends before.

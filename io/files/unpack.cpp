@@ -164,7 +164,7 @@ class UnpackingSource final : public ByteSource {
 
   std::size_t read(char* bytes, std::size_t size) override {
     if (!is_known_) find_out();
-    if (begun_.empty()) return source_->read(bytes, size);
+    if (begun_.empty()) return at_end_ ? 0 : source_->read(bytes, size);
     const std::size_t count = std::min(size, begun_.size());
     std::memcpy(bytes, begun_.data(), count);
     begun_.erase(0, count);
@@ -183,7 +183,10 @@ class UnpackingSource final : public ByteSource {
     std::array<char, 4> first{};
     while (begun_.size() < first.size() && (kGzip.starts_with(begun_) || kZstandard.starts_with(begun_))) {
       const std::size_t count = source_->read(first.data(), first.size() - begun_.size());
-      if (count == 0) return;
+      if (count == 0) {
+        at_end_ = true;  // of a terminal, which would ask again
+        break;
+      }
       begun_.append(first.data(), count);
     }
     if (begun_.starts_with(kGzip)) {
@@ -196,6 +199,7 @@ class UnpackingSource final : public ByteSource {
   PackedInput take_input() {
     PackedInput input(std::move(source_), name_, begun_);
     begun_.clear();
+    at_end_ = false;
     return input;
   }
 
@@ -203,6 +207,7 @@ class UnpackingSource final : public ByteSource {
   std::string name_;
   std::string begun_;  // bytes that were read to find out
   bool is_known_ = false;
+  bool at_end_ = false;
 };
 
 class MemorySource final : public ByteSource {

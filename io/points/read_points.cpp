@@ -61,7 +61,12 @@ std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPoin
   // Nothing may wait on standard input before the first point is asked for.
   if (path != "-") {
     if (begins_with(*input, kNpyMagic)) return read_npy_points(std::move(input));
-    if (begins_with(*input, "PK\x03\x04")) return read_npz_points(path);
+    if (begins_with(*input, "PK\x03\x04")) {
+      if (!input->is_seekable()) {
+        throw InputError(path + ": is NPZ on a pipe or compressed, expected a file that is neither");
+      }
+      return read_npz_points(path);
+    }
     if (begins_with(*input, "ply\n") || begins_with(*input, "ply\r")) return read_ply_points(std::move(input));
   }
   return read_text_points(std::move(input), options);

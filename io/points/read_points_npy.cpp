@@ -40,7 +40,6 @@ struct NpyHeader {
 
 void interpret_type(const InputBuffer& input, const NpyHead& head, NpyHeader& header) {
   const std::string& type = head.type;
-  if (type.empty()) fail(input, "file of structured values, expected numbers");
   static constexpr std::array<std::string_view, 11> kTypes{"f2", "f4", "f8", "i1", "i2", "i4",
                                                            "i8", "u1", "u2", "u4", "u8"};
   const bool known = type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&

@@ -186,7 +186,7 @@ TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {
 
 TEST_F(CommandLine, UnknownWordsListWhatExists) {
   expect_error(lattice({"--field", "foo"}), 1, "--field foo: expected one or more of winding, inside, density, sdf");
-  expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv, npy or vti");
+  expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv, npy, npz, vti, nrrd, nii or nii.gz");
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
   expect_error(lattice({"--progress", "maybe"}), 1, "expected always, never or auto");
@@ -195,9 +195,10 @@ TEST_F(CommandLine, UnknownWordsListWhatExists) {
 
 TEST_F(CommandLine, UnknownOutputFormatFailsBeforeTheMeshIsRead) {
   for (const char* const output : {"out.png", "out", ".vdb", "/dev/null"}) {
-    expect_error(run_raycone({"lattice", dir_ / "absent.obj", "-o", output}), 1, "expected vdb, csv, npy or vti");
+    expect_error(run_raycone({"lattice", dir_ / "absent.obj", "-o", output}), 1,
+                 "expected vdb, csv, npy, npz, vti, nrrd, nii or nii.gz");
   }
-  expect_error(run_raycone({"points", mesh_, "p.csv", "-o", "out.vdb"}), 1, "expected csv or npy");
+  expect_error(run_raycone({"points", mesh_, "p.csv", "-o", "out.vdb"}), 1, "expected csv, npy or npz");
 }
 
 TEST_F(CommandLine, ExtensionsAreRecognisedInAnyCase) {

@@ -285,13 +285,16 @@ class Provenance(DataSets):
             self.works(command + " -o a.npz")
             about = json.loads(numpy.load("a.npz")["raycone"].item())
             self.assertEqual(about["options"], given)
-            self.assertEqual((about["mesh"], about["rule"], about["fields"]), ("cube.obj", "abs=0.5", ["inside"]))
+            self.assertEqual((about["rule"], about["fields"]), ("abs=0.5", ["inside"]))
             self.assertEqual(about["transform"][0], [2, 0, 0, 0])
             report = json.loads(read("r.json"))
             self.assertEqual(report["command"], (command + " -o a.npz --quiet").split())
             self.assertEqual(report["options"], given)
             for key in ("sha256", "transform"):
                 self.assertEqual(about[key], report[key])
+            whole = read("a.npz")
+            self.works(command + " -o a.npz --weld exact --orient keep --engine embree")  # what would hold anyway
+            self.assertEqual(read("a.npz"), whole)
 
     def test_vdb_has_options_and_transform(self):
         try:

@@ -101,10 +101,28 @@ TEST_F(LatticeCommand, WritesAReportForMachines) {
   const auto json = nlohmann::ordered_json::parse(read_text(report));
   std::vector<std::string> keys;
   for (const auto& item : json.items()) keys.push_back(item.key());
-  EXPECT_EQ(keys, (std::vector<std::string>{"version", "mesh", "sha256", "output", "vertices", "faces", "flipped_faces",
-                                            "dropped_duplicates", "patches", "exterior_edges", "samples", "lattice",
-                                            "threads", "degenerate", "on_surface", "peak_memory_bytes", "warnings",
-                                            "warning_lines", "seconds"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"version",
+                                            "command",
+                                            "options",
+                                            "mesh",
+                                            "sha256",
+                                            "output",
+                                            "vertices",
+                                            "faces",
+                                            "flipped_faces",
+                                            "dropped_duplicates",
+                                            "patches",
+                                            "exterior_edges",
+                                            "transform",
+                                            "samples",
+                                            "lattice",
+                                            "threads",
+                                            "degenerate",
+                                            "on_surface",
+                                            "peak_memory_bytes",
+                                            "warnings",
+                                            "warning_lines",
+                                            "seconds"}));
   EXPECT_EQ(json["mesh"], mesh_);
   EXPECT_EQ(json["output"], out);
   EXPECT_EQ(json["sha256"].get<std::string>().size(), 64U);

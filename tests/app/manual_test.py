@@ -97,11 +97,11 @@ class BashCompletion(unittest.TestCase):
         self.offers(["lattice", "--weld", ""], "exact", "none")
         self.offers(["lattice", "--weld", "=", "e"], "exact")  # as readline splits --weld=e
         self.offers(["lattice", "--weld", "="], "exact", "none")
-        self.offers(["lattice", "--format", ""], "vdb", "csv", "npy", "vti")
+        self.offers(["lattice", "--format", ""], "vdb", "csv", "npy", "npz", "vti", "nrrd", "nii", "nii.gz")
         self.offers(["slice", "--format", ""], "png")
         self.offers(["slice", "--axis", ""], "x", "y", "z")
         self.offers(["batch", "--shard", "s"], "slurm")
-        self.offers(["batch", "--format", "n"], "npy", "none", "npz")
+        self.offers(["batch", "--format", "n"], "npy", "none", "npz", "nrrd", "nii", "nii.gz")
         self.offers(["lattice", "--engine", "em"], "embree")
 
     def test_takes_files_words_and_numbers_from_the_placeholder(self):

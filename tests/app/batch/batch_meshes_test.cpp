@@ -56,15 +56,16 @@ using Names = std::vector<std::string>;
 
 TEST_F(BatchMeshes, OfADirectoryAreFoundRecursivelyInByteOrder) {
   for (const char* const name : {"b.stl", "a/x.obj", "a-b.ply", "A.OFF", "a/y/z.GLB", "10.stl", "9.stl", "notes.txt",
-                                 "\xC3\xA4 b.gltf", "stl", "a.stl.gz", "q.ObJ"}) {
+                                 "\xC3\xA4 b.gltf", "stl", "a.stl.gz", "gz", "c.txt.gz", "d.PLY.Zst", "q.ObJ"}) {
     put(name);
   }
   const std::vector<BatchMesh> found = find({root_});
-  EXPECT_EQ(names(found), (Names{"10.stl", "9.stl", "A.OFF", "a-b.ply", "a/x.obj", "a/y/z.GLB", "b.stl", "q.ObJ",
-                                 "\xC3\xA4 b.gltf"}));
-  EXPECT_EQ(found[4].path, root_ + "/a/x.obj");
-  EXPECT_EQ(found[4].output, "a/x.vdb");
-  EXPECT_EQ(found[4].stamp, stamp_of(root_ + "/a/x.obj"));
+  EXPECT_EQ(names(found), (Names{"10.stl", "9.stl", "A.OFF", "a-b.ply", "a.stl.gz", "a/x.obj", "a/y/z.GLB", "b.stl",
+                                 "d.PLY.Zst", "q.ObJ", "\xC3\xA4 b.gltf"}));
+  EXPECT_EQ(found[4].output, "a.vdb");
+  EXPECT_EQ(found[5].path, root_ + "/a/x.obj");
+  EXPECT_EQ(found[5].output, "a/x.vdb");
+  EXPECT_EQ(found[5].stamp, stamp_of(root_ + "/a/x.obj"));
   EXPECT_EQ(names(find({root_ + "/"})), names(found));
 }
 

@@ -25,7 +25,8 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
     : band_(options.band),
       rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
       thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
-      distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd) : std::nullopt),
+      distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd)
+                                              : std::nullopt),
       winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges) {}
 
 void FieldEvaluator::prepare_points() const {

@@ -25,8 +25,7 @@ constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; beyond_error() adds those of distances
 constexpr std::size_t kWidth = TrianglePack::kWidth;
 constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
-constexpr std::size_t kPartSide = 4, kGroupSide = 2;
-constexpr std::size_t kGroup = 8;  // samples
+constexpr std::size_t kPartSide = 4, kGroupSide = 2, kGroup = 8;  // samples
 using Places = hn::RebindToSigned<Doubles>;
 
 // Whatever is compressed into a list may write this far beyond its end.
@@ -249,6 +248,13 @@ void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, La
   }
 }
 
+// Whether squares that are not sure are above `least` with care, too.
+HWY_INLINE LaneMask is_farther(const TrianglePack& pack, std::size_t slot, Lanes squares, Lanes least) {
+  const double off = 1e-12 * pack.direction_from[slot];  // more than the square of what the closest point is off by
+  const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, 1 + 1e-8)), hn::Set(d, 1e-19));  // beyond_error()
+  return hn::Gt(hn::Sub(squares, hn::Set(d, off)), reach);
+}
+
 // Returns the largest of the group's least squares.
 HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& group) {
   Lanes largest = hn::Zero(d);
@@ -256,8 +262,10 @@ HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& gr
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
     const Squares some = squared(SameTriangle(pack, slot), ps);
     const Lanes before = hn::Load(d, &group.least[n]);
-    hn::Store(hn::IfThenElse(some.sure, hn::Min(before, some.values), before), d, &group.least[n]);
-    if (!hn::AllTrue(d, some.sure)) take_care(pack, slot, n, some.sure, group);
+    const Lanes least = hn::IfThenElse(some.sure, hn::Min(before, some.values), before);
+    hn::Store(least, d, &group.least[n]);
+    const LaneMask settled = hn::Or(some.sure, is_farther(pack, slot, some.values, least));
+    if (!hn::AllTrue(d, settled)) take_care(pack, slot, n, settled, group);
     largest = hn::Max(largest, hn::Load(d, &group.least[n]));
   }
   return hn::GetLane(hn::MaxOfLanes(d, largest));
@@ -267,9 +275,8 @@ HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& gr
 // the box.
 HWY_INLINE Lanes least_distances(const Bearings& bearings, const VectorLanes& from, const VectorLanes& extent) {
   const VectorLanes& away = bearings.away;
-  const Lanes least = hn::Sub(hn::Add(bearings.distances, dot(away, from)),
-                              dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
-  return least;
+  return hn::Sub(hn::Add(bearings.distances, dot(away, from)),
+                 dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
 }
 
 // The number of the triangle that seems to be nearest to the box.
@@ -311,8 +318,8 @@ void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middl
     const auto place = static_cast<std::size_t>(near.places[number]);
     return beyond_error(lower_to(packs[place / kStride], place % kStride, group));
   };
-  const VectorLanes from = in_all_lanes(here.center - middle.center), center = in_all_lanes(here.center);
-  const std::size_t first = likely_nearest(near, center);
+  const VectorLanes from = in_all_lanes(here.center - middle.center);
+  const std::size_t first = likely_nearest(near, in_all_lanes(here.center));
   double most = std::min(square_of_reach(task.reach), look_at(first));
   const double slack = slack_of(std::sqrt(most), middle.radius);
   const VectorLanes extent = in_all_lanes(here.extent);

@@ -91,6 +91,16 @@ TEST(DistanceBand, OfManySmallTriangles) {
   for (const double band : {0.15, 10.0}) expect_right(sphere, rows_of(19, 23, 17, 0.05), band);
 }
 
+// The closest point of a needle is only known with care. Without it, the triangle above seems to be nearer.
+TEST(DistanceBand, BetweenANeedleAndATriangle) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}, {0, -1, 2.03e-4}, {1, -1, 2.03e-4}, {0.5, 1, 2.03e-4}},
+                          {{0, 1, 2}, {3, 4, 5}}};
+  const double step = 1e-7;
+  const LatticeRows rows{
+      evenly(0.5, step, 8), evenly(4e-5, step, 8), evenly(1e-4, step, 8), {1 / step, 1 / step, 1 / step}};
+  expect_right(mesh, rows, 1.0);
+}
+
 // The least of the triangles' numbers, each found alone.
 TEST(DistanceTree, FindsTheLeastAtEveryLevel) {
   const TriangleMesh mesh = test::assorted_triangles();

@@ -287,11 +287,8 @@ MUTANTS = [
          "nearest.distance +")]),
     Mutant("half_spaces_without_turn", "directions to triangles differ", [
         ("core/distance/block_kernel.cpp", "hn::Add(within, gained)", "within")]),
-    Mutant("unsure_directions", "the closest point of a needle is not known without care", [
-        ("core/distance/block_kernel.cpp", "hn::Ge(some.values, triangles(triangles.pack().direction_from))",
-         "hn::Gt(distances, hn::Zero(d))")]),
     Mutant("lanes_without_care", "lanes that are not sure are evaluated again", [
-        ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, some.sure)) take_care(pack, slot, n, some.sure, group);",
+        ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, settled)) take_care(pack, slot, n, settled, group);",
          "")]),
     Mutant("packs_without_care", "triangles of a pack that are not sure are evaluated again", [
         ("core/distance/tree_kernel.cpp", "if (sure[lane] != 0.0 || squares[i + lane] >= reach) continue;",

@@ -172,7 +172,12 @@ double surface_margin(const Lattice& lattice, bool single_precision) {
 SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                            const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr double kMost = 0x1p-5;
+  constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80;
+  const Vec3& h = inside.lattice().spacing;
+  if (options.single_precision &&
+      !(largest_coordinate(inside.lattice()) < kLargestFloat && std::min({h.x, h.y, h.z}) > kLeastVoxel)) {
+    throw LatticeTooFine("the lattice is beyond what single precision can hold");
+  }
   const double margin = surface_margin(inside.lattice(), options.single_precision);
   if (!(margin <= kMost)) {
     throw LatticeTooFine(std::string("voxels are too small for ") + (options.single_precision ? "single" : "double") +

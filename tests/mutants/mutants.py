@@ -383,5 +383,5 @@ MUTANTS = [
     Mutant("surface_turned", "loops around three inside nodes run the other way", [
         ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
-        ("core/surface/merge_planes.cpp", "(needles_[face] && !with_needles) || planes_[face].distance(position(target)) <= most_", "true || planes_[face].distance(position(target)) <= most_")]),
+        ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 ]

@@ -59,11 +59,13 @@ def main():
                     break
                 if done.returncode != 0:
                     failed.append((path, ending, done.stderr.strip()))
+                    print(*failed[-1], file=sys.stderr, flush=True)
                     continue
                 made += 1
                 checked = subprocess.run([arguments.raycone, "info", out, "--require", REQUIRED], capture_output=True)
                 if checked.returncode != 0:
                     refused.append((path, ending, checked.stderr.decode().strip()))
+                    print(*refused[-1], file=sys.stderr, flush=True)
                 if ending == "stl":
                     continue
                 with open(report) as file:
@@ -78,8 +80,6 @@ def main():
                     100 * surface["dropped_area"] / area, seconds), flush=True)
     print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
           "took too long." % (made, len(refused), len(failed), left_out, slow))
-    for path, ending, message in refused + failed:
-        print(path, ending, message, file=sys.stderr)
     return 1 if refused or failed else 0
 
 

@@ -20,10 +20,6 @@ namespace {
 // there was one before.
 constexpr double kLeastQuality = 1e-3;
 
-// Needles are lower than this, in margins: they lie between points that are kept off one node of the lattice, where the
-// mesh passes through it.
-constexpr double kNeedle = 16.0;
-
 struct FacePlane {
   Vec3 point, normal;
 
@@ -33,8 +29,13 @@ struct FacePlane {
 // The mesh, while vertices are pulled into others.
 class Merger {
  public:
-  Merger(const SurfaceMesh& surface, const TriangleMesh& input, const std::vector<bool>& kept, double most)
-      : surface_(surface), input_(input), most_(most), state_(surface.mesh.vertices.size(), State::kWaits) {
+  Merger(const SurfaceMesh& surface, const TriangleMesh& input, const std::vector<bool>& kept, double most,
+         double needle)
+      : surface_(surface),
+        input_(input),
+        most_(most),
+        needle_(needle),
+        state_(surface.mesh.vertices.size(), State::kWaits) {
     const VertexFaces faces(surface.mesh);
     star_.reserve(state_.size());
     for (std::uint32_t v = 0; v < state_.size(); ++v) {
@@ -118,15 +119,13 @@ class Merger {
     return {a, unit_normal(a, b, c)};
   }
 
-  // Lower than the needles' bound.
+  // They lie between points that are kept off one node of the lattice, where the mesh passes through it.
   [[nodiscard]] bool is_needle(std::uint32_t face) const {
     const Triangle& t = triangle(face);
     const Vec3 u = position(t[1]) - position(t[0]), v = position(t[2]) - position(t[0]), w = v - u;
     const Vec3 normal = cross(u, v);
-    const double low = needle_height();
-    return dot(normal, normal) < low * low * std::max({dot(u, u), dot(v, v), dot(w, w)});
+    return dot(normal, normal) < needle_ * needle_ * std::max({dot(u, u), dot(v, v), dot(w, w)});
   }
-  [[nodiscard]] double needle_height() const { return kNeedle * 4.0 * most_; }
 
   [[nodiscard]] std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
     std::vector<std::uint32_t> all;
@@ -169,7 +168,7 @@ class Merger {
     const std::vector<std::uint32_t> faces = faces_at_node(v, around);
     const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, worst_quality(v, v, false)));
     std::optional<std::uint32_t> best;
-    std::pair best_rank(planes_through(v, faces), -needle_height());
+    std::pair best_rank(planes_through(v, faces), -needle_);
     for (const std::uint32_t target : around) {
       const std::pair rank(planes_through(target, faces), -distance(v, target));
       if (!(rank > best_rank) || !is_at_node(v, target) || !stays_in_planes(v, target, false)) continue;
@@ -184,7 +183,7 @@ class Merger {
     const Vec3 step = position(w) - position(v);
     return std::sqrt(dot(step, step));
   }
-  [[nodiscard]] bool is_at_node(std::uint32_t v, std::uint32_t w) const { return distance(v, w) < needle_height(); }
+  [[nodiscard]] bool is_at_node(std::uint32_t v, std::uint32_t w) const { return distance(v, w) < needle_; }
 
   // That are no needles, at v and its neighbours there.
   [[nodiscard]] std::vector<std::uint32_t> faces_at_node(std::uint32_t v,
@@ -261,7 +260,7 @@ class Merger {
 
   SurfaceMesh surface_;
   const TriangleMesh& input_;
-  double most_;
+  double most_, needle_;
   std::vector<FacePlane> planes_;
   std::vector<bool> needles_;
   std::vector<std::vector<std::uint32_t>> star_;  // faces
@@ -272,8 +271,8 @@ class Merger {
 }  // namespace
 
 MergedSurface merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const std::vector<bool>& kept,
-                           double most) {
-  return Merger(surface, input, kept, most).merge();
+                           double most, double needle) {
+  return Merger(surface, input, kept, most, needle).merge();
 }
 
 }  // namespace raycone

@@ -83,24 +83,35 @@ class SurfaceMaker {
     return merged(std::move(surface), margins);
   }
 
-  // What merging spoils is not merged.
+  // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
+  // as well as that have faults, they are merged where they agree better.
   SurfaceMesh merged(SurfaceMesh surface, const SurfaceMargins& margins) {
+    for (const double most : {2.5, 0.25}) {
+      if (std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, most)) return std::move(*result);
+    }
+    return surface;
+  }
+
+  // What merging spoils is not merged. `most` in margins.
+  std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most) {
+    constexpr double kNeedle = 16.0;
     const Vec3& h = inside_.lattice().spacing;
-    const double most = margins.inner / 4.0 * std::min({h.x, h.y, h.z});
+    const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    for (int round = 0; round < 2 * kRounds; ++round) {
-      auto [result, into] = merge_planes(surface, mesh_, kept, most);
+    for (int round = 0; round < kRounds; ++round) {
+      auto [result, into] = merge_planes(surface, mesh_, kept, most * unit, kNeedle * unit);
       const std::vector<bool> touched = faulty_vertices(result.mesh);
       TriangleMesh compact = result.mesh;
       drop_unused_vertices(compact);
       faults_ = faults_of(compact, inside_);
       if (faults_.none()) {
         result.mesh = std::move(compact);
-        return result;
+        return std::move(result);
       }
+      if (faults_.intersections.pairs == 0) return std::nullopt;
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[into[v]];
     }
-    return surface;
+    return std::nullopt;
   }
 
   // Vertices near faces that intersect: those of these faces, and of their neighbours.
@@ -161,7 +172,12 @@ double surface_margin(const Lattice& lattice, bool single_precision) {
 SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                            const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr double kMost = 0x1p-5;
+  constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80;
+  const Vec3& h = inside.lattice().spacing;
+  if (options.single_precision &&
+      !(largest_coordinate(inside.lattice()) < kLargestFloat && std::min({h.x, h.y, h.z}) > kLeastVoxel)) {
+    throw LatticeTooFine("the lattice is beyond what single precision can hold");
+  }
   const double margin = surface_margin(inside.lattice(), options.single_precision);
   if (!(margin <= kMost)) {
     throw LatticeTooFine(std::string("voxels are too small for ") + (options.single_precision ? "single" : "double") +

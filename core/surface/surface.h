@@ -25,7 +25,7 @@ class SurfaceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The lattice is so fine that coordinates cannot tell its cells apart. what() says by how much.
+// Coordinates cannot tell the cells of the lattice apart, or not hold them at all. what() says which.
 class LatticeTooFine : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -123,13 +123,15 @@ TABLE = [
     Row(SURFACE, "--simplify 0", HARMLESS),  # the default
     Row(SURFACE, "--voxel-size .25", REFUSED),
     Row(SURFACE, "--like grid.vdb", REFUSED),
-    *(Row(SURFACE.replace(" --resolution 5", ""), option, CHANGES) for option in ("--voxel-size .25", "--like grid.vdb")),
+    *(Row(SURFACE.replace(" --resolution 5", ""), option, CHANGES)
+      for option in ("--voxel-size .25", "--like grid.vdb")),
     # --- Output
     *(Row(re.sub("-o out/a.... ", "", words), "-o out/b" + end, CHANGES)
       for words, end in ((LATTICE, ".csv"), (POINTS, ".csv"), (SAMPLE, ".npz"), (SLICE, ".png"),
                          (SURFACE, ".stl"))),
     *(Row(words, twice, REFUSED)
-      for words in (LATTICE, POINTS, SLICE, SURFACE) for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
+      for words in (LATTICE, POINTS, SLICE, SURFACE)
+      for twice in ("-o out/b.csv", "--output out/b.csv", "--output=out/a.csv")),
     *(Row(words + " --field winding", "--field inside", REFUSED) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     *(Row(LATTICE, "--format " + name, CHANGES) for name in ("vdb", "npy", "npz", "vti", "nrrd", "nii", "nii.gz")),
     Row(LATTICE, "--format csv", HARMLESS),

@@ -236,15 +236,15 @@ TEST(Surface, KeepsSharpEdges) {
 
 TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {
   const TriangleMesh mesh = rotated(wedge());
-  const auto [fine, lattice] = surface_of(mesh, 20, {.rule = {}, .merge_planes = false});
-  const auto [merged, same_lattice] = surface_of(mesh, 20);
+  const auto [fine, lattice] = surface_of(mesh, 16, {.rule = {}, .merge_planes = false});
+  const auto [merged, same_lattice] = surface_of(mesh, 16);
   EXPECT_LT(4 * merged.mesh.triangles.size(), fine.mesh.triangles.size());
-  EXPECT_LE(largest_distance_of(fine.mesh.vertices, merged.mesh), 1e-9 * lattice.spacing.x);
+  EXPECT_LE(largest_distance_of(fine.mesh.vertices, merged.mesh), 4e-9 * lattice.spacing.x);
 }
 
 TEST(Surface, OfAnAlignedBoxHasFewFaces) {
   const auto [surface, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 24);
-  EXPECT_LT(surface.mesh.triangles.size(), 60U);
+  EXPECT_EQ(surface.mesh.triangles.size(), 12U);
 }
 
 TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
@@ -279,17 +279,23 @@ TEST(Surface, FollowsItsRule) {
   const TriangleMesh twice = test::joined(test::sphere(6), test::moved(test::sphere(6), {1, 1, 1}, {0.4, 0, 0}));
   SurfaceOptions both;
   both.rule = {RuleKind::kThreshold, 1.5};
-  const double of_both = mesh_statistics(surface_of(twice, 20, both).surface.mesh).signed_volume.value_or(0.0);
-  const double of_any = mesh_statistics(surface_of(twice, 20).surface.mesh).signed_volume.value_or(0.0);
+  const double of_both = mesh_statistics(surface_of(twice, 14, both).surface.mesh).signed_volume.value_or(0.0);
+  const double of_any = mesh_statistics(surface_of(twice, 14).surface.mesh).signed_volume.value_or(0.0);
   const double of_one = mesh_statistics(test::sphere(6)).signed_volume.value_or(0.0);
-  // Each volume is off by what the lattice rounds: 2 % at 20 samples.
-  EXPECT_NEAR(of_both + of_any, 2.0 * of_one, 0.02 * of_one);
+  // Each volume is off by what the lattice rounds: 4 % at 14 samples.
+  EXPECT_NEAR(of_both + of_any, 2.0 * of_one, 0.04 * of_one);
   EXPECT_LT(of_both, 0.8 * of_one);
 }
 
 TEST(Surface, OfALatticeThatIsTooFineIsRefused) {
   const TriangleMesh mesh = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {1, 1, 1}, {1e15, 1e15, 1e15});
   EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
+  SurfaceOptions single;
+  single.single_precision = true;
+  for (const double size : {1e-40, 1e-300, 1e39, 1e300}) {
+    EXPECT_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8, single), LatticeTooFine) << size;
+    EXPECT_NO_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8)) << size;
+  }
 }
 
 TEST(SurfaceMeasures, TellWhatSeparatesNothing) {

@@ -405,4 +405,12 @@ MUTANTS = [
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),
+
+    # --- Surfaces ---
+    Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [
+        ("core/surface/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
+    Mutant("surface_turned", "loops around three inside nodes run the other way", [
+        ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
+    Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
+        ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 ]

@@ -1,0 +1,87 @@
+"""Makes surfaces of meshes, checks them again with `raycone info`, and prints the table of docs/surfaces.md.
+
+usage: python3 tests/surfaces/measure.py RAYCONE MESH-DIRECTORY [--resolution N] [--most-bytes B] [--timeout S]
+
+Each mesh is written as PLY and as STL. A mesh that cannot be read, or of which no sample is inside, is counted and left
+out. The exit status is 1 where a surface is refused by `info --require`, or where raycone reports an error of its own.
+"""
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+REQUIRED = "closed,oriented,outward,manifold,embedded"
+EXTENSIONS = ("obj", "ply", "stl", "off", "glb", "gltf")
+
+
+def meshes_in(directory, most_bytes):
+    for top, _, names in sorted(os.walk(directory)):
+        for name in sorted(names):
+            path = os.path.join(top, name)
+            if name.lower().rsplit(".", 1)[-1] in EXTENSIONS and os.path.getsize(path) <= most_bytes:
+                yield path
+
+
+def used():
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("raycone")
+    parser.add_argument("directory")
+    parser.add_argument("--resolution", type=int, default=64)
+    parser.add_argument("--most-bytes", type=int, default=1_000_000)
+    parser.add_argument("--timeout", type=int, default=60)
+    arguments = parser.parse_args()
+    refused, failed, left_out, slow, made = [], [], 0, 0, 0
+    print("| mesh | faces | boundary edges | faces of the surface | parts | max. distance, voxels | area of holes, % | "
+          "dropped area, % | CPU, s |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as work:
+        for path in meshes_in(arguments.directory, arguments.most_bytes):
+            report = os.path.join(work, "report.json")
+            for ending in ("ply", "stl"):
+                out = os.path.join(work, "out." + ending)
+                before = used()
+                done = subprocess.run([arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient",
+                                       "auto", "--resolution", str(arguments.resolution), "--timeout",
+                                       str(arguments.timeout), "--quiet"], capture_output=True, text=True)
+                seconds = used() - before
+                if done.returncode == 4:
+                    slow += 1
+                    break
+                if done.returncode == 2:
+                    left_out += 1
+                    break
+                if done.returncode != 0:
+                    failed.append((path, ending, done.stderr.strip()))
+                    print(*failed[-1], file=sys.stderr, flush=True)
+                    continue
+                made += 1
+                checked = subprocess.run([arguments.raycone, "info", out, "--require", REQUIRED], capture_output=True)
+                if checked.returncode != 0:
+                    refused.append((path, ending, checked.stderr.decode().strip()))
+                    print(*refused[-1], file=sys.stderr, flush=True)
+                if ending == "stl":
+                    continue
+                with open(report) as file:
+                    run = json.load(file)
+                area = json.loads(subprocess.run([arguments.raycone, "info", path, "--json"], capture_output=True,
+                                                 check=True).stdout)["surface_area"]
+                surface = run["surface"]
+                voxel = min(run["lattice"]["spacing"])
+                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f |" % (
+                    os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], surface["faces"],
+                    surface["components"], surface["max_distance"] / voxel, 100 * surface["hole_area"] / area,
+                    100 * surface["dropped_area"] / area, seconds), flush=True)
+    print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
+          "took too long." % (made, len(refused), len(failed), left_out, slow))
+    return 1 if refused or failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -79,6 +79,8 @@ MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options
   VertexLinks links(result.mesh.vertices.size());
   result.edges = exterior_edges(result.mesh, &links);
   result.defects = mesh_defects(result.mesh, result.edges, links);
+  // What faces inward then is a cavity of an open body.
+  if (options.orient == Orient::kAuto) result.defects.reversed_components = 0;
   std::ranges::move(warnings_about(result.defects), std::back_inserter(warnings));
   return result;
 }

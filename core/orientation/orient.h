@@ -35,7 +35,7 @@ struct OrientedMesh {
 //   A closed patch has no boundary, as a sum of directed edges. Outside all others it is turned outward. Within another
 //   one it is turned the other way than the innermost of those around it; if the faces of both agreed as stored, the
 //   two keep their relation instead. Open patches are turned so that the winding number comes closest to 0 before the
-//   faces and 1 behind them.
+//   faces and 1 behind them. Closed patches that lie within what open ones enclose are turned as within a closed one.
 //
 // docs/method.md, "Orientation", has the rules. The result does not depend on the order of faces and vertices, nor on
 // the number of threads; it uses those that ThreadLimit allows. Preconditions: the vertices that triangles use are

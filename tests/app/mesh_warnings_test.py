@@ -55,6 +55,8 @@ CASES = {  # name: (triangles, options, warnings)
     "wall": (CUBE + [CUBE[3][::-1], CUBE[3]], [], ["opposite-duplicates"]),
     "collapsed": (CUBE + SPIKE, ["--weld", "1e-3"], ["weld-collapsed"]),
     "kept": (CUBE + SPIKE, ["--weld", "1e-9"], []),
+    "bubble": (box(0.0, 9.0, False, (0, 1)) + box(4.0, 5.0, True), [], ["reversed"]),
+    "cavity": (box(0.0, 9.0, False, (0, 1)) + box(4.0, 5.0, True), ["--orient", "auto"], []),
     "flat": ([((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))], [], []),
     "huge": (box(-1e300, 1e300, True), [], ["reversed", "empty"]),
     "tiny": (box(0.0, 1e-300, True), [], ["reversed", "empty"]),

@@ -1,9 +1,10 @@
 """What Blender sees of volumes and meshes, as one line of JSON: blender -b --factory-startup -noaudio -P blender_import.py -- FILE...
 
 Of each file its bounding box in the world, by the importers and their defaults that users get from the menu; of a .vdb
-the names of its grids too.
+the names of its grids too, of a .ply how many corners of faces have which colour.
 """
 
+import collections
 import json
 import sys
 
@@ -23,6 +24,11 @@ def seen(path):
         grids.load()
         bpy.context.view_layer.update()
         return {"grids": {grid.name: grid.data_type for grid in grids}, "box": box_of(bpy.context.object)}
+    if path.endswith(".ply"):
+        bpy.ops.import_mesh.ply(filepath=path)
+        colours = bpy.context.object.data.color_attributes["Col"].data
+        names = (" ".join(str(round(255 * part)) for part in colour.color_srgb[:3]) for colour in colours)
+        return {"colours": collections.Counter(names), "box": box_of(bpy.context.object)}
     bpy.ops.wm.obj_import(filepath=path)
     return {"box": box_of(bpy.context.object)}
 

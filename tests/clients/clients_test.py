@@ -195,9 +195,13 @@ class Blender(Client):
         cls.turned = cls.write("lattice", "teapot.obj", "turned.vdb", *options, "--up", "y-to-z")
         cls.other = cls.write("lattice", "swiss_roll.obj", "other.vdb", *options)
         cls.mesh = os.path.join(MESHES, "teapot.obj")
+        cls.marked = [os.path.join(cls.directory.name, name) for name in ("teapot.ply", "swiss_roll.ply")]
+        for path in cls.marked:
+            mesh = os.path.join(MESHES, os.path.basename(path).replace(".ply", ".obj"))
+            output_of(RAYCONE, "info", mesh, "--mark", path, "--quiet")
         cls.seen = json_from(
             *("blender", "-b", "--factory-startup", "-noaudio", "-P", os.path.join(HERE, "blender_import.py"), "--"),
-            *(cls.teapot[0], cls.turned[0], cls.other[0], cls.mesh),
+            *(cls.teapot[0], cls.turned[0], cls.other[0], cls.mesh, *cls.marked),
         )
 
     def compare(self, path, lattice, voxels):
@@ -225,6 +229,19 @@ class Blender(Client):
         self.compare(self.mesh, self.turned[1], voxels=1e-4)
         with self.assertRaisesRegex(AssertionError, "of axis"):
             self.compare(self.mesh, self.teapot[1], voxels=1e-4)
+
+    def test_marked_meshes_have_their_colours(self):
+        marks = []
+        for path in self.marked:
+            with open(path, "rb") as file:
+                header, _, rest = file.read().partition(b"end_header\n")
+            counts = [int(line.split()[2]) for line in header.splitlines() if line.startswith(b"element")]
+            faces = rest[27 * counts[0] : 27 * counts[0] + 16 * counts[1]]  # a vertex is 27 bytes, a face 16
+            names = [" ".join(map(str, faces[n + 13 : n + 16])) for n in range(0, len(faces), 16)]
+            marks.append({name: 3 * names.count(name) for name in set(names)})
+            self.assertEqual(self.seen[path]["colours"], marks[-1])
+        self.assertGreater(len(marks[0]), 1)  # not only grey
+        self.assertNotEqual(*marks)
 
 
 if __name__ == "__main__":

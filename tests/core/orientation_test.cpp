@@ -496,13 +496,28 @@ TEST(Orient, CountsWhatItDid) {
 
 // ---- Any mesh ----
 
+// Closed and open ones, some beside it, turned at random.
+TriangleMesh balls_in_an_open_one(Random& random, int count) {
+  TriangleMesh mesh = with_faces_reversed(sphere_with_a_hole(1), random, count % 2 == 0 ? 0.2 : 0.0);
+  for (int i = 0; i < count; ++i) {
+    const double radius = test::uniform(random, 0.05, 0.4);
+    const Vec3 centre = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+    TriangleMesh ball = sphere_of(radius, centre, 4);
+    if (i % 3 == 0) ball.triangles.pop_back();
+    if (i % 2 == 0) ball = test::reversed(ball);
+    mesh = joined(mesh, with_faces_reversed(ball, random, i % 4 == 0 ? 0.2 : 0.0));
+  }
+  return mesh;
+}
+
 // Every kind of defect: faces that share edges, that are there often, that have no area.
 TEST(Orient, DependsOnNeitherOrderNorThreads) {
   Random random(17);
   for (int i = 0; i < 60; ++i) {
-    const TriangleMesh mesh = i % 3 == 0   ? test::soup(random, 1 + i)
-                              : i % 3 == 1 ? test::lattice_soup(random, 1 + 3 * i, 3)
-                                           : test::random_cells(random, 3);
+    const TriangleMesh mesh = i % 4 == 0   ? test::soup(random, 1 + i)
+                              : i % 4 == 1 ? test::lattice_soup(random, 1 + 3 * i, 3)
+                              : i % 4 == 2 ? test::random_cells(random, 3)
+                                           : balls_in_an_open_one(random, i / 4);
     if (mesh.triangles.empty()) continue;
     const OrientedMesh expected = orient(mesh, Orient::kAuto);
     for (int j = 0; j < 3; ++j) {

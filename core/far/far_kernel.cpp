@@ -42,6 +42,35 @@ HWY_INLINE Lanes square_of(const LanesOfPoints& r) {
   return hn::Add(hn::Add(hn::Mul(r.x, r.x), hn::Mul(r.y, r.y)), hn::Mul(r.z, r.z));
 }
 
+constexpr std::array<double, kMultipoleOrder + 1> kDegrees = [] {
+  std::array<double, kMultipoleOrder + 1> degrees{};
+  for (std::size_t n = 0; n < degrees.size(); ++n) degrees[n] = static_cast<double>(n);
+  return degrees;
+}();
+
+// The sum of coefficient b_n^m over n.
+struct OrderSum {
+  Lanes re = hn::Zero(d), im = hn::Zero(d), before = hn::Zero(d), b = hn::Set(d, 1.0);
+  const double* coefficient;
+  const double* step;
+
+  HWY_INLINE OrderSum(const SourceNode& node, const double* coefficients, int m)
+      : coefficient(coefficients + 2 * multipole_index(m, m, node.order)), step(&kSteps[multipole_index(m, m)]) {}
+
+  template <bool kMixed>
+  HWY_INLINE void add(int n, Lanes degrees, Lanes wz, Lanes inverse) {
+    Lanes used = b;
+    if constexpr (kMixed) used = hn::IfThenElseZero(hn::Ge(degrees, hn::Set(d, kDegrees[static_cast<unsigned>(n)])), b);
+    re = hn::Add(re, hn::Mul(hn::Set(d, coefficient[0]), used));
+    im = hn::Add(im, hn::Mul(hn::Set(d, coefficient[1]), used));
+    const Lanes next = hn::Sub(hn::Mul(wz, b), hn::Mul(hn::Set(d, *step), hn::Mul(inverse, before)));
+    before = b;
+    b = next;
+    coefficient += 2;
+    ++step;
+  }
+};
+
 // The expansion cut off behind degree p; where kMixed, behind the lane's own degree, which p is the largest of. The
 // same bits either way.
 template <bool kMixed>
@@ -52,21 +81,27 @@ HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, i
   const Lanes inverse = hn::Div(hn::Set(d, 1.0), square_of(s));
   const Lanes wx = hn::Mul(s.x, inverse), wy = hn::Mul(s.y, inverse), wz = hn::Mul(s.z, inverse);
   Lanes re = hn::Zero(d), im = hn::Zero(d);
-  for (int m = p; m >= 0; --m) {
-    const double* c = coefficients + 2 * multipole_index(m, m, node.order);
-    const double* step = &kSteps[multipole_index(m, m)];
-    Lanes sum_re = hn::Zero(d), sum_im = hn::Zero(d), before = hn::Zero(d), b = hn::Set(d, 1.0);
-    for (int n = m; n <= p; ++n, c += 2, ++step) {
-      const Lanes used = kMixed ? hn::IfThenElseZero(hn::Ge(degrees, hn::Set(d, static_cast<double>(n))), b) : b;
-      sum_re = hn::Add(sum_re, hn::Mul(hn::Set(d, c[0]), used));
-      sum_im = hn::Add(sum_im, hn::Mul(hn::Set(d, c[1]), used));
-      const Lanes next = hn::Sub(hn::Mul(wz, b), hn::Mul(hn::Set(d, *step), hn::Mul(inverse, before)));
-      before = b;
-      b = next;
-    }
-    const Lanes next_re = hn::Add(hn::Sub(hn::Mul(re, wx), hn::Mul(im, wy)), sum_re);
-    im = hn::Add(hn::Add(hn::Mul(re, wy), hn::Mul(im, wx)), sum_im);
+  const auto add_order = [&](const OrderSum& order) {  // times (x + iy) / r^2, plus it
+    const Lanes next_re = hn::Add(hn::Sub(hn::Mul(re, wx), hn::Mul(im, wy)), order.re);
+    im = hn::Add(hn::Add(hn::Mul(re, wy), hn::Mul(im, wx)), order.im);
     re = next_re;
+  };
+  // Two orders at a time, so that the processor has more to do than to wait for a recurrence.
+  int m = p;
+  for (; m >= 1; m -= 2) {
+    OrderSum upper(node, coefficients, m), lower(node, coefficients, m - 1);
+    lower.template add<kMixed>(m - 1, degrees, wz, inverse);
+    for (int n = m; n <= p; ++n) {
+      upper.template add<kMixed>(n, degrees, wz, inverse);
+      lower.template add<kMixed>(n, degrees, wz, inverse);
+    }
+    add_order(upper);
+    add_order(lower);
+  }
+  if (m == 0) {
+    OrderSum last(node, coefficients, 0);
+    for (int n = 0; n <= p; ++n) last.template add<kMixed>(n, degrees, wz, inverse);
+    add_order(last);
   }
   return hn::Mul(re, hn::Sqrt(inverse));
 }

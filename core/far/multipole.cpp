@@ -226,14 +226,14 @@ std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
 }
 
 // All m of degree n from -n to n, at [m + kP].
-using Row = std::array<Complex, 2 * kP + 1>;
+using Degree = std::array<Complex, 2 * kP + 1>;
 template <class At>
-std::array<Row, kP + 1> rows_of(const At& at) {
-  std::array<Row, kP + 1> rows{};
+std::array<Degree, kP + 1> rows_of(const At& at) {
+  std::array<Degree, kP + 1> rows{};
   for (int n = 0; n <= kP; ++n) {
     for (int m = 0; m <= n; ++m) {
       const Complex c = at(n, m);
-      Row& row = rows[static_cast<std::size_t>(n)];
+      Degree& row = rows[static_cast<std::size_t>(n)];
       row[static_cast<std::size_t>(kP + m)] = c;
       row[static_cast<std::size_t>(kP - m)] = m % 2 == 0 ? std::conj(c) : -std::conj(c);
     }
@@ -289,7 +289,7 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
       double re = 0, im = 0;
       for (int k = 0; k < n; ++k) {
         const int j = n - k;
-        const Row &r = regular[static_cast<std::size_t>(k)], &s = moments[static_cast<std::size_t>(j)];
+        const Degree &r = regular[static_cast<std::size_t>(k)], &s = moments[static_cast<std::size_t>(j)];
         for (int l = std::max(-k, m - j); l <= std::min(k, m + j); ++l) {
           const Complex a = r[static_cast<std::size_t>(kP + l)], b = s[static_cast<std::size_t>(kP + m - l)];
           re += a.real() * b.real() - a.imag() * b.imag();

@@ -36,13 +36,14 @@ void extend(Box& box, const Box& by) {
   }
 }
 
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+double norm(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
 double longest_side(const Box& box) {
   const Vec3 size = box.upper - box.lower;
   return std::max({size.x, size.y, size.z});
 }
 double middle(const Box& box, int axis) { return box.lower[axis] / 2 + box.upper[axis] / 2; }
-double area_of(const SolidTriangle& t) { return length_of(cross(t.b - t.a, t.c - t.a)) / 2; }
+double area_of(const SolidTriangle& t) { return norm(cross(t.b - t.a, t.c - t.a)) / 2; }
 
 // The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
 // terms.
@@ -152,7 +153,7 @@ void SourceTree::measure(SourceNode& node) const {
   node.centre = {middle(box, 0), middle(box, 1), middle(box, 2)};
   for (std::uint32_t i = node.begin; i < node.end; ++i) {
     const SolidTriangle& t = triangles_[i];
-    for (const Vec3* v : {&t.a, &t.b, &t.c}) node.radius = std::max(node.radius, length_of(*v - node.centre));
+    for (const Vec3* v : {&t.a, &t.b, &t.c}) node.radius = std::max(node.radius, norm(*v - node.centre));
   }
   node.radius *= 1 + kRounding;
   node.square_of_distance.fill(kInfinity);

@@ -71,8 +71,7 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 CommandSpec points_spec() {
   OptionGroup field = field_group();
   std::erase_if(field.options, [](const OptionSpec& option) { return option.names == "--band"; });
-  OptionGroup unlisted = unlisted_field_group();
-  unlisted.options.push_back({"--band", "B", ""});  // to be told why it is not there
+  const OptionGroup unlisted{"", {{"--band", "B", ""}}};  // to be told why it is not there
   return {
       .name = "points",
       .description = "Evaluate a mesh at given or random points",

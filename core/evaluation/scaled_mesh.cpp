@@ -18,7 +18,7 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
 std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary,
                                                   const EvaluatorOptions& options) {
   if (boundary.exterior_edges() == 0) return nullptr;
-  const bool cheapest = options.summation == Summation::kCheapest;
+  const bool cheapest = options.summation == Summation::kCheapest || options.summation == Summation::kFarField;
   const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
   if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
     auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);
@@ -39,9 +39,11 @@ std::unique_ptr<const FarField> far_field(const TriangleMesh& mesh, const Bounda
   const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
   // Many a sample lies in the plane of flat caps, which are ties then.
   if (sources == FarSources::kCaps && boundary.is_flat()) return nullptr;
-  if (!far_field_pays(sources, mesh.triangles.size(), boundary.exterior_edges(), options.accuracy.samples)) {
-    return nullptr;
-  }
+  const bool wanted =
+      options.summation == Summation::kFarField ||
+      (options.summation == Summation::kCheapest &&
+       far_field_pays(sources, mesh.triangles.size(), boundary.exterior_edges(), options.accuracy.samples, tolerance));
+  if (!wanted) return nullptr;
   auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
   return far->has_repeated_faces() ? nullptr : std::move(far);
 }

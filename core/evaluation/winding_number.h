@@ -45,6 +45,7 @@ enum class Summation {
   kCheapest,   // whichever of the following is cheaper for the mesh
   kCone,       // crossings, and the cone over the exterior edges
   kTriangles,  // the solid angles of all triangles
+  kFarField,   // as kCheapest, with a far field wherever the tolerance allows one, whether it pays or not; for tests
 };
 
 struct ExteriorEdge;

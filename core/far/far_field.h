@@ -20,9 +20,9 @@ namespace raycone {
 enum class FarSources { kTriangles, kCaps };
 
 // Whether a far field is estimated to take less time than the sum over all exterior edges or, of a soup, triangles,
-// preparation included.
-[[nodiscard]] bool far_field_pays(FarSources sources, std::size_t triangles, std::size_t exterior_edges,
-                                  double samples);
+// preparation included. Rather no than yes.
+[[nodiscard]] bool far_field_pays(FarSources sources, std::size_t triangles, std::size_t exterior_edges, double samples,
+                                  double tolerance);
 
 class FarField final : public BoundaryTerm {
  public:

@@ -31,7 +31,6 @@ WORKING = {
 
 NOT_AVAILABLE = {
     "lattice": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field sdf --band all": "--band all",
         "--field solid": "--field solid",
         "--field winding,gradient": "--field winding,gradient",
@@ -49,7 +48,6 @@ NOT_AVAILABLE = {
         "--mesh-format 3mf": "--mesh-format 3mf",
     },
     "points": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field gradient": "--field gradient",
         "--parts group": "--parts",
         "--normalize sphere:2": "--normalize",
@@ -59,7 +57,6 @@ NOT_AVAILABLE = {
     "slice": {"--normalize cube": "--normalize", "--padding 5%": "--padding 5%"},
     "info": {"--normalize cube": "--normalize"},
     "batch": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field solid": "--field solid",
         "--parts group": "--parts",
         "--normalize cube": "--normalize",

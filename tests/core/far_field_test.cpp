@@ -18,7 +18,7 @@ namespace {
 constexpr double kTolerances[] = {1e-4, 1e-7, 1e-10};
 
 WindingNumberEvaluator evaluator_of(const TriangleMesh& mesh, double tolerance, SimdLevel level = SimdLevel::kBest) {
-  return WindingNumberEvaluator(mesh, RayEngine::kScan, level, Summation::kCheapest, nullptr, {tolerance, 1e9});
+  return WindingNumberEvaluator(mesh, RayEngine::kScan, level, Summation::kFarField, nullptr, {tolerance, 1e6});
 }
 
 // A soup: triangles of a sphere, each moved a little.
@@ -147,7 +147,7 @@ TEST(FarField, DoesNotMoveValuesAcrossHalfIntegers) {
   }
 }
 
-// w is 1/2 in the plane of a flat opening, at any height that the lattice has.
+// w is 1/2 in the plane of a flat opening: no far field is taken there, or all samples would tie with its caps.
 TEST(FarField, HalfIntegersOfAWholeRegionStay) {
   TriangleMesh mesh = test::sphere(40);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -171,6 +171,16 @@ TEST(FarField, ATinyToleranceIsNone) {
   const WindingNumberEvaluator tiny = evaluator_of(mesh, 9e-13);
   EXPECT_EQ(values_of(tiny, points), values_of(evaluator_of(mesh, 0), points));
   EXPECT_EQ(tiny.terms().far, 0U);
+}
+
+TEST(FarField, IsTakenWhereItPays) {
+  constexpr auto kCaps = FarSources::kCaps, kTriangles = FarSources::kTriangles;
+  EXPECT_FALSE(far_field_pays(kCaps, 100000, 500, 1e9, 1e-10));    // few edges
+  EXPECT_FALSE(far_field_pays(kCaps, 100000, 20000, 1e3, 1e-10));  // few samples
+  EXPECT_TRUE(far_field_pays(kCaps, 100000, 20000, 1e6, 1e-10));
+  EXPECT_TRUE(far_field_pays(kCaps, 100000, 3000, 1e6, 1e-4));
+  EXPECT_TRUE(far_field_pays(kTriangles, 100000, 300000, 1e6, 1e-10));
+  EXPECT_FALSE(far_field_pays(kTriangles, 5000, 15000, 1e6, 1e-10));
 }
 
 // A narrow ribbon that winds up costs its own area, not that of the cylinder it winds about; a round hole is halved.

@@ -12,7 +12,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # docs/architecture.md, "Who may include whom": a folder sees itself, folders above it in its list, and those named
 # here.
-STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/evaluation"]
+STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary", "core/far",
+         "core/evaluation"]
 BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings"],
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],

@@ -129,7 +129,7 @@ class Carrier {
   void carry(MeshOptions& options) { carry_members<5>(options); }
   void carry(RunOptions& options) { carry_members<8>(options); }
   void carry(Rule& rule) { carry_members<2>(rule); }
-  void carry(FieldOptions& options) { carry_members<7>(options); }
+  void carry(FieldOptions& options) { carry_members<8>(options); }
   void carry(OutputFiles& files) { carry_members<4>(files); }
   void carry(FieldEncoding& encoding) { carry_members<5>(encoding); }
   void carry(WorldPadding& padding) { carry_members<2>(padding); }

@@ -63,14 +63,23 @@ OptionGroup field_group() {
            {"--band", "B",
             "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not cut it "
             "off"},
+           tolerance_option(),
            {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
            {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
            {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
            {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
 }
 
-// Exact is all there is: 0, the default, is accepted for scripts that state it.
-OptionGroup unlisted_field_group() { return {"", {{"--tolerance", "T", ""}}}; }
+OptionSpec tolerance_option() {
+  return {"--tolerance", "T", "Winding numbers are off by T at most (default: 1e-10); 0: nothing is left out"};
+}
+
+double parse_tolerance(const Values& values) {
+  const std::string text = values.text("--tolerance");
+  const std::optional<double> tolerance = number_from(text);
+  if (!tolerance || *tolerance < 0.0) invalid("--tolerance", text, "0 or a positive number of turns");
+  return *tolerance;
+}
 
 Rule parse_rule(const Values& values) {
   const std::optional<Rule> rule = rule_from_name(values.text("--rule"));
@@ -79,18 +88,13 @@ Rule parse_rule(const Values& values) {
 }
 
 FieldOptions parse_field(const Values& values) {
-  if (values.given("--tolerance")) {
-    const std::optional<double> tolerance = number_from(values.text("--tolerance"));
-    if (!tolerance || *tolerance < 0.0) invalid("--tolerance", values.text("--tolerance"), "0");
-    constexpr double kLeast = 1e-12;  // what is less counts as 0
-    if (*tolerance >= kLeast) not_available("--tolerance " + values.text("--tolerance"));
-  }
   FieldOptions options;
   if (values.given("--field")) options.fields = parse_fields(values);
   if (values.given("--rule")) options.rule = parse_rule(values);
   if (values.given("--band")) options.band = parse_band(values);
   if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));
   if (values.given("--simd")) options.simd = parse_simd(values.text("--simd"));
+  if (values.given("--tolerance")) options.tolerance = parse_tolerance(values);
   options.diagnostics = values.given("--diagnostics");
   constexpr std::int64_t kMaxVerified = 1'000'000'000;
   if (values.given("--verify")) {

@@ -8,7 +8,9 @@
 namespace raycone {
 
 [[nodiscard]] OptionGroup field_group();
-[[nodiscard]] OptionGroup unlisted_field_group();
+[[nodiscard]] OptionSpec tolerance_option();
+// What --tolerance says. Precondition: it is given.
+[[nodiscard]] double parse_tolerance(const Values& values);
 // What --rule says. Precondition: it is given.
 [[nodiscard]] Rule parse_rule(const Values& values);
 [[nodiscard]] FieldOptions parse_field(const Values& values);

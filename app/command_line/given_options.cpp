@@ -11,7 +11,7 @@ std::vector<std::string> given_options(const Values& values, const OptionNames& 
       "--depfile", "--engine", "--format", "--memory-limit", "--no-clobber", "--output", "--progress", "--quiet",
       "--report",  "--simd",   "--strict", "--threads",      "--timeout",    "--values", "--verify"};
   static const std::set<std::string> defaults{"--field=winding",      "--band=3",  "--orient=keep", "--resolution=64",
-                                              "--rule=threshold=0.5", "--scale=1", "--seed=1",      "--tolerance=0",
+                                              "--rule=threshold=0.5", "--scale=1", "--seed=1",      "--tolerance=1e-10",
                                               "--weld=exact"};
   std::vector<std::string> options;
   for (const auto& [name, given] : values.all()) {

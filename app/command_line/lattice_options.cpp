@@ -164,7 +164,7 @@ CommandSpec lattice_spec() {
   return {.name = "lattice",
           .description = "Evaluate a mesh on a regular lattice",
           .operands = {mesh_operand()},
-          .groups = {mesh_group(), lattice_group(), field_group(), unlisted_field_group(), output, run_group()},
+          .groups = {mesh_group(), lattice_group(), field_group(), output, run_group()},
           .examples = {"raycone lattice bunny.obj -o bunny.vdb                     64 samples along the longest side",
                        "raycone lattice bunny.obj -o bunny.npy --resolution 50,50,50",
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",

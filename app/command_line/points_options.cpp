@@ -82,8 +82,7 @@ CommandSpec points_spec() {
   OptionGroup output = output_group("csv|npy|npz");
   output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in NPY and NPZ (default: f64)"});
   output.options.push_back(pack_bits_option());
-  OptionGroup unlisted = unlisted_field_group();
-  unlisted.options.push_back({"--band", "B", ""});  // to be told why it is not there
+  const OptionGroup unlisted{"", {{"--band", "B", ""}}};  // to be told why it is not there
   return {
       .name = "points",
       .description = "Evaluate a mesh at given or random points",

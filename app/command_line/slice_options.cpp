@@ -103,6 +103,7 @@ FieldOptions parse_slice_field(const Values& values) {
   FieldOptions options;
   options.fields = {*field};
   if (values.given("--rule")) options.rule = parse_rule(values);
+  if (values.given("--tolerance")) options.tolerance = parse_tolerance(values);
   return options;
 }
 
@@ -151,7 +152,8 @@ CommandSpec slice_spec() {
                      {"Field",
                       {{"--field", "winding|inside|sdf", "Winding number (default), inside, or signed distance"},
                        {"--rule", "threshold=T|abs=T|nonzero|positive|odd",
-                        "What counts as inside (default: threshold=0.5)"}}},
+                        "What counts as inside (default: threshold=0.5)"},
+                       tolerance_option()}},
                      output,
                      run_group()},
           .examples = {"raycone slice bunny.obj -o bunny.png",

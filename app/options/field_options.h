@@ -36,6 +36,7 @@ struct FieldOptions {
   Rule rule;
   double band = 3.0;  // voxels; of distances on lattices; infinite: they are not cut off
   bool diagnostics = false;
+  double tolerance = 1e-10;             // of winding numbers, turns; 0: direct sums
   std::uint64_t verify = 0;             // samples to be computed again by definition
   RayEngine engine = RayEngine::kScan;  // no value depends on these two
   SimdLevel simd = SimdLevel::kBest;

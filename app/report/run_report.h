@@ -61,6 +61,8 @@ struct RunReport {
   std::optional<Lattice> lattice;  // absent for points
   int threads = 0;
   Tally tally;
+  Terms terms;
+  double largest_error_bound = 0.0;          // of winding numbers, turns
   std::optional<Verification> verification;  // where asked for
   std::optional<SurfaceReport> surface;      // where one was made
   std::uint64_t peak_memory_bytes = 0;

@@ -1,5 +1,6 @@
 #include "app/run/field_evaluator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,6 +9,12 @@
 
 namespace raycone {
 namespace {
+
+// Rules do not depend on the tolerance: where nothing else is asked for, a rough one is cheaper.
+double tolerance_of(const FieldOptions& options) {
+  constexpr double kRough = 1e-6;
+  return options.tolerance > 0.0 && options.rule_only() ? std::max(options.tolerance, kRough) : options.tolerance;
+}
 
 bool has_rule(const FieldOptions& options) { return options.has(Field::kInside) || options.has(Field::kDistance); }
 
@@ -21,13 +28,15 @@ Vec3 point_of(const Lattice& lattice, const LatticeBlock& block, std::size_t num
 
 }  // namespace
 
-FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges)
+FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,
+                               double samples)
     : band_(options.band),
       rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
       thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd)
                                               : std::nullopt),
-      winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges) {}
+      winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges,
+                      Accuracy{tolerance_of(options), samples}) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

@@ -18,8 +18,9 @@ namespace raycone {
 class FieldEvaluator {
  public:
   // Prepares what `options` need, but for prepare_points(). `mesh` and `edges` as for
-  // WindingNumberEvaluator.
-  FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges = nullptr);
+  // WindingNumberEvaluator. `samples`: about how many it is for.
+  FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges = nullptr,
+                 double samples = 1e6);
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 

@@ -24,14 +24,14 @@ void prepare_engine(const WindingNumberEvaluator& evaluator, const FieldOptions&
 
 }  // namespace
 
-FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field)
+FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples)
     : run_(run),
       field_(field),
       original_(field.verify > 0 ? mesh : TriangleMesh{}),
       evaluator_(timed(run.report.seconds.prepare,
                        [&] {
                          const std::vector<ExteriorEdge> edges = run.take_edges();
-                         return FieldEvaluator(std::move(mesh), field, &edges);
+                         return FieldEvaluator(std::move(mesh), field, &edges, samples);
                        })),
       samples_(field),
       draw_(field.verify),
@@ -48,12 +48,20 @@ void FieldRun::evaluate(const Lattice& lattice, const LatticeBlock& block, std::
   run_.report.tally +=
       timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(lattice, block, samples_, done); });
   look_for_inside();
+  look_for_largest_bound();
   draw_.offer(lattice, block, samples_.numbers());
 }
 
 void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done) {
   run_.report.tally += timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(points, samples_, done); });
+  look_for_largest_bound();
   draw_.offer(points, samples_.numbers());
+}
+
+void FieldRun::look_for_largest_bound() {
+  const Diagnostics* diagnostics = samples_.diagnostics();
+  if (!diagnostics || diagnostics->error_bound.empty()) return;
+  largest_bound_ = std::max(largest_bound_, std::ranges::max(diagnostics->error_bound));
 }
 
 void FieldRun::look_for_inside() {
@@ -61,7 +69,11 @@ void FieldRun::look_for_inside() {
   found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
 }
 
-void FieldRun::verify(double band_width) {
+void FieldRun::finish(double band_width) {
+  const WindingNumberEvaluator& evaluator = evaluator_.winding_number();
+  run_.report.terms = evaluator.terms();
+  const bool open = evaluator.exterior_edges() > 0;
+  run_.report.largest_error_bound = field_.diagnostics ? largest_bound_ : open ? evaluator.accuracy() : 0.0;
   if (field_.verify == 0) return;
   run_.report.verification = timed(run_.report.seconds.verify, [&] {
     return raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());

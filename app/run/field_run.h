@@ -19,8 +19,9 @@ namespace raycone {
 
 class FieldRun {
  public:
-  // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this.
-  FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field);
+  // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this. `samples`: about
+  // how many there are.
+  FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples);
 
   // Builds the search structures that points need and lattices do not.
   void prepare_points();
@@ -34,11 +35,13 @@ class FieldRun {
   // Whether a rule was asked for, and held for no sample.
   [[nodiscard]] bool found_nothing_inside() const { return has_rule_ && !found_inside_; }
 
-  // Where it is asked for, verifies what was evaluated. `band_width`: where distances are cut off, world units.
-  void verify(double band_width);
+  // Tells the report what the values took and, where it is asked for, verifies them. `band_width`: where distances are
+  // cut off, world units.
+  void finish(double band_width);
 
  private:
   void look_for_inside();
+  void look_for_largest_bound();
 
   MeshRun& run_;
   const FieldOptions& field_;
@@ -48,6 +51,7 @@ class FieldRun {
   SampleDraw draw_;
   bool has_rule_;
   bool found_inside_ = false;
+  double largest_bound_ = 0.0;  // of diagnostics
 };
 
 // What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.

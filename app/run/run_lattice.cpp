@@ -156,11 +156,11 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   run.print_warnings();
 
   const bool may_be_empty = !should_have_inside(bounding_box(mesh), *report.lattice);
-  FieldRun fields(run, std::move(mesh), command.field);
+  FieldRun fields(run, std::move(mesh), command.field, static_cast<double>(report.samples));
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), *writer, observe, run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
-  fields.verify(command.field.band * report.lattice->spacing.x);
+  fields.finish(command.field.band * report.lattice->spacing.x);
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   return run.finish();
 }

@@ -79,7 +79,9 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   }
 
   check_points_memory(command, mesh, limits);
-  FieldRun fields(run, std::move(mesh), command.field);
+  constexpr double kUnknown = 1e6;  // samples of a stream
+  const std::optional<std::uint64_t> points = reader->size();
+  FieldRun fields(run, std::move(mesh), command.field, points ? static_cast<double>(*points) : kUnknown);
   fields.prepare_points();
   OutputDescription description = description_of(report, command.field, command.encoding);
   description.single_points = draws_single(command);
@@ -88,7 +90,7 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   const std::unique_ptr<PointWriter> writer =
       make_point_writer(command.encoding.format, run.output, reader->size(), description);
   evaluate_points(fields, *reader, *writer, run);
-  fields.verify(std::numeric_limits<double>::infinity());
+  fields.finish(std::numeric_limits<double>::infinity());
   timed(report.seconds.write, [&] { writer->finish(); });
   return run.finish();
 }

@@ -117,13 +117,15 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   if (values_file) values_file->reserve(report.samples * sizeof(double));
   const auto evaluator = timed(report.seconds.prepare, [&] {
     const std::vector<ExteriorEdge> edges = run.take_edges();
-    return FieldEvaluator(mesh, command.field, &edges);
+    return FieldEvaluator(mesh, command.field, &edges, static_cast<double>(report.samples));
   });
   report.exterior_edges = evaluator.winding_number().exterior_edges();
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   std::vector<double> values(report.samples);
   report.tally =
       timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, command.field, values, done); });
+  report.terms = evaluator.winding_number().terms();
+  if (report.exterior_edges > 0) report.largest_error_bound = evaluator.winding_number().accuracy();
   timed(report.seconds.write, [&] {
     const Image picture = slice_picture(slice.view, values, mesh, picture_field(command.field), command.framed);
     write_picture(run.output, picture, report.mesh, described(command.field) + " at " + slice.plane);

@@ -211,11 +211,11 @@ void check_repeated(const std::string& name, const DrawnSample& sample, const Dr
   }
 }
 
-double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& mesh) {
+double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& mesh, double tolerance) {
   // No mesh has more exterior edges than sides of faces, whatever the evaluator says.
   constexpr double u = 0x1p-53;
   const double most = 3 * u * static_cast<double>(mesh.triangles.size());
-  return std::clamp(evaluator.accuracy(), 1e-10, std::max(1e-10, most));
+  return std::clamp(evaluator.accuracy(), 1e-10, std::max({1e-10, most, tolerance}));
 }
 
 }  // namespace
@@ -299,7 +299,7 @@ Verification verify(const std::string& name, const TriangleMesh& mesh, const Fie
     check_repeated(name, complete[n], again);
   }
 
-  const double accuracy = accuracy_of(evaluator.winding_number(), mesh);
+  const double accuracy = accuracy_of(evaluator.winding_number(), mesh, options.tolerance);
   Verification verification =
       verify_by_definition(name, mesh, complete, {accuracy, options.rule, band_width, diagnostics.error_bound});
   for (std::size_t n = 0; n < samples.size(); ++n) {

@@ -28,6 +28,9 @@ class Boundary {
   // Number of undirected edges; 0: the mesh is closed.
   [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
 
+  // Whether all exterior edges lie in one plane.
+  [[nodiscard]] bool is_flat() const { return plane_.has_value(); }
+
   // The sum of |multiplicities|: no value w is off by more than a fraction of a turn times this.
   [[nodiscard]] double total_multiplicity() const { return total_multiplicity_; }
 

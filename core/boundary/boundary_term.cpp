@@ -13,13 +13,15 @@ namespace raycone {
 static constexpr double kDoubtPerEdge = 0x1p-41;
 
 // The least of the two is met at 10^11 edges only.
+double doubt_of_factors(double edge_factors) { return std::min(kDoubtPerEdge * edge_factors, Boundary::kMostDoubt); }
+
 ExactTerm::ExactTerm(const Boundary& boundary, double edge_factors)
-    : boundary_(boundary), doubt_(std::min(kDoubtPerEdge * edge_factors, Boundary::kMostDoubt)) {}
+    : boundary_(boundary), doubt_(doubt_of_factors(edge_factors)) {}
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.
-double ExactTerm::error_bound(const Vec3& q, double w, std::int64_t crossings) const {
+double enclosed_error(const Boundary& boundary, const Vec3& q, double w, std::int64_t crossings) {
   constexpr long double u = std::numeric_limits<long double>::epsilon() / 2;
-  const TurnsWithin<long double> enclosure = enclose<long double>(boundary_.groups(), q);
+  const TurnsWithin<long double> enclosure = enclose<long double>(boundary.groups(), q);
   const long double w2 = static_cast<long double>(crossings - enclosure.whole) - enclosure.rest;
   const long double bound = std::abs(w - w2) + enclosure.bound + u * std::abs(w2);
   return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());

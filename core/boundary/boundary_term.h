@@ -42,16 +42,25 @@ class BoundaryTerm {
   [[nodiscard]] virtual double error_bound(const Vec3& q, double w, std::int64_t crossings) const = 0;
 };
 
+// How far `w` is off at most, a winding number of the mesh at q, whose ray has n = crossings: |w - w2| and the bound of
+// w2, which the cone in extended precision gives. It holds for the values of any engine. Needs DefaultFloatingPoint.
+[[nodiscard]] double enclosed_error(const Boundary& boundary, const Vec3& q, double w, std::int64_t crossings);
+
+// How far the argument of a product may be off, turns. `edge_factors`: how many edges' factors round in it, with their
+// multiplicities; a triangle counts as three.
+[[nodiscard]] double doubt_of_factors(double edge_factors);
+
 // What exact engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone in
 // extended precision tells how far a value is off.
 class ExactTerm : public BoundaryTerm {
  public:
   [[nodiscard]] double doubt() const final { return doubt_; }
-  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final;
+  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final {
+    return enclosed_error(boundary_, q, w, crossings);
+  }
 
  protected:
-  // `edge_factors`: how many edges' factors round in a value, with their multiplicities; a triangle counts as three.
-  // `boundary` must outlive this.
+  // As doubt_of_factors() says. `boundary` must outlive this.
   ExactTerm(const Boundary& boundary, double edge_factors);
 
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }

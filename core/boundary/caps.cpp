@@ -120,6 +120,22 @@ class LoopFiller {
     return best;
   }
 
+  // A triangle of both ends and the middle, likewise for both halves.
+  [[nodiscard]] Filling halved(const Loop& loop) const {
+    Filling filling{{}, 0.0};
+    std::vector<std::pair<std::size_t, std::size_t>> ranges{{0, loop.size() - 1}};
+    while (!ranges.empty()) {
+      const auto [first, last] = ranges.back();
+      ranges.pop_back();
+      if (last - first < 2) continue;
+      const std::size_t half = first + (last - first) / 2;
+      add(filling, loop[first], loop[half], loop[last]);
+      ranges.emplace_back(first, half);
+      ranges.emplace_back(half, last);
+    }
+    return filling;
+  }
+
   [[nodiscard]] double length(const Loop& loop) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -129,6 +145,12 @@ class LoopFiller {
   }
 
  private:
+  void add(Filling& filling, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Vec3 normal = cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
+    filling.area += length_of(normal) / 2;
+    filling.triangles.push_back({a, b, c});
+  }
+
   // Triangles that fill the loop as a band that begins at one of its vertices and takes the nearer neighbour on either
   // side each time: of a crack, begun at its end, that is nearly the least area there is.
   [[nodiscard]] Filling band(const Loop& loop, std::size_t start) const {
@@ -136,19 +158,14 @@ class LoopFiller {
     const std::size_t n = loop.size();
     std::size_t up = start + 1, down = start + n - 1;  // modulo n
     const auto at = [&](std::size_t i) { return loop[i % n]; };
-    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      const Vec3 normal = cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
-      filling.area += length_of(normal) / 2;
-      filling.triangles.push_back({a, b, c});
-    };
-    add(at(start), at(up), at(down));
+    add(filling, at(start), at(up), at(down));
     while (down - up > 1) {
       const Vec3 &u = vertices_[at(up)], &d = vertices_[at(down)];
       if (length_of(vertices_[at(up + 1)] - d) < length_of(vertices_[at(down - 1)] - u)) {
-        add(at(up), at(up + 1), at(down));
+        add(filling, at(up), at(up + 1), at(down));
         ++up;
       } else {
-        add(at(up), at(down - 1), at(down));
+        add(filling, at(up), at(down - 1), at(down));
         --down;
       }
     }
@@ -194,6 +211,21 @@ Caps make_caps(const Boundary& boundary, double width) {
   });
   caps.narrow = caps.mesh.triangles.size();
   caps.mesh.triangles.insert(caps.mesh.triangles.end(), wide.begin(), wide.end());
+  return caps;
+}
+
+TriangleMesh halved_caps(const Boundary& boundary) {
+  constexpr double kMuchLess = 0.5;  // large caps are near to many samples
+  EdgeGraph graph(boundary.directed_edges());
+  TriangleMesh caps;
+  caps.vertices = graph.vertices();
+  const LoopFiller filler(caps.vertices);
+  graph.for_each_loop([&](const Loop& loop) {
+    if (loop.size() < 3) return;
+    const LoopFiller::Filling halves = filler.halved(loop), band = filler.fill(loop);
+    const auto& triangles = band.area < kMuchLess * halves.area ? band.triangles : halves.triangles;
+    caps.triangles.insert(caps.triangles.end(), triangles.begin(), triangles.end());
+  });
   return caps;
 }
 

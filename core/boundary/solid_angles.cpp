@@ -59,23 +59,14 @@ std::strong_ordering order(const SolidTriangle& s, const SolidTriangle& t) {
 
 }  // namespace
 
-SolidAngles::SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level)
-    : SolidAngles(faces_of(mesh), boundary, level) {}
-
-SolidAngles::SolidAngles(Faces faces, const Boundary& boundary, SimdLevel level)
-    : ExactTerm(boundary, 3 * static_cast<double>(faces.triangles.size())),
-      multiply_(solid_angle_kernel(level)),
-      faces_(std::move(faces)) {}
-
-SolidAngles::Faces SolidAngles::faces_of(const TriangleMesh& mesh) {
+SolidFaces solid_faces(const TriangleMesh& mesh) {
   std::vector<SolidTriangle> all;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     if (!collinear(a, b, c)) all.push_back(with_sorted_corners(a, b, c));
   }
   std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });
-  // Faces on each other with opposite orientations cancel.
-  Faces faces;
+  SolidFaces faces;
   for (auto begin = all.begin(); begin != all.end();) {
     const auto end = std::find_if(begin, all.end(), [&](const auto& t) { return order(*begin, t) != 0; });
     double net = 0.0;
@@ -87,6 +78,14 @@ SolidAngles::Faces SolidAngles::faces_of(const TriangleMesh& mesh) {
   }
   return faces;
 }
+
+SolidAngles::SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level)
+    : SolidAngles(solid_faces(mesh), boundary, level) {}
+
+SolidAngles::SolidAngles(SolidFaces faces, const Boundary& boundary, SimdLevel level)
+    : ExactTerm(boundary, 3 * static_cast<double>(faces.triangles.size())),
+      multiply_(solid_angle_kernel(level)),
+      faces_(std::move(faces)) {}
 
 // Per sample a triangle takes 1.1 to 1.3 times as long as an edge.
 bool SolidAngles::are_cheaper(std::size_t triangles, std::size_t exterior_edges) {

@@ -14,6 +14,14 @@
 
 namespace raycone {
 
+// The triangles of a mesh that have an area, in an order that depends on coordinates only. Those that lie on each other
+// with opposite orientations cancel; one that is left n times has n entries.
+struct SolidFaces {
+  std::vector<SolidTriangle> triangles;
+  bool has_repeated_faces = false;  // one is there so often that its error, multiplied, would show
+};
+[[nodiscard]] SolidFaces solid_faces(const TriangleMesh& mesh);
+
 // Rounding errors of some u per triangle.
 class SolidAngles final : public ExactTerm {
  public:
@@ -31,16 +39,10 @@ class SolidAngles final : public ExactTerm {
                        std::span<double> w) const override;
 
  private:
-  // Those of positive area, in an order that depends on coordinates only; a face that is there n times has n entries.
-  struct Faces {
-    std::vector<SolidTriangle> triangles;
-    bool has_repeated_faces = false;
-  };
-  SolidAngles(Faces faces, const Boundary& boundary, SimdLevel level);
-  static Faces faces_of(const TriangleMesh& mesh);
+  SolidAngles(SolidFaces faces, const Boundary& boundary, SimdLevel level);
 
   SolidAngleKernel multiply_;
-  Faces faces_;
+  SolidFaces faces_;
 };
 
 }  // namespace raycone

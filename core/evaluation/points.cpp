@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <vector>
@@ -18,8 +20,32 @@ Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
           all.on_surface.subspan(begin, count), all.error_bound.subspan(begin, count)};
 }
 
-// A radix sort by position along a curve through the projections that moves the points themselves, so that none has to
-// be fetched from afar in the end.
+// A curve through a box that fills it: neighbours on it are neighbours in space.
+class SpaceCurve {
+ public:
+  explicit SpaceCurve(const TriangleMesh& mesh) : box_(bounding_box(mesh)) {
+    const Vec3 size = box_.upper - box_.lower;
+    cells_per_unit_ = kCells / std::max({size.x, size.y, size.z, std::numeric_limits<double>::min()});
+  }
+  [[nodiscard]] std::uint16_t code(const Vec3& q) const {
+    unsigned code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double offset = (q[axis] - box_.lower[axis]) * cells_per_unit_;
+      const auto cell = static_cast<unsigned>(std::min(std::max(0.0, offset), kCells - 1));  // NaN: 0
+      for (unsigned bit = 0; bit < kBits; ++bit) code |= (cell >> bit & 1U) << (3 * bit + static_cast<unsigned>(axis));
+    }
+    return static_cast<std::uint16_t>(code << 1);
+  }
+
+ private:
+  static constexpr unsigned kBits = 5;
+  static constexpr double kCells = 1U << kBits;
+  Box box_;
+  double cells_per_unit_;
+};
+
+// A radix sort by position along a curve, through the projections or through space, that moves the points themselves,
+// so that none has to be fetched from afar in the end.
 class CoherentOrder {
  public:
   struct SortedPoint {
@@ -67,13 +93,17 @@ class CoherentOrder {
     Keys keys;
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
+    const SpaceCurve curve(mesh.mesh());
+    const auto key_of = [&](const Vec3& q) {
+      return mesh.has_far_field() ? curve.code(q) : mesh.grid().morton_code(q);
+    };
     constexpr std::size_t kPointsPerTask = 4096;
     parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
       bool taken = true;
       for (std::size_t i = begin; i < end; ++i) {
         taken = taken && mesh.can_take(points[i]);
         keys.of_points[i] = mesh.options().ray_engine == RayEngine::kScan
-                                ? mesh.grid().morton_code(mesh.to_scale(points[i]))
+                                ? key_of(mesh.to_scale(points[i]))
                                 : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kMortonCodes + 1));
       }
       if (!taken) all_taken = false;

@@ -66,10 +66,53 @@ void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t b
   }
 }
 
+// In bricks of neighbours: nodes that are far from one sample are mostly far from all.
+constexpr std::size_t kBrick = 4;  // samples along each side
+
+// Those of the rows [j_begin, j_end) x [k_begin, k_end).
+void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<std::size_t, 2> j_range,
+                   std::array<std::size_t, 2> k_range, std::span<double> values) {
+  const std::size_t nx = rows.xs.size(), ny = rows.ys.size();
+  LatticeTile tile;
+  const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
+    tile.add((k * ny + j) * nx + i, {rows.xs[i], rows.ys[j], rows.zs[k]});
+    if (tile.full()) tile.evaluate(mesh, values);
+  };
+  for (std::size_t i = 0; i < nx; i += kBrick) {
+    // Eight samples of a cube follow one another, in one group of lanes.
+    for (std::size_t corner = 0; corner < kBrick * kBrick * kBrick; corner += 8) {
+      const std::size_t half = corner / 8;
+      for (std::size_t n = 0; n < 8; ++n) {
+        const std::size_t x = i + 2 * (half & 1) + (n & 1), y = j_range[0] + (half & 2) + (n >> 1 & 1);
+        const std::size_t z = k_range[0] + (half >> 1 & 2) + (n >> 2);
+        if (x < nx && y < j_range[1] && z < k_range[1]) add(x, y, z);
+      }
+    }
+  }
+  tile.evaluate(mesh, values);
+}
+
+void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<double> values,
+                   std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const std::size_t ny = rows.ys.size(), nz = rows.zs.size(), across = (ny + kBrick - 1) / kBrick;
+  parallel_for(across * ((nz + kBrick - 1) / kBrick), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t j = n % across * kBrick, k = n / across * kBrick;
+      const std::array j_range{j, std::min(j + kBrick, ny)}, k_range{k, std::min(k + kBrick, nz)};
+      add_far_field(mesh, rows, j_range, k_range, values);
+      for (std::size_t row = k_range[0]; diagnostics && row < k_range[1]; ++row) {
+        bound_errors(mesh, rows, row * ny + j_range[0], row * ny + j_range[1], values, *diagnostics);
+      }
+      const std::size_t samples = (j_range[1] - j) * (k_range[1] - k) * rows.xs.size();
+      if (done) done->fetch_add(samples, std::memory_order_relaxed);
+    }
+  });
+}
+
 // ---- The whole -------------------------------------------------------------------------------------------------
 
-// Sets the values of rows whose crossings are known; only the crossings where the rest is left to apply_rule(). Returns
-// how many samples lie on the surface.
+// Sets the values of rows whose crossings are known; only the crossings where the rest is left to apply_rule()
+// or add_far_field(). Returns how many samples lie on the surface.
 std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
                           std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, bool crossings_only) {
   std::atomic<std::uint64_t> on_surface = 0;
@@ -120,7 +163,9 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
     cast_rays(mesh, rows, sums);
   }
   sums.arrange();
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule);
+  const bool in_bricks = !by_rule && mesh.has_far_field();
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule || in_bricks);
+  if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
   if (by_rule) apply_rule(mesh, rows, *rule, values, crossings_of(mesh.changes().caps.mesh, rows), done);
   return {sums.ties(), on_surface};
 }

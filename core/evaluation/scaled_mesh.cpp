@@ -18,7 +18,7 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
 std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary,
                                                   const EvaluatorOptions& options) {
   if (boundary.exterior_edges() == 0) return nullptr;
-  const bool cheapest = options.summation == Summation::kCheapest;
+  const bool cheapest = options.summation == Summation::kCheapest || options.summation == Summation::kFarField;
   const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
   if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
     auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);
@@ -27,7 +27,30 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   return std::make_unique<const Cone>(boundary, options.level);
 }
 
+constexpr double kLeastTolerance = 1e-12;  // less is as good as nothing
+constexpr double kMostTolerance = 0x1p-4;  // more would not be settled at half-integers
+constexpr double kFarShare = 0.75;         // of the tolerance; near triangles round, too
+
+// The far field, where it is asked for and estimated to be cheaper. `direct` is what it stands in for.
+std::unique_ptr<const FarField> far_field(const TriangleMesh& mesh, const Boundary& boundary,
+                                          const BoundaryTerm* direct, const EvaluatorOptions& options) {
+  const double tolerance = std::min(options.accuracy.tolerance, kMostTolerance);
+  if (!direct || !(tolerance >= kLeastTolerance)) return nullptr;
+  const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
+  // Many a sample lies in the plane of flat caps, which are ties then.
+  if (sources == FarSources::kCaps && boundary.is_flat()) return nullptr;
+  const bool wanted =
+      options.summation == Summation::kFarField ||
+      (options.summation == Summation::kCheapest &&
+       far_field_pays(sources, mesh.triangles.size(), boundary.exterior_edges(), options.accuracy.samples, tolerance));
+  if (!wanted) return nullptr;
+  auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
+  return far->has_repeated_faces() ? nullptr : std::move(far);
+}
+
 double nearest_integer(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
+
+double distance_to_half_integer(double x) { return 0.5 - std::abs(x - nearest_integer(x)); }
 
 }  // namespace
 
@@ -35,10 +58,11 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
     : scale_(scale),
       inverse_(-scale.exponent()),
       least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
-      options_{options.ray_engine, options.level, options.summation},
+      options_{options.ray_engine, options.level, options.summation, options.accuracy},
       mesh_(in_scale(std::move(mesh), scale)),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, options)) {}
+      term_(boundary_term(mesh_, boundary_, options)),
+      far_(far_field(mesh_, boundary_, term_.get(), options)) {}
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
@@ -87,12 +111,41 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
+  if (!far_) {
+    set_direct_values(samples, crossings, values);
+    return;
+  }
+  far_->winding_numbers(samples, crossings, values);
+  set_again_near_half_integers(samples, crossings, values);
+}
+
+void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings,
+                                   std::span<double> values) const {
   term_->winding_numbers(samples, crossings, values);
-  const double doubt = term_->doubt();
+  const std::size_t terms = term_->counts_crossings() ? boundary_.exterior_edges() : mesh_.triangles.size();
+  direct_terms_.fetch_add(values.size() * terms, std::memory_order_relaxed);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (0.5 - std::abs(values[i] - nearest_integer(values[i])) > doubt) continue;
+    if (distance_to_half_integer(values[i]) > term_->doubt()) continue;
     values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);
   }
+}
+
+void ScaledMesh::set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
+                                              std::span<double> values) const {
+  std::array<std::size_t, kTile> indices;
+  std::array<std::int64_t, kTile> crossings_here;
+  std::array<double, kTile> values_here;
+  SampleTile here;
+  here.clear();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (distance_to_half_integer(values[i]) > far_->doubt()) continue;
+    indices[here.count] = i;
+    crossings_here[here.count] = crossings[i];
+    here.add(samples.query(i));
+  }
+  if (here.count == 0) return;
+  set_direct_values(here, {crossings_here.data(), here.count}, {values_here.data(), here.count});
+  for (std::size_t i = 0; i < here.count; ++i) values[indices[i]] = values_here[i];
 }
 
 ScaledMeshes::ScaledMeshes(TriangleMesh mesh, const EvaluatorOptions& options)
@@ -102,8 +155,11 @@ ScaledMeshes::ScaledMeshes(const PowerOfTwo& scale, TriangleMesh&& mesh, const E
     : scaled_(std::move(mesh), scale, options) {}
 
 const ScaledMesh& ScaledMeshes::unscaled() const {
-  std::call_once(unscaled_built_,
-                 [this] { unscaled_.emplace(scaled_.unscaled_mesh(), PowerOfTwo(0), scaled_.options()); });
+  std::call_once(unscaled_built_, [this] {
+    EvaluatorOptions options = scaled_.options();
+    options.accuracy.tolerance = 0.0;  // few queries need this, and its coordinates may be of any size
+    unscaled_.emplace(scaled_.unscaled_mesh(), PowerOfTwo(0), options);
+  });
   return *unscaled_;
 }
 

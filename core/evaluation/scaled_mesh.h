@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
+#include "core/far/far_field.h"
 
 namespace raycone {
 
@@ -32,6 +34,7 @@ struct EvaluatorOptions {
   RayEngine ray_engine = RayEngine::kScan;
   SimdLevel level = SimdLevel::kBest;
   Summation summation = Summation::kCheapest;
+  Accuracy accuracy;
   // Of the mesh, where known: scaling changes neither the edges nor their order. Used by the constructor alone.
   const std::vector<ExteriorEdge>* edges = nullptr;
 };
@@ -48,7 +51,7 @@ struct Changes {
 class ScaledMesh {
  public:
   ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options);
-  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_, term_ to boundary_
+  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_, term_ and far_ to boundary_
   ScaledMesh& operator=(const ScaledMesh&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -83,18 +86,29 @@ class ScaledMesh {
   // Whether values depend on how many triangles a ray crosses.
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
 
+  // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
+  [[nodiscard]] bool has_far_field() const { return far_ != nullptr; }
+
   // No value is off by more.
-  [[nodiscard]] double doubt() const { return term_ ? term_->doubt() : 0.0; }
+  [[nodiscard]] double doubt() const { return far_ ? far_->doubt() : term_ ? term_->doubt() : 0.0; }
 
   // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
-  // thresholds, is on the right side of it or is it. At least one sample.
+  // thresholds, is on the right side of it or is it, whatever the tolerance. At least one sample.
   void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
 
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
     return term_ ? term_->error_bound(q, w, crossings) : 0.0;
   }
 
+  [[nodiscard]] Terms terms() const {
+    return {direct_terms_ + (far_ ? far_->near_terms() : 0), far_ ? far_->far_terms() : 0};
+  }
+
  private:
+  void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
+  void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
+                                    std::span<double> values) const;
+
   // Queries that scaling up brings beyond this are as good as at it: a mesh of size 1 has vanished.
   static constexpr double kFarthest = 0x1p1000;
 
@@ -105,6 +119,8 @@ class ScaledMesh {
   TriangleMesh mesh_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
+  std::unique_ptr<const FarField> far_;       // none where the direct sum is as good
+  mutable std::atomic<std::uint64_t> direct_terms_ = 0;
   mutable std::once_flag rays_built_, grid_built_, changes_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
@@ -122,6 +138,10 @@ class ScaledMeshes {
   [[nodiscard]] const ScaledMesh& scaled() const { return scaled_; }
   // Built when first needed. Predicates are slower there.
   [[nodiscard]] const ScaledMesh& unscaled() const;
+  [[nodiscard]] Terms terms() const {
+    const Terms scaled = scaled_.terms(), unscaled = unscaled_ ? unscaled_->terms() : Terms{};
+    return {scaled.near + unscaled.near, scaled.far + unscaled.far};
+  }
   [[nodiscard]] const ScaledMesh& of_query(bool scaling_is_exact) const {
     return scaling_is_exact ? scaled_ : unscaled();
   }

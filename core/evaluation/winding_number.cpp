@@ -34,11 +34,12 @@ struct WindingNumberEvaluator::Implementation : ScaledMeshes {
 };
 
 WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level,
-                                               Summation summation, const std::vector<ExteriorEdge>* edges) {
+                                               Summation summation, const std::vector<ExteriorEdge>* edges,
+                                               const Accuracy& accuracy) {
   check_counts(mesh);
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny; and below
   implementation_ =
-      std::make_unique<Implementation>(std::move(mesh), EvaluatorOptions{engine, level, summation, edges});
+      std::make_unique<Implementation>(std::move(mesh), EvaluatorOptions{engine, level, summation, accuracy, edges});
 }
 WindingNumberEvaluator::~WindingNumberEvaluator() = default;
 WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept = default;
@@ -52,8 +53,11 @@ double WindingNumberEvaluator::doubt() const { return implementation_->scaled().
 
 double WindingNumberEvaluator::accuracy() const {
   constexpr double u = 0x1p-53;
-  return std::max(1e-10, u * implementation_->scaled().boundary().total_multiplicity());
+  const ScaledMesh& mesh = implementation_->scaled();
+  return std::max({1e-10, mesh.options().accuracy.tolerance, u * mesh.boundary().total_multiplicity()});
 }
+
+Terms WindingNumberEvaluator::terms() const { return implementation_->terms(); }
 
 double WindingNumberEvaluator::settle(const Vec3& point, double value, double critical) const {
   const ScaledMeshes& meshes = *implementation_;

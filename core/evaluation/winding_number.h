@@ -45,19 +45,35 @@ enum class Summation {
   kCheapest,   // whichever of the following is cheaper for the mesh
   kCone,       // crossings, and the cone over the exterior edges
   kTriangles,  // the solid angles of all triangles
+  kFarField,   // as kCheapest, with a far field wherever the tolerance allows one, whether it pays or not; for tests
 };
 
 struct ExteriorEdge;
+
+// How well values are to be known.
+struct Accuracy {
+  // |value - w| is to be at most this, turns. From 1e-12 on, what is far may act together (docs/method.md, "Far
+  // field"), where that pays. Below, all is summed one by one, and a value is off by its rounding alone.
+  double tolerance = 0.0;
+  // About how many samples the evaluator is for: preparing a far field must pay.
+  double samples = 1e6;
+};
+
+// What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.
+struct Terms {
+  std::uint64_t near = 0;
+  std::uint64_t far = 0;
+};
 
 class WindingNumberEvaluator {
  public:
   // Prepares what depends on the mesh alone, except what prepare_points() does. Preconditions: `mesh` is welded
   // (core/mesh/weld.h), and the vertices that triangles use are finite. `edges`: exterior_edges(mesh), to spare finding
-  // them again (core/mesh/exterior_edges.h). All values of a mesh without triangles are 0.
-  // Throws std::bad_alloc, and std::length_error for more than kMaxTriangles.
+  // them again (core/mesh/exterior_edges.h). `accuracy`: rules do not depend on it. All values of a mesh without
+  // triangles are 0. Throws std::bad_alloc, and std::length_error for more than kMaxTriangles.
   explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
                                   SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest,
-                                  const std::vector<ExteriorEdge>* edges = nullptr);
+                                  const std::vector<ExteriorEdge>* edges = nullptr, const Accuracy& accuracy = {});
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;
@@ -80,8 +96,8 @@ class WindingNumberEvaluator {
   Tally evaluate_for(const Rule& rule, const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                      std::atomic<std::uint64_t>* done = nullptr) const;
 
-  // |value - w| <= accuracy(), turns. This is 1e-10. From a million exterior edges on, counted with multiplicity, it is
-  // 2^-53 times their number: doubles of such values can do no better.
+  // |value - w| <= accuracy(), turns. This is the tolerance, or 1e-10 where that is less. From a million exterior edges
+  // on, counted with multiplicity, it is 2^-53 times their number at least: doubles of such values can do no better.
   [[nodiscard]] double accuracy() const;
 
   // Values are right about half-integers. A value is exactly 0.5, 1.5, -0.5 ... where w cannot be told from it
@@ -93,6 +109,9 @@ class WindingNumberEvaluator {
   // doubt() turns; doubt() is 0 for closed meshes. Thread-safe.
   [[nodiscard]] double doubt() const;
   [[nodiscard]] double settle(const Vec3& point, double value, double critical) const;
+
+  // Of all values that have been evaluated so far.
+  [[nodiscard]] Terms terms() const;
 
   // Builds the search structure that points need and lattices may not. Without this call, the first evaluation of
   // points builds it.

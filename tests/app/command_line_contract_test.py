@@ -32,7 +32,6 @@ WORKING = {
 
 NOT_AVAILABLE = {
     "lattice": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field solid": "--field solid",
         "--field winding,gradient": "--field winding,gradient",
         "--field label": "--field label",
@@ -40,7 +39,6 @@ NOT_AVAILABLE = {
         "--mesh-format 3mf": "--mesh-format 3mf",
     },
     "points": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field gradient": "--field gradient",
         "--parts group": "--parts",
     },
@@ -49,7 +47,6 @@ NOT_AVAILABLE = {
         "--simplify 0.1": "--simplify 0.1",
     },
     "batch": {
-        "--tolerance 1e-3": "--tolerance 1e-3",
         "--field solid": "--field solid",
         "--parts group": "--parts",
     },

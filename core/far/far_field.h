@@ -1,0 +1,64 @@
+// The boundary term from afar: a bounded engine.
+//
+// Soups: w is the sum over the triangles. Other open meshes M: caps close the boundary, so that M less its caps is
+// closed, and w = (crossings of M less crossings of the caps) + w of the caps. The crossings are integers, exact; what
+// is left is a sum over triangles. Those that are far from a sample act together, as multipoles (source_tree.h).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "core/boundary/boundary_term.h"
+#include "core/crossings/projected_grid.h"
+#include "core/data/triangle_mesh.h"
+#include "core/far/far_kernel.h"
+#include "core/far/source_tree.h"
+
+namespace raycone {
+
+enum class FarSources { kTriangles, kCaps };
+
+// Whether a far field is estimated to take less time than the sum over all exterior edges or, of a soup, triangles,
+// preparation included. Rather no than yes.
+[[nodiscard]] bool far_field_pays(FarSources sources, std::size_t triangles, std::size_t exterior_edges, double samples,
+                                  double tolerance);
+
+class FarField final : public BoundaryTerm {
+ public:
+  // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
+  // rounds included. `boundary`: of the mesh; it must outlive this.
+  FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance, SimdLevel level);
+
+  // Whether a face or a cap is there so often that its error, multiplied, would show: then do not use this.
+  [[nodiscard]] bool has_repeated_faces() const { return faces_repeat_; }
+
+  [[nodiscard]] bool counts_crossings() const override { return sources_ == FarSources::kCaps; }
+  void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
+                       std::span<double> w) const override;
+  [[nodiscard]] double doubt() const override { return doubt_; }
+  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const override {
+    return enclosed_error(boundary_, q, w, crossings);
+  }
+
+  [[nodiscard]] const SourceTree& sources() const { return *tree_; }
+
+  // Pairs of samples with triangles, and with multipoles, that winding_numbers() has summed so far.
+  [[nodiscard]] std::uint64_t near_terms() const { return near_terms_; }
+  [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
+
+ private:
+  [[nodiscard]] std::int64_t cap_crossings(const Vec3& q) const;
+
+  const Boundary& boundary_;
+  FarSources sources_;
+  FarKernel kernel_;
+  TriangleMesh caps_;                      // none of a soup
+  std::optional<ProjectedGrid> cap_grid_;  // none where no cap is there
+  std::optional<SourceTree> tree_;
+  bool faces_repeat_ = false;
+  double doubt_ = 0;
+  mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;
+};
+
+}  // namespace raycone

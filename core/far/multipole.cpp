@@ -1,0 +1,358 @@
+#include "core/far/multipole.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+namespace raycone {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr int kP = kMultipoleOrder;
+constexpr double kUnitRoundoff = 0x1p-53;
+constexpr double kUp = 1 + 1e-12;  // more than what rounds in a sum of positive numbers here
+constexpr double kFourPi = 4 * std::numbers::pi;
+
+// Gauss's rule of eight points on [0, 1]: exact up to degree 15, that of grad R_16.
+constexpr std::size_t kPoints = 8;
+struct GaussRule {
+  std::array<double, kPoints> at, weight;
+  GaussRule() : at{}, weight{} {
+    constexpr int n = static_cast<int>(kPoints);
+    for (int i = 0; i < n; ++i) {
+      long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L)), slope = 1;
+      for (int step = 0; step < 8; ++step) {
+        long double before = 1, value = x;
+        for (int k = 2; k <= n; ++k) {
+          const long double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
+          before = value;
+          value = next;
+        }
+        slope = n * (x * value - before) / (x * x - 1);
+        x -= value / slope;
+      }
+      at[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / 2);
+      weight[static_cast<std::size_t>(i)] = static_cast<double>(1 / ((1 - x * x) * slope * slope));
+    }
+  }
+};
+
+// Constants of the bounds.
+struct Tables {
+  std::array<double, 2 * kP + 1> factorial{};
+  std::array<double, kP + 1> double_factorial{};   // (2n - 1)!!
+  std::array<double, kMultipoleTerms> regular{};   // what |R_n^m| is at most, all terms of its recurrence positive
+  std::array<double, kMultipoleTerms> legendre{};  // likewise |b_n^m| at r = 1
+  std::array<double, kP + 1> moment{};             // the norm of the moments of an edge with |a||b - a| = 1
+  std::array<double, kP + 1> shift{};              // the norm of `regular`
+  std::array<std::array<double, kP + 1>, kP + 1> choose{};  // sqrt of (2n over 2k)
+
+  Tables();
+  [[nodiscard]] double weight(int n, int m) const {
+    return factorial[static_cast<std::size_t>(n + m)] * factorial[static_cast<std::size_t>(n - m)];
+  }
+};
+
+Tables::Tables() {
+  factorial[0] = 1;
+  for (std::size_t i = 1; i < factorial.size(); ++i) factorial[i] = factorial[i - 1] * static_cast<double>(i);
+  double_factorial[0] = 1;
+  for (std::size_t n = 1; n < double_factorial.size(); ++n)
+    double_factorial[n] = double_factorial[n - 1] * static_cast<double>(2 * n - 1);
+  for (int m = 0; m <= kP; ++m) {
+    double corner = 1, b = 1, b_before = 0;
+    for (int i = 1; i <= m; ++i) corner /= 2 * i;
+    double r = corner, r_before = 0;
+    for (int n = m; n <= kP; ++n) {
+      regular[multipole_index(n, m)] = r;
+      legendre[multipole_index(n, m)] = b;
+      const double next = ((2 * n + 1) * r + r_before) / ((n + 1) * (n + 1) - m * m);
+      r_before = r;
+      r = next;
+      const double b_next = b + multipole_step(n, m) * b_before;
+      b_before = b;
+      b = b_next;
+    }
+  }
+  const auto regular_at = [&](int n, int m) { return m > n ? 0.0 : regular[multipole_index(n, std::abs(m))]; };
+  for (int n = 0; n <= kP; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    double of_moment = 0, of_shift = 0;
+    for (int m = -n; m <= n; ++m) {
+      const int k = std::abs(m);
+      of_shift += weight(n, k) * regular_at(n, k) * regular_at(n, k);
+      if (n == 0) continue;
+      const double sum = regular_at(n - 1, k) + regular_at(n - 1, k + 1) + regular_at(n - 1, std::abs(k - 1));
+      of_moment += weight(n, k) * sum * sum;
+    }
+    moment[i] = kUp * std::sqrt(of_moment) / (kFourPi * (n + 1));
+    shift[i] = kUp * std::sqrt(of_shift);
+    double c = 1;
+    for (int k = 0; k <= n; ++k) {
+      choose[i][static_cast<std::size_t>(k)] = kUp * std::sqrt(c);
+      c = c * ((2 * n - 2 * k) * (2 * n - 2 * k - 1)) / ((2 * k + 1) * (2 * k + 2));
+    }
+  }
+}
+
+const Tables& tables() {
+  static const Tables all;
+  return all;
+}
+
+// Eight edges at a time.
+constexpr std::size_t kLanes = 8;
+using Eight = std::array<double, kLanes>;
+constexpr std::size_t kTermsBelow = multipole_index(kP - 1, kP - 1, kP - 1) + 1;
+
+// The sums of (a x b) times the integral of R_n^m along an edge a -> b, n < kP.
+class EdgeSums {
+ public:
+  EdgeSums() : re_{}, im_{} {}
+
+  void add(const Vec3& a, const Vec3& along, double sign) {
+    const Vec3 v = sign * cross(a, along);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      from_[i][count_] = a[axis];
+      along_[i][count_] = along[axis];
+      normal_[i][count_] = v[axis];
+    }
+    if (++count_ == kLanes) flush();
+  }
+  void finish() {
+    if (count_ == 0) return;
+    for (; count_ < kLanes; ++count_) {
+      for (std::size_t i = 0; i < 3; ++i) from_[i][count_] = along_[i][count_] = normal_[i][count_] = 0.0;
+    }
+    flush();
+  }
+  // Of component `axis` of a x b, any m.
+  [[nodiscard]] Complex operator()(std::size_t axis, int n, int m) const {
+    if (std::abs(m) > n) return 0.0;
+    const std::size_t term = multipole_index(n, std::abs(m), kP - 1);
+    const Complex c(re_[axis][term], im_[axis][term]);
+    return m >= 0 ? c : m % 2 == 0 ? std::conj(c) : -std::conj(c);
+  }
+
+ private:
+  void flush();
+  void integrate();
+
+  std::array<Eight, 3> from_, along_, normal_;
+  std::size_t count_ = 0;
+  std::array<Eight, kTermsBelow> integral_re_, integral_im_;
+  std::array<std::array<double, kTermsBelow>, 3> re_, im_;
+};
+
+void EdgeSums::flush() {
+  integrate();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t term = 0; term < kTermsBelow; ++term) {
+      double re = 0, im = 0;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        re += normal_[axis][i] * integral_re_[term][i];
+        im += normal_[axis][i] * integral_im_[term][i];
+      }
+      re_[axis][term] += re;
+      im_[axis][term] += im;
+    }
+  }
+  count_ = 0;
+}
+
+void EdgeSums::integrate() {
+  static const GaussRule rule;
+  for (std::size_t term = 0; term < kTermsBelow; ++term) integral_re_[term].fill(0.0), integral_im_[term].fill(0.0);
+  for (std::size_t point = 0; point < kPoints; ++point) {
+    const double t = rule.at[point], weight = rule.weight[point];
+    Eight x, y, z, square, corner_re, corner_im;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      x[i] = from_[0][i] + t * along_[0][i];
+      y[i] = from_[1][i] + t * along_[1][i];
+      z[i] = from_[2][i] + t * along_[2][i];
+      square[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+      corner_re[i] = weight;
+      corner_im[i] = 0.0;
+    }
+    for (int m = 0; m < kP; ++m) {
+      Eight re = corner_re, im = corner_im, re_before{}, im_before{};
+      for (int n = m; n < kP; ++n) {
+        const std::size_t term = multipole_index(n, m, kP - 1);
+        const double step = 1.0 / ((n + 1) * (n + 1) - m * m), forward = (2 * n + 1) * step;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+          integral_re_[term][i] += re[i];
+          integral_im_[term][i] += im[i];
+          const double f = forward * z[i], g = step * square[i];
+          const double next_re = f * re[i] - g * re_before[i], next_im = f * im[i] - g * im_before[i];
+          re_before[i] = re[i];
+          im_before[i] = im[i];
+          re[i] = next_re;
+          im[i] = next_im;
+        }
+      }
+      const double factor = -1.0 / (2 * (m + 1));
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const double next = factor * (corner_re[i] * x[i] - corner_im[i] * y[i]);
+        corner_im[i] = factor * (corner_re[i] * y[i] + corner_im[i] * x[i]);
+        corner_re[i] = next;
+      }
+    }
+  }
+}
+
+double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+// R_n^m(s), m >= 0.
+std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
+  std::array<Complex, kMultipoleTerms> all;
+  const double square = dot(s, s);
+  Complex corner = 1.0;
+  for (int m = 0; m <= kP; ++m) {
+    Complex value = corner, before = 0.0;
+    for (int n = m; n <= kP; ++n) {
+      all[multipole_index(n, m)] = value;
+      const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
+      const Complex next = (2 * n + 1) * step * s.z * value - step * square * before;
+      before = value;
+      value = next;
+    }
+    corner *= Complex(s.x, s.y) * (-1.0 / (2 * (m + 1)));
+  }
+  return all;
+}
+
+// All m of degree n from -n to n, at [m + kP].
+using Degree = std::array<Complex, 2 * kP + 1>;
+template <class At>
+std::array<Degree, kP + 1> rows_of(const At& at) {
+  std::array<Degree, kP + 1> rows{};
+  for (int n = 0; n <= kP; ++n) {
+    for (int m = 0; m <= n; ++m) {
+      const Complex c = at(n, m);
+      Degree& row = rows[static_cast<std::size_t>(n)];
+      row[static_cast<std::size_t>(kP + m)] = c;
+      row[static_cast<std::size_t>(kP - m)] = m % 2 == 0 ? std::conj(c) : -std::conj(c);
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius) {
+  EdgeSums sums;
+  const double scale = 1 / unit;
+  double reach = 0;  // the sum of |a||b - a|
+  for (const SolidTriangle& t : triangles) {
+    const std::array<Vec3, 3> corners{scale * (t.a - centre), scale * (t.b - centre), scale * (t.c - centre)};
+    const std::array<Vec3, 3> sides{scale * (t.b - t.a), scale * (t.c - t.b), scale * (t.a - t.c)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      sums.add(corners[i], sides[i], t.orientation);
+      reach += length_of(corners[i]) * length_of(sides[i]);
+    }
+  }
+  sums.finish();
+  Multipole all;
+  double power = 1;  // of the radius
+  for (int n = 1; n <= kP; ++n) {
+    for (int m = 0; m <= n; ++m) {
+      const Complex gradient = sums(2, n - 1, m) + 0.5 * (sums(0, n - 1, m + 1) - sums(0, n - 1, m - 1)) -
+                               Complex(0, 0.5) * (sums(1, n - 1, m + 1) + sums(1, n - 1, m - 1));
+      const double factor = -1 / (kFourPi * (n + 1));
+      all.re[multipole_index(n, m)] = factor * gradient.real();
+      all.im[multipole_index(n, m)] = -factor * gradient.imag();
+    }
+    const auto i = static_cast<std::size_t>(n);
+    const double roundings = 2 * (20.0 * (n - 1) + 40 + 3 * static_cast<double>(triangles.size()));
+    all.error[i] = kUp * roundings * kUnitRoundoff * reach * power * tables().moment[i];
+    power *= radius;
+  }
+  return all;
+}
+
+void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio) {
+  const std::array<Complex, kMultipoleTerms> harmonics = regular_harmonics(shift);
+  const auto regular = rows_of([&](int n, int m) { return std::conj(harmonics[multipole_index(n, m)]); });
+  std::array<double, kP + 1> powers{};  // of the ratio, the exponent being n + 1
+  powers[0] = ratio;
+  for (std::size_t n = 1; n <= kP; ++n) powers[n] = powers[n - 1] * ratio;
+  const auto moments = rows_of([&](int n, int m) {
+    const std::size_t term = multipole_index(n, m);
+    return powers[static_cast<std::size_t>(n)] * Complex(part.re[term], part.im[term]);
+  });
+  for (int n = 1; n <= kP; ++n) {
+    for (int m = 0; m <= n; ++m) {
+      double re = 0, im = 0;
+      for (int k = 0; k < n; ++k) {
+        const int j = n - k;
+        const Degree &r = regular[static_cast<std::size_t>(k)], &s = moments[static_cast<std::size_t>(j)];
+        for (int l = std::max(-k, m - j); l <= std::min(k, m + j); ++l) {
+          const Complex a = r[static_cast<std::size_t>(kP + l)], b = s[static_cast<std::size_t>(kP + m - l)];
+          re += a.real() * b.real() - a.imag() * b.imag();
+          im += a.real() * b.imag() + a.imag() * b.real();
+        }
+      }
+      sum.re[multipole_index(n, m)] += re;
+      sum.im[multipole_index(n, m)] += im;
+    }
+  }
+  const MultipoleBounds bounds = bounds_of(part);
+  const double length = length_of(shift);
+  for (int n = 1; n <= kP; ++n) {
+    double error = 0, power = 1;  // of the length
+    for (int k = 0; k < n; ++k) {
+      const auto i = static_cast<std::size_t>(n), j = static_cast<std::size_t>(n - k), l = static_cast<std::size_t>(k);
+      const double roundings = 2 * kUnitRoundoff * (10 * k + 20 + n * n) * tables().shift[l];
+      error += power * tables().choose[i][l] * powers[j] * (part.error[j] + roundings * bounds.size[j]);
+      power *= length;
+    }
+    sum.error[static_cast<std::size_t>(n)] += kUp * error;
+  }
+}
+
+MultipoleBounds bounds_of(const Multipole& multipole) {
+  MultipoleBounds bounds;
+  const Tables& t = tables();
+  for (int n = 1; n <= kP; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    double square = 0, terms = 0;
+    for (int m = 0; m <= n; ++m) {
+      const std::size_t term = multipole_index(n, m);
+      const double twice = m == 0 ? 1 : 2;
+      const double norm = multipole.re[term] * multipole.re[term] + multipole.im[term] * multipole.im[term];
+      square += twice * norm * t.weight(n, m);
+      terms += twice * std::sqrt(norm) * t.double_factorial[i] * t.legendre[term];
+    }
+    bounds.size[i] = kUp * std::sqrt(square) + multipole.error[i];
+    bounds.evaluation[i] = kUp * 2 * kUnitRoundoff * (9 * n + 40) * terms + multipole.error[i];
+  }
+  return bounds;
+}
+
+// |grad of r^n P_n| <= n r^(n-1) (Bernstein and Szego), summed over n.
+double beyond_multipoles(double area, double radius, double rho) {
+  const double x = radius * rho;
+  if (!(x < 1)) return std::numeric_limits<double>::infinity();
+  double power = rho * rho;
+  for (int i = 0; i < kP; ++i) power *= x;
+  return kUp * area / kFourPi * power * (kP + 1 - kP * x) / ((1 - x) * (1 - x));
+}
+
+void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients) {
+  for (int m = 0; m <= order; ++m) {
+    for (int n = std::max(m, 1); n <= order; ++n) {
+      const double factor =
+          tables().double_factorial[static_cast<std::size_t>(n)] * (m == 0 ? 1 : 2) * (m % 2 == 0 ? 1 : -1);
+      const std::size_t from = multipole_index(n, m), to = multipole_index(n, m, order);
+      coefficients[2 * to] = factor * multipole.re[from];
+      coefficients[2 * to + 1] = factor * multipole.im[from];
+    }
+  }
+  coefficients[0] = coefficients[1] = 0.0;
+}
+
+}  // namespace raycone

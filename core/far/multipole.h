@@ -1,0 +1,63 @@
+// The winding number of triangles as seen from afar: a multipole expansion about a centre.
+//
+// With y = v - centre of a triangle's points and r = q - centre, both in some unit, w is the sum over n >= 1 and |m| <=
+// n of M_n^m I_n^m(r), where
+//   M_n^m = -(1 / 4 pi) times the integral of normal . grad of the conjugate of R_n^m(y) over the triangles,
+// and R and I are the regular and the irregular solid harmonics (of Condon and Shortley's sign, R_0^0 = 1, R_n^n =
+// (-(x + iy) / 2)^n / n!). It holds where r is longer than all y. Epton and Dembart 1995 have the formulas.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "core/boundary/solid_angle_kernel.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+inline constexpr int kMultipoleOrder = 16;  // n at most
+inline constexpr std::size_t kMultipoleTerms = std::size_t{(kMultipoleOrder + 1) * (kMultipoleOrder + 2) / 2};
+
+// Where (n, m), 0 <= m <= n <= order, is among the terms of an expansion up to `order`: m by m.
+[[nodiscard]] constexpr std::size_t multipole_index(int n, int m, int order = kMultipoleOrder) {
+  return static_cast<std::size_t>(m * (2 * order + 3 - m) / 2 + (n - m));
+}
+
+// M_n^m for m >= 0; M_n^-m = (-1)^m times the conjugate. No lengths: with `unit` for the unit of length.
+struct Multipole {
+  std::array<double, kMultipoleTerms> re{}, im{};
+  // Of degree n: no potential at a distance of 1 is off by more, as moments are rounded (docs/method.md, "Far field").
+  std::array<double, kMultipoleOrder + 1> error{};
+};
+
+// Of the triangles, each of which is at most `radius` units away from the centre at every point; radius <= 1. `unit` is
+// a power of two.
+[[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit,
+                                     double radius);
+
+// Adds an expansion that is about a centre that lies `shift` away, in units of the sum, and whose unit is `ratio` such
+// units, a power of two. |shift| <= 1.
+void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio);
+
+// What bounds the error of an expansion that is cut off behind degree p, at a distance of 1 / rho units: at most the
+// sum of evaluation[n] rho^(n+1) over n <= p and of size[n] rho^(n+1) over n > p, and of beyond_multipoles().
+struct MultipoleBounds {
+  std::array<double, kMultipoleOrder + 1> size{}, evaluation{};
+};
+[[nodiscard]] MultipoleBounds bounds_of(const Multipole& multipole);
+
+// Of all degrees above kMultipoleOrder, for triangles of `area` square units within `radius` units. Infinite where rho
+// * radius is 1 or more.
+[[nodiscard]] double beyond_multipoles(double area, double radius, double rho);
+
+// The coefficients of the terms b_n^m in the evaluation, for n <= order, in the order of multipole_index(n, m, order):
+// re, im, re, im ...
+//   w = Re of the sum over m of ((x + iy) / r^2)^m times the sum over n of coefficient b_n^m, divided by |r|,
+//   b_m^m = 1, b_(n+1)^m = z / r^2 b_n^m - multipole_step(n, m) / r^2 b_(n-1)^m.
+void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients);
+[[nodiscard]] constexpr double multipole_step(int n, int m) {
+  return static_cast<double>(n * n - m * m) / static_cast<double>((2 * n + 1) * (2 * n - 1));
+}
+
+}  // namespace raycone

@@ -1,0 +1,233 @@
+#include "core/far/source_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/data/triangle_mesh.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kOrders = kMultipoleOrder;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;     // more than what distances, radii and areas round, relative
+constexpr double kSmallest = 0x1p-150;  // radius: smaller nodes are never far, or their powers would underflow
+constexpr double kMostRatio = 0.97;     // of radius and distance, beyond which the series is of no use
+// 1 / (4 pi (1 - kMostRatio)^2), rounded up: times area over distance squared, what triangles contribute at most.
+constexpr double kNeglected = 100;
+
+Box box_of(const SolidTriangle& t) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::min({t.a[axis], t.b[axis], t.c[axis]});
+    box.upper[axis] = std::max({t.a[axis], t.b[axis], t.c[axis]});
+  }
+  return box;
+}
+
+void extend(Box& box, const Box& by) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::min(box.lower[axis], by.lower[axis]);
+    box.upper[axis] = std::max(box.upper[axis], by.upper[axis]);
+  }
+}
+
+double norm(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+double longest_side(const Box& box) {
+  const Vec3 size = box.upper - box.lower;
+  return std::max({size.x, size.y, size.z});
+}
+double middle(const Box& box, int axis) { return box.lower[axis] / 2 + box.upper[axis] / 2; }
+double area_of(const SolidTriangle& t) { return norm(cross(t.b - t.a, t.c - t.a)) / 2; }
+
+// The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
+// terms.
+int worthwhile_order(std::size_t triangles) {
+  const double terms = 20.0 * static_cast<double>(triangles) - 30;
+  int order = 0;
+  while (order < kMultipoleOrder && (order + 2) * (order + 3) / 2 <= terms) ++order;
+  return order;
+}
+
+// The largest rho, for each degree p at which the series is cut off, for which the error is at most `share`; 0: none.
+std::array<double, kOrders + 1> largest_ratios(const SourceNode& node, double share) {
+  constexpr double kFarthest = 0x1p-60;
+  constexpr int kSteps = 14;  // of bisection in the exponent
+  const double area = node.area / node.unit / node.unit, radius = node.radius / node.unit;
+  const auto error_at = [&](const std::array<double, kOrders + 1>& rho) {
+    std::array<double, kOrders + 1> sum{};
+    for (std::size_t n = kOrders; n >= 1; --n) {
+      for (std::size_t p = 1; p <= kOrders; ++p) {
+        sum[p] = rho[p] * (sum[p] + (n <= p ? node.bounds.evaluation[n] : node.bounds.size[n]));
+      }
+    }
+    for (std::size_t p = 1; p <= kOrders; ++p) sum[p] = rho[p] * sum[p] + beyond_multipoles(area, radius, rho[p]);
+    return sum;
+  };
+  std::array<double, kOrders + 1> low, high;
+  low.fill(kFarthest);
+  high.fill(kMostRatio / radius);
+  const auto at_low = error_at(low);
+  for (int step = 0; step < kSteps; ++step) {
+    std::array<double, kOrders + 1> between;
+    for (std::size_t p = 0; p <= kOrders; ++p) between[p] = std::sqrt(low[p] * high[p]);
+    const auto error = error_at(between);
+    for (std::size_t p = 1; p <= kOrders; ++p) (error[p] * (1 + kRounding) <= share ? low : high)[p] = between[p];
+  }
+  for (std::size_t p = 1; p <= kOrders; ++p) {
+    if (!(at_low[p] * (1 + kRounding) <= share)) low[p] = 0;
+  }
+  return low;
+}
+
+}  // namespace
+
+SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance)
+    : triangles_(std::move(triangles)), tolerance_(tolerance) {
+  if (triangles_.empty()) return;
+  build();
+  expand();
+}
+
+void SourceTree::build() {
+  nodes_.reserve(triangles_.size() / 2 + 1);
+  build_node(0, static_cast<std::uint32_t>(triangles_.size()));
+  std::size_t coefficients = 0;
+  for (SourceNode& node : nodes_) {
+    measure(node);
+    node.first_coefficient = coefficients;
+    if (node.order > 0) coefficients += 2 * (multipole_index(node.order, node.order, node.order) + 1);
+  }
+  coefficients_.resize(coefficients);
+}
+
+// Triangles that are large beside the node stay with it; the others are halved by their middles.
+std::uint32_t SourceTree::build_node(std::uint32_t begin, std::uint32_t end) {
+  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  nodes_[number].begin = begin;
+  nodes_[number].end = nodes_[number].own_end = end;
+  if (end - begin > kLeaf) {
+    Box box = box_of(triangles_[begin]);
+    for (std::uint32_t i = begin + 1; i < end; ++i) extend(box, box_of(triangles_[i]));
+    const double large = longest_side(box) / 2;
+    const auto first = triangles_.begin() + begin, last = triangles_.begin() + end;
+    const auto rest =
+        std::stable_partition(first, last, [&](const SolidTriangle& t) { return longest_side(box_of(t)) > large; });
+    const auto own_end = static_cast<std::uint32_t>(rest - triangles_.begin());
+    if (end - own_end > kLeaf / 2) {
+      nodes_[number].own_end = own_end;
+      Vec3 lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
+      for (auto it = rest; it != last; ++it) {
+        for (int axis = 0; axis < 3; ++axis) {
+          lower[axis] = std::min(lower[axis], middle(box_of(*it), axis));
+          upper[axis] = std::max(upper[axis], middle(box_of(*it), axis));
+        }
+      }
+      const Vec3 size = upper - lower;
+      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+      std::stable_sort(rest, last, [&](const SolidTriangle& s, const SolidTriangle& t) {
+        return middle(box_of(s), axis) < middle(box_of(t), axis);
+      });
+      const std::uint32_t half = own_end + (end - own_end) / 2;
+      build_node(own_end, half);
+      build_node(half, end);
+    }
+  }
+  nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
+  return number;
+}
+
+void SourceTree::measure(SourceNode& node) const {
+  Box box = box_of(triangles_[node.begin]);
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    extend(box, box_of(triangles_[i]));
+    node.area += area_of(triangles_[i]);
+  }
+  node.area *= 1 + kRounding;
+  node.centre = {middle(box, 0), middle(box, 1), middle(box, 2)};
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    const SolidTriangle& t = triangles_[i];
+    for (const Vec3* v : {&t.a, &t.b, &t.c}) node.radius = std::max(node.radius, norm(*v - node.centre));
+  }
+  node.radius *= 1 + kRounding;
+  node.square_of_distance.fill(kInfinity);
+  if (!(node.radius > kSmallest)) return;
+  node.unit = std::ldexp(1.0, std::ilogb(node.radius) + 1);
+  node.order = worthwhile_order(node.triangles());
+}
+
+// From the leaves up, in pieces that threads take; the nodes above the pieces at last.
+void SourceTree::expand() {
+  const std::size_t piece = std::max<std::size_t>(triangles_.size() / 64, 256);
+  std::vector<std::uint32_t> pieces;
+  for (std::uint32_t i = 0; i < nodes_.size();) {
+    const bool small = nodes_[i].triangles() <= piece || nodes_[i].next == i + 1;
+    if (small) pieces.push_back(i);
+    i = small ? nodes_[i].next : i + 1;
+  }
+  std::vector<std::optional<Multipole>> done(pieces.size());
+  const auto expand_node = [&](const auto& self, std::uint32_t number) -> Multipole {
+    const auto found = std::ranges::lower_bound(pieces, number);
+    if (found != pieces.end() && *found == number) {
+      if (const auto& known = done[static_cast<std::size_t>(found - pieces.begin())]) return *known;
+    }
+    SourceNode& node = nodes_[number];
+    Multipole multipole = expansion_of(node);
+    for (std::uint32_t child = number + 1; child < node.next; child = nodes_[child].next) {
+      const SourceNode& part = nodes_[child];
+      const Multipole expansion = self(self, child);
+      if (!(part.radius > kSmallest)) {
+        multipole.error[1] += kNeglected * (part.area / node.unit / node.unit);
+        continue;
+      }
+      add_shifted(multipole, expansion, (1 / node.unit) * (part.centre - node.centre), part.unit / node.unit);
+    }
+    finish(node, multipole);
+    return multipole;
+  };
+  parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) done[i] = expand_node(expand_node, pieces[i]);
+  });
+  expand_node(expand_node, 0);
+}
+
+// Of the node's own triangles.
+Multipole SourceTree::expansion_of(const SourceNode& node) const {
+  if (!(node.radius > kSmallest)) return {};
+  const std::span own = triangles().subspan(node.begin, node.own_end - node.begin);
+  return multipole_of(own, node.centre, node.unit, node.radius / node.unit);
+}
+
+void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
+  if (node.order == 0) return;
+  node.bounds = bounds_of(multipole);
+  const std::span all(coefficients_);
+  set_coefficients(multipole, node.order, all.subspan(node.first_coefficient));
+  const double share = tolerance_ * (node.area / area()) * (1 - 4 * kRounding);
+  const auto ratios = largest_ratios(node, share);
+  double least = kInfinity;
+  for (int p = 1; p <= node.order; ++p) {
+    const auto i = static_cast<std::size_t>(p);
+    if (ratios[i] > 0) least = std::min(least, node.unit / ratios[i] * (1 + kRounding));
+    node.square_of_distance[i] = least * least * (1 + kRounding);
+  }
+}
+
+double SourceTree::error(const SourceNode& node, int p, double distance) {
+  const double rho = node.unit / distance * (1 + kRounding);
+  double sum = beyond_multipoles(node.area / node.unit / node.unit, node.radius / node.unit, rho), power = rho;
+  for (int n = 1; n <= kMultipoleOrder; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    power *= rho;
+    sum += power * (n <= p ? node.bounds.evaluation[i] : node.bounds.size[i]);
+  }
+  return sum * (1 + kRounding);
+}
+
+}  // namespace raycone

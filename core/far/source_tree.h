@@ -1,0 +1,66 @@
+// Triangles as sources of a field: a tree whose nodes are evaluated as multipoles from afar.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/boundary/solid_angle_kernel.h"
+#include "core/data/vec3.h"
+#include "core/far/multipole.h"
+
+namespace raycone {
+
+// A node has the triangles [begin, end): first its own, up to own_end, then those of its children. Nodes are in
+// depth-first order: the first child is the next node, and `next` is the first one that is not below this one.
+struct SourceNode {
+  Vec3 centre;
+  double unit = 1;    // of length, for its multipole; a power of two, radius <= unit <= 2 radius
+  double radius = 0;  // no point of its triangles is farther from the centre
+  double area = 0;
+  std::uint32_t begin = 0, own_end = 0, end = 0, next = 0;
+  int order = 0;  // of its expansion; 0: there is none
+  std::size_t first_coefficient = 0;
+  MultipoleBounds bounds;
+  // From so far on, squared, the expansion cut off behind degree p errs by at most the node's share of the tolerance,
+  // in proportion to area, rounding included. Never increases with p; infinite where no distance will do, [0] always.
+  std::array<double, kMultipoleOrder + 1> square_of_distance{};
+
+  [[nodiscard]] std::size_t triangles() const { return end - begin; }
+};
+
+// Thread-safe once made.
+class SourceTree {
+ public:
+  static constexpr std::uint32_t kLeaf = 8;  // triangles
+
+  // Triangles of a mesh in scale: coordinates of at most 1. Nodes that are accepted as square_of_distance says err by
+  // at most `tolerance` turns (positive) together, whichever they are. Deterministic. About 3 microseconds per
+  // triangle.
+  SourceTree(std::vector<SolidTriangle> triangles, double tolerance);
+
+  [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any
+  [[nodiscard]] std::span<const SolidTriangle> triangles() const { return triangles_; }
+  [[nodiscard]] std::span<const double> coefficients() const { return coefficients_; }  // set_coefficients()
+  [[nodiscard]] double area() const { return nodes_.empty() ? 0.0 : nodes_.front().area; }
+
+  // How far the expansion of `node` cut off behind degree p is off at most at a distance from its centre.
+  [[nodiscard]] static double error(const SourceNode& node, int p, double distance);
+
+ private:
+  void build();
+  std::uint32_t build_node(std::uint32_t begin, std::uint32_t end);
+  void measure(SourceNode& node) const;
+  void expand();
+  [[nodiscard]] Multipole expansion_of(const SourceNode& node) const;
+  void finish(SourceNode& node, const Multipole& multipole);
+
+  std::vector<SolidTriangle> triangles_;
+  double tolerance_;
+  std::vector<SourceNode> nodes_;
+  std::vector<double> coefficients_;
+};
+
+}  // namespace raycone

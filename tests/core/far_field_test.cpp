@@ -1,0 +1,212 @@
+#include "core/far/far_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/boundary/caps.h"
+#include "core/evaluation/winding_number.h"
+#include "core/mesh/weld.h"
+#include "tests/support/differences.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+constexpr double kTolerances[] = {1e-4, 1e-7, 1e-10};
+
+WindingNumberEvaluator evaluator_of(const TriangleMesh& mesh, double tolerance, SimdLevel level = SimdLevel::kBest) {
+  return WindingNumberEvaluator(mesh, RayEngine::kScan, level, Summation::kFarField, nullptr, {tolerance, 1e6});
+}
+
+// A soup: triangles of a sphere, each moved a little.
+TriangleMesh loose_sphere(test::Random& random, int rings) {
+  const TriangleMesh sphere = test::sphere(rings);
+  TriangleMesh soup;
+  for (const Triangle& t : sphere.triangles) {
+    const Vec3 shift = test::uniform_point(random, {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}});
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : t) soup.vertices.push_back(sphere.vertices[v] + shift);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+// A sphere with many holes, large and small.
+TriangleMesh sphere_with_holes(test::Random& random, int rings) {
+  TriangleMesh mesh = test::sphere(rings);
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const Vec3& v = mesh.vertices[t[0]];
+    return v.z > 0.8 || test::uniform(random, 0, 1) < 0.05;
+  });
+  return mesh;
+}
+
+std::vector<TriangleMesh> open_meshes() {
+  test::Random random(1);
+  return {weld(loose_sphere(random, 16), {}), weld(sphere_with_holes(random, 40), {})};
+}
+
+std::vector<Vec3> some_points(std::size_t count) {
+  test::Random random(2);
+  std::vector<Vec3> points;
+  while (points.size() < count) points.push_back(test::uniform_point(random, {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}));
+  return points;
+}
+
+std::vector<double> values_of(const WindingNumberEvaluator& evaluator, std::span<const Vec3> points) {
+  std::vector<double> values(points.size());
+  evaluator.evaluate(points, values);
+  return values;
+}
+
+TEST(FarField, KeepsTheTolerance) {
+  const std::vector<Vec3> points = some_points(100);
+  for (const TriangleMesh& mesh : open_meshes()) {
+    for (const double tolerance : kTolerances) {
+      const WindingNumberEvaluator evaluator = evaluator_of(mesh, tolerance);
+      const std::vector<double> values = values_of(evaluator, points);
+      EXPECT_GT(evaluator.terms().far, points.size());  // or this would be about nothing
+      double largest = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        largest = std::max(largest, std::abs(values[i] - test::direct_winding_number(mesh, points[i])));
+      }
+      EXPECT_LE(largest, tolerance);
+      EXPECT_GT(largest, 1e-15);
+      EXPECT_LE(tolerance, evaluator.accuracy());
+    }
+  }
+}
+
+// Lattices, points, slabs and SIMD levels.
+TEST(FarField, GivesAQueryTheSameBitsAnywhere) {
+  Lattice lattice;
+  lattice.spacing = {0.25, 0.25, 0.25};
+  lattice.index_min = {-5, -5, -6};
+  lattice.counts = {11, 10, 13};
+  std::vector<Vec3> points;
+  for (std::int64_t k = -6; k < 7; ++k) {
+    for (std::int64_t j = -5; j < 5; ++j) {
+      for (std::int64_t i = -5; i < 6; ++i)
+        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
+    }
+  }
+  for (const TriangleMesh& mesh : open_meshes()) {
+    const std::vector<double> expected = values_of(evaluator_of(mesh, 1e-7), points);
+    for (const SimdLevel level : {SimdLevel::kBest, SimdLevel::kSse4, SimdLevel::kAvx2}) {
+      if (!is_available(level) && level != SimdLevel::kBest) continue;
+      const WindingNumberEvaluator evaluator = evaluator_of(mesh, 1e-7, level);
+      std::vector<double> values(points.size());
+      evaluator.evaluate(lattice, whole(lattice), values);
+      EXPECT_EQ(values, expected);
+      const LatticeBlock slab{{-3, -5, 2}, {7, 10, 1}};
+      std::vector<double> part(static_cast<std::size_t>(slab.size()));
+      evaluator.evaluate(lattice, slab, part);
+      for (std::size_t n = 0; n < part.size(); ++n) EXPECT_EQ(part[n], expected[(8 * 10 + n / 7) * 11 + 2 + n % 7]);
+    }
+  }
+}
+
+TEST(FarField, BoundsHoldForItsValues) {
+  const std::vector<Vec3> points = some_points(20);
+  for (const TriangleMesh& mesh : open_meshes()) {
+    const WindingNumberEvaluator evaluator = evaluator_of(mesh, 1e-4);
+    std::vector<double> values(points.size()), bounds(points.size());
+    std::vector<std::int64_t> crossings(points.size()), degenerate(points.size());
+    std::vector<std::uint8_t> on_surface(points.size());
+    const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
+    evaluator.evaluate(points, values, nullptr, &diagnostics);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double error = std::abs(values[i] - test::direct_winding_number(mesh, points[i]));
+      EXPECT_LE(error, bounds[i] + 1e-14);  // the oracle's
+      EXPECT_LE(bounds[i], 1e-4);
+    }
+  }
+}
+
+// On either side of a half-integer as without a far field, however rough it is.
+TEST(FarField, DoesNotMoveValuesAcrossHalfIntegers) {
+  test::Random random(3);
+  for (const TriangleMesh& mesh : open_meshes()) {
+    const WindingNumberEvaluator rough = evaluator_of(mesh, 1e-2), direct = evaluator_of(mesh, 0);
+    // Points next to the isosurface, by bisection.
+    std::vector<Vec3> points;
+    for (int n = 0; n < 40; ++n) {
+      Vec3 in{0, 0, 0}, out = test::uniform_point(random, {{-3, -3, 2}, {3, 3, 3}});
+      for (int step = 0; step < 40; ++step) {
+        const Vec3 middle = 0.5 * (in + out);
+        (values_of(direct, {&middle, 1})[0] >= 0.5 ? in : out) = middle;
+        points.push_back(middle);
+      }
+    }
+    const std::vector<double> expected = values_of(direct, points), values = values_of(rough, points);
+    EXPECT_GT(test::largest_difference(expected, values), 1e-9);
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(values[i] >= 0.5, expected[i] >= 0.5);
+  }
+}
+
+// w is 1/2 in the plane of a flat opening: no far field is taken there, or all samples would tie with its caps.
+TEST(FarField, HalfIntegersOfAWholeRegionStay) {
+  TriangleMesh mesh = test::sphere(40);
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const auto z = [&](std::size_t i) { return mesh.vertices[t[i]].z; };
+    return std::min({z(0), z(1), z(2)}) > 0.1;
+  });
+  const double rim = [&] {
+    double top = -1;
+    for (const Triangle& t : mesh.triangles)
+      for (const std::uint32_t v : t) top = std::max(top, mesh.vertices[v].z);
+    return top;
+  }();
+  std::vector<Vec3> points;
+  for (int i = -20; i < 20; ++i) points.push_back({0.04 * i, 0.01 * i, rim});
+  EXPECT_EQ(values_of(evaluator_of(mesh, 1e-4), points), values_of(evaluator_of(mesh, 0), points));
+}
+
+TEST(FarField, ATinyToleranceIsNone) {
+  const std::vector<Vec3> points = some_points(50);
+  const TriangleMesh mesh = open_meshes()[0];
+  const WindingNumberEvaluator tiny = evaluator_of(mesh, 9e-13);
+  EXPECT_EQ(values_of(tiny, points), values_of(evaluator_of(mesh, 0), points));
+  EXPECT_EQ(tiny.terms().far, 0U);
+}
+
+TEST(FarField, IsTakenWhereItPays) {
+  constexpr auto kCaps = FarSources::kCaps, kTriangles = FarSources::kTriangles;
+  EXPECT_FALSE(far_field_pays(kCaps, 100000, 500, 1e9, 1e-10));    // few edges
+  EXPECT_FALSE(far_field_pays(kCaps, 100000, 20000, 1e3, 1e-10));  // few samples
+  EXPECT_TRUE(far_field_pays(kCaps, 100000, 20000, 1e6, 1e-10));
+  EXPECT_TRUE(far_field_pays(kCaps, 100000, 3000, 1e6, 1e-4));
+  EXPECT_TRUE(far_field_pays(kTriangles, 100000, 300000, 1e6, 1e-10));
+  EXPECT_FALSE(far_field_pays(kTriangles, 5000, 15000, 1e6, 1e-10));
+}
+
+// A narrow ribbon that winds up costs its own area, not that of the cylinder it winds about; a round hole is halved.
+TEST(FarField, CapsAreSmall) {
+  TriangleMesh ribbon;
+  constexpr std::uint32_t kSteps = 500;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    const double angle = 0.1 * i;
+    for (const double z : {0.0, 0.001}) ribbon.vertices.push_back({std::cos(angle), std::sin(angle), 0.002 * i + z});
+    if (i == 0) continue;
+    const std::uint32_t n = 2 * i;
+    ribbon.triangles.push_back({n - 2, n, n - 1});
+    ribbon.triangles.push_back({n - 1, n, n + 1});
+  }
+  const auto area_of = [](const TriangleMesh& mesh) {
+    double area = 0;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 n = cross(mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]]);
+      area += std::sqrt(dot(n, n)) / 2;
+    }
+    return area;
+  };
+  const TriangleMesh caps = halved_caps(Boundary(weld(ribbon, {})));
+  EXPECT_EQ(caps.triangles.size(), 2 * kSteps);
+  EXPECT_LT(area_of(caps), 1.01 * area_of(ribbon));
+}
+
+}  // namespace
+}  // namespace raycone

@@ -1,0 +1,208 @@
+#include "core/far/source_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/boundary/solid_angles.h"
+#include "core/far/far_kernel.h"
+#include "core/machine/floating_point.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+// Small triangles all over the unit cube.
+TriangleMesh small_triangles(test::Random& random, int count, double size) {
+  TriangleMesh mesh = test::soup(random, count);
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
+    for (std::size_t k = 1; k < 3; ++k)
+      mesh.vertices[i + k] = mesh.vertices[i] + size * (mesh.vertices[i + k] - mesh.vertices[i]);
+  }
+  return mesh;
+}
+
+TriangleMesh mesh_of(std::span<const SolidTriangle> triangles) {
+  TriangleMesh mesh;
+  for (const SolidTriangle& t : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {t.a, t.b, t.c});
+    mesh.triangles.push_back(t.orientation > 0 ? Triangle{first, first + 1, first + 2}
+                                               : Triangle{first, first + 2, first + 1});
+  }
+  return mesh;
+}
+
+Vec3 direction(test::Random& random) {
+  for (;;) {
+    const Vec3 v = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+    const double length = std::sqrt(dot(v, v));
+    if (length > 0.1 && length < 1) return (1 / length) * v;
+  }
+}
+
+std::span<const SolidTriangle> triangles_of(const SourceTree& tree, const SourceNode& node) {
+  return tree.triangles().subspan(node.begin, node.triangles());
+}
+
+// The oracle is good to 1e-14.
+constexpr double kOracle = 1e-14;
+
+TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
+  const DefaultFloatingPoint guard;
+  test::Random random(1);
+  const SourceTree tree(solid_faces(small_triangles(random, 200, 0.05)).triangles, 1e-10);
+  const FarKernel kernel = far_kernel(SimdLevel::kBest);
+  double closest = 0;  // an error comes to its bound
+  for (std::uint32_t number = 0; number < tree.nodes().size(); ++number) {
+    const SourceNode& node = tree.nodes()[number];
+    const TriangleMesh mesh = mesh_of(triangles_of(tree, node));
+    SampleTile samples;
+    samples.clear();
+    std::vector<double> distances;
+    for (const double ratio : {1.1, 1.5, 2.0, 4.0, 8.0, 1e3, 1e9}) {
+      distances.push_back(ratio * node.radius);
+      samples.add(node.centre + distances.back() * direction(random));
+    }
+    samples.fill_up();
+    for (int p = 1; p <= node.order; ++p) {
+      Tile values{};
+      kernel.add_multipole(tree, number, p, samples, values);
+      for (std::size_t i = 0; i < samples.count; ++i) {
+        const double error = std::abs(values[i] - test::direct_winding_number(mesh, samples.query(i)));
+        const double bound = SourceTree::error(node, p, distances[i] * (1 - 1e-12));
+        EXPECT_LE(error, bound + kOracle) << number << ' ' << p << ' ' << distances[i];
+        if (error > 1e-10) closest = std::max(closest, error / bound);
+      }
+    }
+  }
+  EXPECT_GT(closest, 0.1);  // or the bounds would be of little use
+}
+
+// A small triangle at (1, 0, 0) from the centre that faces it: the potential of degree n is n P_n(x / r) A / 4 pi r^(n
+// + 1), and nowhere larger than on the x axis.
+TEST(SourceTree, BoundsOfADipoleAreThoseOfItsPotential) {
+  const double size = 1e-4;  // so much, relative, is what it differs from a dipole by
+  const SolidTriangle t = solid_faces({{{1, 0, 0}, {1, size, 0}, {1, 0, size}}, {{0, 1, 2}}}).triangles.front();
+  const Multipole multipole = multipole_of({&t, 1}, {}, 1.0, 1.0);
+  const MultipoleBounds bounds = bounds_of(multipole);
+  const double area = size * size / 2;
+  double sum = 0;
+  for (int n = kMultipoleOrder; n >= 1; --n) {
+    const double expected = n * area / (4 * std::numbers::pi);
+    EXPECT_NEAR(bounds.size[static_cast<std::size_t>(n)] / expected, 1, 20 * n * size) << n;
+    EXPECT_LT(bounds.evaluation[static_cast<std::size_t>(n)], 1e-11);  // some u times what recurrences may grow by
+  }
+  const double rho = 0.5;
+  for (int n = kMultipoleOrder + 1; n < 200; ++n) sum += n * area / (4 * std::numbers::pi) * std::pow(rho, n + 1);
+  EXPECT_NEAR(beyond_multipoles(area, 1, rho) / sum, 1, 1e-9);  // a sum of 200 roundings
+}
+
+TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
+  test::Random random(2);
+  const auto all = solid_faces(small_triangles(random, 12, 0.2)).triangles;
+  const Vec3 from{0.5, 0.4, 0.6}, to{0.25, 0.5, 0.5};
+  const Multipole there = multipole_of(all, to, 4.0, 0.6);
+  Multipole shifted;
+  add_shifted(shifted, multipole_of(all, from, 2.0, 0.9), 0.25 * (from - to), 0.5);
+  for (int n = 1; n <= kMultipoleOrder; ++n) {
+    Multipole difference;
+    for (int m = 0; m <= n; ++m) {
+      const std::size_t term = multipole_index(n, m);
+      difference.re[term] = there.re[term] - shifted.re[term];
+      difference.im[term] = there.im[term] - shifted.im[term];
+    }
+    const auto i = static_cast<std::size_t>(n);
+    const double error = bounds_of(difference).size[i];
+    EXPECT_LE(error, there.error[i] + shifted.error[i]) << n;
+    EXPECT_LT(shifted.error[i], 1e-13) << n;  // some u times what recurrences may grow by
+  }
+}
+
+TEST(SourceTree, HoldsEachTriangleInEveryNodeAbove) {
+  test::Random random(3);
+  TriangleMesh mesh = test::joined(small_triangles(random, 300, 0.02), test::soup(random, 20));
+  const SourceTree tree(solid_faces(mesh).triangles, 1e-10);
+  ASSERT_EQ(tree.nodes().front().next, tree.nodes().size());
+  for (std::uint32_t number = 0; number < tree.nodes().size(); ++number) {
+    const SourceNode& node = tree.nodes()[number];
+    for (const SolidTriangle& t : triangles_of(tree, node)) {
+      for (const Vec3& v : {t.a, t.b, t.c}) {
+        const Vec3 y = v - node.centre;
+        EXPECT_LE(std::sqrt(dot(y, y)), node.radius);
+      }
+    }
+    std::uint32_t covered = node.own_end;
+    for (std::uint32_t child = number + 1; child < node.next; child = tree.nodes()[child].next) {
+      EXPECT_EQ(tree.nodes()[child].begin, covered);
+      covered = tree.nodes()[child].end;
+    }
+    EXPECT_EQ(covered, node.end);
+  }
+}
+
+// Near and far together keep the tolerance, at points as near to triangles as they come.
+TEST(SourceTree, SumsKeepTheTolerance) {
+  const DefaultFloatingPoint guard;
+  test::Random random(4);
+  const TriangleMesh mesh = small_triangles(random, 3000, 0.02);
+  for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
+    const SourceTree tree(solid_faces(mesh).triangles, tolerance);
+    FarTile result;
+    SampleTile samples;
+    samples.clear();
+    while (samples.count < 51) samples.add(test::uniform_point(random, {{-0.2, -0.2, -0.2}, {1.2, 1.2, 1.2}}));
+    samples.fill_up();
+    far_kernel(SimdLevel::kBest).sum(tree, samples, result);
+    double largest = 0;
+    for (std::size_t i = 0; i < samples.count; ++i) {
+      const double w = static_cast<double>(result.near.turns(i)) + result.near.argument[i] + result.far[i];
+      largest = std::max(largest, std::abs(w - test::direct_winding_number(mesh, samples.query(i))));
+    }
+    EXPECT_LE(largest, tolerance);
+    EXPECT_GT(largest, tolerance * 1e-6);
+    // Most of the 51 * 3000 pairs are far.
+    EXPECT_LT(result.near_terms, 51U * 1500U);
+    EXPECT_GT(result.far_terms, 51U * 10U);
+  }
+}
+
+TEST(SourceTree, SumsAreTheSameAtEverySimdLevelAndInAnyTile) {
+  const DefaultFloatingPoint guard;
+  test::Random random(5);
+  const SourceTree tree(solid_faces(small_triangles(random, 1000, 0.05)).triangles, 1e-10);
+  SampleTile samples;
+  samples.clear();
+  while (samples.count < kTile) samples.add(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
+  const auto values_of = [&](const SampleTile& some, SimdLevel level) {
+    SampleTile tile = some;
+    FarTile result;
+    tile.fill_up();
+    far_kernel(level).sum(tree, tile, result);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < tile.count; ++i) {
+      values.insert(values.end(), {static_cast<double>(result.near.turns(i)), result.near.argument[i], result.far[i]});
+    }
+    return std::pair(values, std::pair(result.near_terms, result.far_terms));
+  };
+  const auto expected = values_of(samples, SimdLevel::kBest);
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    if (!is_available(level)) continue;
+    EXPECT_EQ(values_of(samples, level), expected);
+  }
+  std::vector<double> alone;
+  for (std::size_t i = 0; i < kTile; ++i) {
+    SampleTile one;
+    one.clear();
+    one.add(samples.query(i));
+    const auto values = values_of(one, SimdLevel::kBest).first;
+    alone.insert(alone.end(), values.begin(), values.end());
+  }
+  EXPECT_EQ(alone, expected.first);
+}
+
+}  // namespace
+}  // namespace raycone

@@ -376,4 +376,10 @@ MUTANTS = [
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),
+
+    # --- Blocks of lattices ---
+    Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
+        ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
+    Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
+        ("core/evaluation/lattice_far.cpp", "gap_to_half_integer(w) > doubt", "gap_to_half_integer(w) >= 0.0")]),
 ]

@@ -72,25 +72,41 @@ struct TriangleFactors {
   hn::Mask<Doubles> trusted;
 };
 
+// a, b, c: norms of the corners; ab, bc, ca: their products.
+struct CornerLanes {
+  Lanes a, b, c, ab, bc, ca;
+};
+
+// im: n . a; terms: the sum of the magnitudes of its three terms.
+HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const CornerLanes& p, Lanes im, Lanes terms) {
+  const Lanes all = hn::Mul(hn::Mul(p.a, p.b), p.c);
+  const Lanes re = hn::Add(hn::Add(all, hn::Mul(p.ab, p.c)), hn::Add(hn::Mul(p.bc, p.a), hn::Mul(p.ca, p.b)));
+  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kPlaneSideFilter), terms), hn::Set(d, kPlaneSideUnderflow));
+  const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
+  const Lanes near = hn::Max(hn::Mul(hn::Set(d, kNearTriangle), all), hn::Mul(hn::Set(d, kNearCorner), terms));
+  // Which side of the triangle's plane the query is on matters only where the argument may be near +-pi.
+  const auto sided = hn::Or(hn::Gt(hn::Abs(im), doubt), hn::Gt(re, hn::Zero(d)));
+  const auto trusted = hn::And(sided, hn::Gt(magnitude, hn::Max(near, hn::Set(d, kSmallestFactor))));
+  return {re, hn::Mul(im, hn::Set(d, t.orientation)), trusted};  // not where anything is NaN
+}
+
 HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const ProjectedTriangle<Lanes>& p, Lanes x) {
   const Lanes ax = hn::Sub(hn::Set(d, t.a.x), x), bx = hn::Sub(hn::Set(d, t.b.x), x);
   const Lanes cx = hn::Sub(hn::Set(d, t.c.x), x);
   const auto norm = [](Lanes v, Lanes square) { return hn::Sqrt(hn::Add(hn::Mul(v, v), square)); };
-  const Lanes a = norm(ax, p.aa), b = norm(bx, p.bb), c = norm(cx, p.cc);
-  const auto product = [](Lanes v, Lanes w, Lanes rest, Lanes norm_of_third) {
-    return hn::Mul(hn::Add(hn::Mul(v, w), rest), norm_of_third);
-  };
-  const Lanes all = hn::Mul(hn::Mul(a, b), c);
-  const Lanes re =
-      hn::Add(hn::Add(all, product(ax, bx, p.ab, c)), hn::Add(product(bx, cx, p.bc, a), product(cx, ax, p.ca, b)));
+  const auto product = [](Lanes v, Lanes w, Lanes rest) { return hn::Add(hn::Mul(v, w), rest); };
   const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), ax);
-  const Lanes im = hn::Add(nx, p.side), terms = hn::Add(hn::Abs(nx), p.terms);
-  const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kPlaneSideFilter), terms), hn::Set(d, kPlaneSideUnderflow));
-  const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
-  const Lanes near = hn::Max(hn::Mul(hn::Set(d, kNearTriangle), all), hn::Mul(hn::Set(d, kNearCorner), terms));
-  const auto trusted =
-      hn::And(hn::Gt(hn::Abs(im), doubt), hn::Gt(magnitude, hn::Max(near, hn::Set(d, kSmallestFactor))));
-  return {re, hn::Mul(im, hn::Set(d, t.orientation)), trusted};  // not where anything is NaN
+  return factors_of(t,
+                    {norm(ax, p.aa), norm(bx, p.bb), norm(cx, p.cc), product(ax, bx, p.ab), product(bx, cx, p.bc),
+                     product(cx, ax, p.ca)},
+                    hn::Add(nx, p.side), hn::Add(hn::Abs(nx), p.terms));
+}
+
+// Of triangle n of the rays, at the samples from i on.
+template <class Rays>
+HWY_INLINE TriangleFactors factors_at(const Rays& rays, const SolidTriangle& t, std::size_t n,
+                                      const SampleTile& samples, std::size_t i) {
+  return factors_of(t, rays.projected(n, i), hn::Load(d, &samples.x[i]));
 }
 
 // Multiplies by the triangle's factor as its crossing of the ray and the factors of its three edges give it, with every
@@ -110,7 +126,7 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
                                      const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                      std::uint64_t trusted) {
   for (std::size_t n = begin; n < end; ++n) {
-    const TriangleFactors factors = factors_of(triangles[n], rays.projected(n, i), hn::Load(d, &samples.x[i]));
+    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
     const Lanes magnitude = hn::Add(hn::Abs(factors.re), hn::Abs(factors.im));
     const std::uint64_t plain = bits_of(hn::And(factors.trusted, hn::Lt(magnitude, hn::Set(d, kLargestFactor))));
     alignas(64) std::array<double, 8> re, im;
@@ -134,12 +150,11 @@ template <class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, const Rays& rays,
                                const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                hn::Mask<Doubles> active) {
-  const Lanes x = hn::Load(d, &samples.x[i]);
   const ProductLanes before = load(products, i);
   ProductLanes z = before;
   auto trusted = active;
   for (std::size_t n = begin; n < end; ++n) {
-    const TriangleFactors factors = factors_of(triangles[n], rays.projected(n, i), x);
+    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
     trusted = hn::And(trusted, factors.trusted);
     z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
   }

@@ -9,6 +9,7 @@
 #include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
+#include "core/evaluation/lattice_far.h"
 #include "core/evaluation/lattice_tile.h"
 #include "core/evaluation/rule_blocks.h"
 #include "core/machine/threads.h"
@@ -64,6 +65,12 @@ void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t b
     const Vec3 query = rows.row(n / samples).query(n % samples);
     diagnostics.error_bound[n] = mesh.error_bound(query, values[n], diagnostics.crossings[n]);
   }
+}
+
+void bound_all_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::span<const double> values,
+                      const Diagnostics& diagnostics) {
+  parallel_for(rows.size(), 1,
+               [&](std::size_t begin, std::size_t end) { bound_errors(mesh, rows, begin, end, values, diagnostics); });
 }
 
 // In bricks of neighbours: nodes that are far from one sample are mostly far from all.
@@ -148,13 +155,15 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
                     const Rule* rule) {
   const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
-  const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+  const bool scaled = meshes.scaled().can_take(Vec3{first(0), first(1), first(2)});
+  const ScaledMesh& mesh = meshes.of_query(scaled);
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
   // Caps and their tree take about as long as so many edges at samples. Soups have hardly a block that is decided.
   constexpr double kWorthCaps = 0x1p20;
   const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
   const bool by_rule = rule && !mesh.is_closed() && mesh.counts_crossings() && work > kWorthCaps;
   const bool counts = mesh.counts_crossings() || diagnostics;
+  const std::optional<LatticeAxes> axes = rule || !scaled ? std::nullopt : axes_for_blocks(mesh, lattice);
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   if (mesh.options().ray_engine == RayEngine::kScan) {
     scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
@@ -163,8 +172,15 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
     cast_rays(mesh, rows, sums);
   }
   sums.arrange();
-  const bool in_bricks = !by_rule && mesh.has_far_field();
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule || in_bricks);
+  const bool in_bricks = !by_rule && !axes && mesh.has_far_field();
+  const std::uint64_t on_surface =
+      finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule || axes || in_bricks);
+  if (axes) {
+    const std::vector<double> cap_crossings =
+        mesh.counts_crossings() ? crossings_of(mesh.blocks().caps, rows) : std::vector<double>();
+    evaluate_blocks(mesh, *axes, lattice, block, values, cap_crossings, done);
+    if (diagnostics) bound_all_errors(mesh, rows, values, *diagnostics);
+  }
   if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
   if (by_rule) apply_rule(mesh, rows, *rule, values, crossings_of(mesh.changes().caps.mesh, rows), done);
   return {sums.ties(), on_surface};

@@ -92,6 +92,25 @@ const Changes& ScaledMesh::changes() const {
   return *changes_;
 }
 
+const Blocks& ScaledMesh::blocks() const {
+  std::call_once(blocks_built_, [this] {
+    TriangleMesh caps = counts_crossings() ? halved_caps(boundary_) : TriangleMesh();
+    SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
+    const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
+    blocks_.emplace(Blocks{std::move(caps), !faces.has_repeated_faces,
+                           LatticeBlocks(std::move(faces.triangles), tolerance, options_.level)});
+  });
+  return *blocks_;
+}
+
+double ScaledMesh::doubt_of_blocks() const {
+  if (!has_blocks()) return 0.0;
+  // A loop of n edges has n - 2 caps.
+  const double triangles =
+      counts_crossings() ? boundary_.total_multiplicity() : static_cast<double>(mesh_.triangles.size());
+  return std::min(LatticeBlocks::doubt(options_.accuracy.tolerance, triangles), Boundary::kMostDoubt);
+}
+
 void ScaledMesh::prepare_points() const {
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();

@@ -26,6 +26,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
 #include "core/far/far_field.h"
+#include "core/far/lattice_blocks.h"
 
 namespace raycone {
 
@@ -46,6 +47,13 @@ struct Changes {
   ChangeBound bound;
 
   explicit Changes(Caps all) : caps(std::move(all)), bound(caps) {}
+};
+
+// What blocks of lattices are evaluated with.
+struct Blocks {
+  TriangleMesh caps;   // of which crossings are taken off those of the mesh; none where values depend on none
+  bool are_sound;      // no triangle is there so often that its error, multiplied, would show
+  LatticeBlocks sums;  // of the caps, or of the mesh
 };
 
 class ScaledMesh {
@@ -77,6 +85,8 @@ class ScaledMesh {
   [[nodiscard]] const ProjectedGrid& grid() const;
   [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
   [[nodiscard]] const Changes& changes() const;
+  // Only for an open mesh and a tolerance.
+  [[nodiscard]] const Blocks& blocks() const;
   void prepare_points() const;
 
   // What follows takes queries in the scale.
@@ -90,7 +100,15 @@ class ScaledMesh {
   [[nodiscard]] bool has_far_field() const { return far_ != nullptr; }
 
   // No value is off by more.
-  [[nodiscard]] double doubt() const { return far_ ? far_->doubt() : term_ ? term_->doubt() : 0.0; }
+  [[nodiscard]] double doubt() const {
+    return term_ ? std::max(far_ ? far_->doubt() : term_->doubt(), doubt_of_blocks()) : 0.0;
+  }
+
+  // Whether blocks may be evaluated. Below this tolerance fits would round too much.
+  [[nodiscard]] bool has_blocks() const { return term_ && options_.accuracy.tolerance >= 1e-11; }
+
+  // No value from blocks() is off by more.
+  [[nodiscard]] double doubt_of_blocks() const;
 
   // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
   // thresholds, is on the right side of it or is it, whatever the tolerance. At least one sample.
@@ -121,11 +139,12 @@ class ScaledMesh {
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   std::unique_ptr<const FarField> far_;       // none where the direct sum is as good
   mutable std::atomic<std::uint64_t> direct_terms_ = 0;
-  mutable std::once_flag rays_built_, grid_built_, changes_built_;
+  mutable std::once_flag rays_built_, grid_built_, changes_built_, blocks_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
   mutable std::optional<Changes> changes_;
+  mutable std::optional<Blocks> blocks_;
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };
 

@@ -413,4 +413,10 @@ MUTANTS = [
         ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
+
+    # --- Blocks of lattices ---
+    Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
+        ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
+    Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
+        ("core/evaluation/lattice_far.cpp", "gap_to_half_integer(w) > doubt", "gap_to_half_integer(w) >= 0.0")]),
 ]

@@ -1,0 +1,86 @@
+#include "core/evaluation/lattice_far.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "core/evaluation/lattice_tile.h"
+
+namespace raycone {
+namespace {
+
+// Times at a sample, in units of that of one of the blocks' triangles: of an exterior edge, and of a triangle among
+// all.
+constexpr double kEdge = 0.4;
+constexpr double kTriangle = 0.75;
+// Of what is made once: the fit; of each triangle, its part of the tree.
+constexpr double kFit = 4e6;
+constexpr double kInTree = 1e3;
+
+double direct_cost(const ScaledMesh& mesh) {
+  return mesh.counts_crossings() ? kEdge * static_cast<double>(mesh.boundary().exterior_edges())
+                                 : kTriangle * static_cast<double>(mesh.mesh().triangles.size());
+}
+
+double gap_to_half_integer(double w) { return 0.5 - std::abs(w - ((w + 0x1.8p52) - 0x1.8p52)); }
+
+}  // namespace
+
+std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice& lattice) {
+  constexpr std::int64_t kMostAlong = 1 << 20;  // samples
+  constexpr std::int64_t kLeastAlong = 8;
+  if (!mesh.has_blocks()) return std::nullopt;
+  double samples = 1.0;
+  for (const std::int64_t count : lattice.counts) {
+    if (count > kMostAlong || count < kLeastAlong) return std::nullopt;
+    samples *= static_cast<double>(count);
+  }
+  const double direct = direct_cost(mesh);
+  if (direct * samples < 2 * kFit) return std::nullopt;
+  LatticeAxes axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for (std::int64_t i = lattice.index_min[a]; i <= lattice.index_max(axis); ++i) {
+      const double x = lattice.coordinate(axis, i);
+      if (!mesh.can_take(x)) return std::nullopt;
+      axes[a].push_back(mesh.to_scale(x));
+    }
+  }
+  constexpr double kSafety = 0.75;  // estimates are no better
+  const double once = kFit + kInTree * direct;
+  if (!mesh.blocks().are_sound) return std::nullopt;
+  if (mesh.blocks().sums.cost(axes) * samples + once > kSafety * direct * samples) return std::nullopt;
+  return axes;
+}
+
+void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
+                     std::span<double> values, std::span<const double> cap_crossings,
+                     std::atomic<std::uint64_t>* done) {
+  std::array<SampleRange, 3> part;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto begin = static_cast<std::uint32_t>(block.first[a] - lattice.index_min[a]);
+    part[a] = {begin, begin + static_cast<std::uint32_t>(block.counts[a])};
+  }
+  const bool counts = mesh.counts_crossings();
+  const double doubt = mesh.doubt_of_blocks();
+  mesh.blocks().sums.for_each_row(axes, part,
+                                  [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
+                                    const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
+                                    const std::size_t first = row * part[0].size() + x - part[0].begin;
+                                    LatticeTile doubtful;
+                                    for (std::size_t i = 0; i < sums.size(); ++i) {
+                                      const std::size_t n = first + i;
+                                      const double w = (counts ? values[n] - cap_crossings[n] : 0.0) + sums[i];
+                                      if (gap_to_half_integer(w) > doubt) {
+                                        values[n] = w;
+                                        continue;
+                                      }
+                                      doubtful.add(n, {axes[0][x + i], axes[1][y], axes[2][z]});
+                                      if (doubtful.full()) doubtful.evaluate(mesh, values);
+                                    }
+                                    doubtful.evaluate(mesh, values);
+                                    if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
+                                  });
+}
+
+}  // namespace raycone

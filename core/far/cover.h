@@ -1,0 +1,76 @@
+// Lists of triangles as the tree of sources sees them from afar.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/boundary/sample_tile.h"
+#include "core/data/triangle_mesh.h"
+#include "core/far/far_kernel.h"
+#include "core/far/shared_corners.h"
+#include "core/far/source_tree.h"
+
+namespace raycone {
+
+// Triangles, some of them as nodes of the tree.
+struct Cover {
+  struct Expansion {
+    std::uint32_t node;
+    int degree;
+  };
+  std::vector<Expansion> expansions;
+  std::vector<std::uint32_t> triangles;
+  double cost = 0.0;  // at a point, in units of that of a triangle
+};
+
+// Of `triangles`, numbers in the tree, ascending: nodes as expansions that are off by `tolerance` in all points of a
+// box at most, all together. Each has a share of it, in proportion to area and to the number of triangles by halves:
+// many small triangles are to be far, too, where there are a few large ones.
+[[nodiscard]] Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box,
+                             double tolerance);
+
+// Sums of a cover at the samples of tiles.
+class CoverSums {
+ public:
+  CoverSums(const SourceTree& tree, const Cover& cover, SharedCornersKernel shared_corners, const FarKernel& far)
+      : tree_(tree),
+        cover_(cover),
+        triangles_(gathered(tree, cover.triangles)),
+        shared_corners_(shared_corners),
+        far_(far) {}
+
+  // visit(i, turns, rest) for each sample of the tile: the sum of both, the turns being whole.
+  template <class Visit>
+  void evaluate(SampleTile& tile, const Visit& visit) {
+    tile.fill_up();
+    Tile far{};
+    for (const auto& [node, degree] : cover_.expansions) far_.add_multipole(tree_, node, degree, tile, far);
+    if (triangles_.chunks() > 0) shared_corners_(triangles_, tile, products_);
+    for (std::size_t i = 0; i < tile.count; ++i) {
+      if (triangles_.chunks() > 0) {
+        visit(i, static_cast<double>(products_.turns(i)), products_.argument[i] + far[i]);
+      } else {
+        visit(i, 0.0, far[i]);
+      }
+    }
+  }
+
+ private:
+  static SharedCorners gathered(const SourceTree& tree, std::span<const std::uint32_t> numbers) {
+    std::vector<SolidTriangle> all;
+    all.reserve(numbers.size());
+    for (const std::uint32_t n : numbers) all.push_back(tree.triangles()[n]);
+    return SharedCorners(std::move(all));
+  }
+
+  const SourceTree& tree_;
+  const Cover& cover_;
+  SharedCorners triangles_;
+  SharedCornersKernel shared_corners_;
+  FarKernel far_;
+  ProductTile products_;
+};
+
+}  // namespace raycone

@@ -1,0 +1,60 @@
+// Sums of solid angles at all samples of a lattice: what is far from a block of samples acts on it as one polynomial.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/boundary/solid_angle_kernel.h"
+#include "core/crossings/row.h"
+#include "core/data/triangle_mesh.h"
+#include "core/far/harmonic_polynomial.h"
+#include "core/far/source_tree.h"
+#include "core/machine/simd.h"
+
+namespace raycone {
+
+// The coordinates of a lattice along each axis, ascending.
+using LatticeAxes = std::array<std::vector<double>, 3>;
+
+// A bounded engine: sums are within `tolerance`, and rounding, of the sums of the solid angles of the triangles in
+// turns. Blocks of samples are divided in eight, again and again. A triangle that is far enough from a block, for its
+// area, adds its field to the block's harmonic polynomial; the others are handed down, and those that are near in the
+// end are summed exactly, ties as the exactness rules say. So a sum is that of the perturbed query, also on triangles.
+//
+// Sums depend on the triangles, their order and the lattice alone: not on threads, SIMD level, or the part of the
+// lattice that is asked for.
+class LatticeBlocks {
+ public:
+  LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level);
+
+  // The sums of samples [x, x + sums.size()) of the row (y, z).
+  using Sink = std::function<void(std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums)>;
+
+  // Calls `sink` for rows that make up the part of the lattice, from several threads. Needs DefaultFloatingPoint.
+  void for_each_row(const LatticeAxes& axes, const std::array<SampleRange, 3>& part, const Sink& sink) const;
+
+  // How long one sample of the lattice takes, about; in units of a triangle's solid angle there.
+  [[nodiscard]] double cost(const LatticeAxes& axes) const;
+
+  // No sum over so many triangles is off by more, rounding included.
+  [[nodiscard]] static double doubt(double tolerance, double triangles);
+
+ private:
+  friend class LatticeBlocksWalk;
+  struct Source {
+    Box box;
+    double area;  // NaN where it is not known: such a triangle is near everywhere
+  };
+
+  SourceTree tree_;
+  std::vector<Source> sources_;  // the triangles of the tree
+  double tolerance_;
+  SimdLevel level_;
+};
+
+}  // namespace raycone

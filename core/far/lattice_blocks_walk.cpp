@@ -1,0 +1,80 @@
+#include "core/far/lattice_blocks_walk.h"
+
+namespace raycone {
+
+void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
+                                 const LatticeBlocks::Sink& sink) const {
+  const std::size_t degree =
+      block.field ? truncation(block.field->coefficients, kTruncationShare * blocks_.tolerance_).degree : 0;
+  GridValues grid(multiply_);
+  std::vector<double> numbers;
+  std::array<std::size_t, 3> first, last, begin, end;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = std::max<std::size_t>(block.first[axis], part[axis].begin);
+    last[axis] = std::min<std::size_t>(block.last[axis], part[axis].end);
+  }
+  // Sub-blocks begin where they do for the whole block.
+  const auto after = [&](std::size_t axis, std::size_t at) {
+    return std::min(last[axis], at + kSubBlock[axis] - (at - block.first[axis]) % kSubBlock[axis]);
+  };
+  const auto coordinates = [&](std::size_t axis) {
+    return std::span(axes_[axis]).subspan(begin[axis], end[axis] - begin[axis]);
+  };
+  for (begin[2] = first[2]; begin[2] < last[2]; begin[2] = end[2]) {
+    end[2] = after(2, begin[2]);
+    begin[0] = first[0], end[0] = last[0], begin[1] = first[1], end[1] = last[1];
+    const BlockSums sums{numbers, begin, end};
+    if (block.field) {
+      const auto values = grid.evaluate(block.field->coefficients, degree, block.field->cube, coordinates(0),
+                                        coordinates(1), coordinates(2));
+      numbers.assign(values.begin(), values.end());
+    } else {
+      numbers.assign(sums.row_size() * (last[1] - first[1]) * (end[2] - begin[2]), 0.0);
+    }
+    for (begin[1] = first[1]; begin[1] < last[1] && !block.near.empty(); begin[1] = end[1]) {
+      end[1] = after(1, begin[1]);
+      for (begin[0] = first[0]; begin[0] < last[0]; begin[0] = end[0]) {
+        end[0] = after(0, begin[0]);
+        add_near(block, begin, end, sums);
+      }
+    }
+    for (std::size_t z = begin[2]; z < end[2]; ++z) {
+      for (std::size_t y = first[1]; y < last[1]; ++y) {
+        sink(first[0], y, z, std::span(numbers).subspan(sums.place(first[0], y, z), last[0] - first[0]));
+      }
+    }
+  }
+}
+
+// Which nodes are far is a matter of the whole sub-block, whatever part of it is asked for.
+void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
+                                 const std::array<std::size_t, 3>& end, const BlockSums& sums) const {
+  std::array<std::size_t, 3> first, last;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = begin[axis] - (begin[axis] - block.first[axis]) % kSubBlock[axis];
+    last[axis] = std::min(block.last[axis], first[axis] + kSubBlock[axis]);
+  }
+  const Cover cover = cover_at_samples(block, first, last);
+  CoverSums cover_sums(blocks_.tree_, cover, shared_corners_, far_);
+  SampleTile tile;
+  std::array<std::size_t, kTile> places;
+  const auto finish = [&] {
+    cover_sums.evaluate(tile, [&](std::size_t i, double turns, double rest) {
+      double& sum = sums.numbers[places[i]];
+      sum = turns + (rest + sum);
+    });
+    tile.clear();
+  };
+  for (std::size_t z = begin[2]; z < end[2]; ++z) {
+    for (std::size_t y = begin[1]; y < end[1]; ++y) {
+      for (std::size_t x = begin[0]; x < end[0]; ++x) {
+        places[tile.count] = sums.place(x, y, z);
+        tile.add({axes_[0][x], axes_[1][y], axes_[2][z]});
+        if (tile.count == kTile) finish();
+      }
+    }
+  }
+  if (tile.count > 0) finish();
+}
+
+}  // namespace raycone

@@ -1,0 +1,83 @@
+#include "core/far/matrix_kernel.h"
+
+// Highway compiles what is between its markers once per SIMD level.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/far/matrix_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raycone {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Doubles = hn::CappedTag<double, 8>;
+using Lanes = hn::Vec<Doubles>;
+constexpr Doubles d;
+constexpr std::size_t kWidth = 8;  // numbers of a row that are summed together
+
+// Four rows, in accumulators that stay in registers.
+HWY_INLINE void four_rows(const MatrixView& a, const double* b, std::size_t b_row, double* out, std::size_t out_row,
+                          std::size_t depth) {
+  Lanes s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
+  const double* p = a.numbers;
+  for (std::size_t k = 0; k < depth; ++k, p += a.step, b += b_row) {
+    const Lanes v = hn::LoadU(d, b);
+    s0 = hn::Add(s0, hn::Mul(hn::Set(d, p[0]), v));
+    s1 = hn::Add(s1, hn::Mul(hn::Set(d, p[a.row]), v));
+    s2 = hn::Add(s2, hn::Mul(hn::Set(d, p[2 * a.row]), v));
+    s3 = hn::Add(s3, hn::Mul(hn::Set(d, p[3 * a.row]), v));
+  }
+  hn::StoreU(s0, d, out);
+  hn::StoreU(s1, d, out + out_row);
+  hn::StoreU(s2, d, out + 2 * out_row);
+  hn::StoreU(s3, d, out + 3 * out_row);
+}
+
+HWY_INLINE void one_row(const MatrixView& a, const double* b, std::size_t b_row, double* out, std::size_t depth) {
+  Lanes sum = hn::Zero(d);
+  const double* p = a.numbers;
+  for (std::size_t k = 0; k < depth; ++k, p += a.step, b += b_row) {
+    sum = hn::Add(sum, hn::Mul(hn::Set(d, *p), hn::LoadU(d, b)));
+  }
+  hn::StoreU(sum, d, out);
+}
+
+void multiply_here(const MatrixView& a, const RowsView<const double>& b, const RowsView<double>& out, std::size_t rows,
+                   std::size_t depth, std::size_t width) {
+  for (std::size_t w = 0; w < width; w += kWidth) {
+    for (std::size_t lane = w; lane < w + kWidth; lane += hn::Lanes(d)) {
+      std::size_t r = 0;
+      for (; r + 4 <= rows; r += 4) {
+        four_rows({a.numbers + r * a.row, a.row, a.step}, b.numbers + lane, b.row, out.numbers + r * out.row + lane,
+                  out.row, depth);
+      }
+      for (; r < rows; ++r) {
+        one_row({a.numbers + r * a.row, a.row, a.step}, b.numbers + lane, b.row, out.numbers + r * out.row + lane,
+                depth);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace raycone
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace raycone {
+
+MatrixKernel matrix_kernel([[maybe_unused]] SimdLevel level) {
+#if HWY_ARCH_X86
+  const SimdLevel available = available_level(level);
+  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_here);
+  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_here);
+  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_here);
+#endif
+  return &HWY_STATIC_DISPATCH(multiply_here);
+}
+
+}  // namespace raycone
+#endif

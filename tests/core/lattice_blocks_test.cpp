@@ -1,0 +1,309 @@
+// Blocks of lattices: harmonic fits and what is certified of them, and winding numbers from blocks against direct sums.
+#include "core/far/lattice_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/boundary/solid_angles.h"
+#include "core/data/rule.h"
+#include "core/evaluation/winding_number.h"
+#include "core/far/harmonic_error.h"
+#include "core/far/harmonic_fit.h"
+#include "core/mesh/weld.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+
+constexpr Cube kUnit{{0, 0, 0}, 1};
+
+struct Dipole {
+  Vec3 place, direction;
+
+  [[nodiscard]] double operator()(const Vec3& q) const {
+    const Vec3 r = q - place;
+    const double square = dot(r, r);
+    return dot(r, direction) / (4 * std::numbers::pi * square * std::sqrt(square));
+  }
+};
+
+// On a face of the cube at the distance, of any direction.
+Dipole dipole_at(Random& random, double distance) {
+  Dipole dipole;
+  do {
+    for (int axis = 0; axis < 3; ++axis) dipole.direction[axis] = test::uniform(random, -1, 1);
+  } while (dot(dipole.direction, dipole.direction) < 0.1);
+  dipole.direction = (1 / std::sqrt(dot(dipole.direction, dipole.direction))) * dipole.direction;
+  for (int axis = 0; axis < 3; ++axis) dipole.place[axis] = test::uniform(random, -distance, distance);
+  dipole.place[static_cast<int>(random() % 3)] = random() % 2 == 0 ? distance : -distance;
+  return dipole;
+}
+
+template <class Function>
+Coefficients fit_of(const Function& f) {
+  const HarmonicFit& fit = HarmonicFit::instance();
+  std::vector<double> values(HarmonicFit::kNodes * HarmonicFit::kTogether);
+  for (std::size_t n = 0; n < HarmonicFit::kNodes; ++n) values[n * HarmonicFit::kTogether] = f(fit.node(n));
+  std::vector<Coefficients> polynomials(1);
+  fit.fit(values, polynomials, matrix_kernel(SimdLevel::kBest));
+  return polynomials[0];
+}
+
+// The largest difference on the cube, which a grid with its faces shows.
+template <class Function>
+double largest_error(const Coefficients& polynomial, const Function& f) {
+  std::vector<double> along;
+  for (int i = -8; i <= 8; ++i) along.push_back(i / 8.0);
+  GridValues grid(matrix_kernel(SimdLevel::kBest));
+  const auto values = grid.evaluate(polynomial, kDegree, kUnit, along, along, along);
+  double largest = 0.0;
+  for (std::size_t z = 0; z < along.size(); ++z) {
+    for (std::size_t y = 0; y < along.size(); ++y) {
+      for (std::size_t x = 0; x < along.size(); ++x) {
+        const double value = values[(z * along.size() + y) * GridValues::row_size(along.size()) + x];
+        largest = std::max(largest, std::abs(value - f(Vec3{along[x], along[y], along[z]})));
+      }
+    }
+  }
+  return largest;
+}
+
+TEST(HarmonicFitTest, ErrorsOfDipolesAreWithinTheTableAndNotFarBelow) {
+  Random random(1);
+  for (const double distance : {1.8, 2.2, 2.7, 3.3, 3.95}) {
+    double largest = 0.0;
+    for (int n = 0; n < 12; ++n) {
+      const Dipole dipole = dipole_at(random, distance);
+      largest = std::max(largest, largest_error(fit_of(dipole), dipole));
+    }
+    EXPECT_LE(largest, dipole_error(distance)) << distance;
+    // A table that is of another fit would not be so close. Few dipoles are the worst there are.
+    EXPECT_GE(largest, dipole_error(distance) / 100) << distance;
+  }
+  EXPECT_EQ(dipole_error(1.79), std::numeric_limits<double>::infinity());
+}
+
+TEST(HarmonicFitTest, HarmonicPolynomialsAreTheirOwnFits) {
+  const auto harmonic = [](const Vec3& q) { return 0.3 + q.x * q.y * q.z + q.x * q.x - q.z * q.z; };
+  EXPECT_LT(largest_error(fit_of(harmonic), harmonic), HarmonicFit::kRounding);
+  const auto other = [](const Vec3& q) { return q.x * q.x; };
+  EXPECT_GT(largest_error(fit_of(other), other), 1e-3);
+}
+
+TEST(HarmonicFitTest, RoundingAndGrowthAreAsDeclared) {
+  Random random(2);
+  for (int n = 0; n < 8; ++n) {
+    const Dipole far = dipole_at(random, 40.0);  // its fit is off by rounding alone
+    const auto f = [&](const Vec3& q) { return 1e4 * far(q); };
+    double largest = 0.0;
+    for (std::size_t i = 0; i < HarmonicFit::kNodes; ++i) {
+      largest = std::max(largest, std::abs(f(HarmonicFit::instance().node(i))));
+    }
+    EXPECT_LT(largest_error(fit_of(f), f), HarmonicFit::kRounding * largest);
+    const auto noise = [&](const Vec3&) { return random() % 2 == 0 ? 1.0 : -1.0; };
+    const auto zero = [](const Vec3&) { return 0.0; };
+    EXPECT_LT(largest_error(fit_of(noise), zero), HarmonicFit::kLargestWeights);
+  }
+}
+
+TEST(HarmonicPolynomialTest, APartOfTheCubeHasTheSameValues) {
+  Random random(3);
+  const MatrixKernel multiply = matrix_kernel(SimdLevel::kBest);
+  const Coefficients polynomial = fit_of(dipole_at(random, 2.0));
+  const Cube part{{0.45, -0.5, 0.1}, 0.5};
+  const std::vector<double> xs{-0.05, 0.3, 0.95}, ys{-1.0, -0.4}, zs{0.0, 0.1, 0.6};
+  GridValues grid(multiply), grid_of_part(multiply);
+  const auto whole = grid.evaluate(polynomial, kDegree, kUnit, xs, ys, zs);
+  const auto same = grid_of_part.evaluate(on_cube(polynomial, kUnit, part, multiply), kDegree, part, xs, ys, zs);
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(whole[i], same[i], 1e-15);
+}
+
+TEST(HarmonicPolynomialTest, TruncationIsWithinItsBudget) {
+  Random random(4);
+  const Coefficients polynomial = fit_of(dipole_at(random, 3.0));
+  const Truncation truncated = truncation(polynomial, 1e-6);
+  EXPECT_LT(truncated.degree, kDegree);
+  EXPECT_LE(truncated.dropped, 1e-6);
+  const std::vector<double> along{-1.0, -0.3, 0.2, 1.0};
+  const MatrixKernel multiply = matrix_kernel(SimdLevel::kBest);
+  GridValues grid(multiply), shorter(multiply);
+  const auto all = grid.evaluate(polynomial, kDegree, kUnit, along, along, along);
+  const auto some = shorter.evaluate(polynomial, truncated.degree, kUnit, along, along, along);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], some[i], truncated.dropped + 1e-15);
+}
+
+TEST(MatrixKernelTest, LevelsHaveTheSameBits) {
+  Random random(5);
+  std::vector<double> a(23 * 9), b(23 * 16);
+  for (double& number : a) number = test::uniform(random, -1, 1);
+  for (double& number : b) number = test::uniform(random, -1, 1);
+  std::vector<std::vector<double>> results;
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    std::vector<double>& out = results.emplace_back(9 * 16);
+    matrix_kernel(level)({a.data(), 23, 1}, {b.data(), 16}, {out.data(), 16}, 9, 23, 16);
+    EXPECT_EQ(out, results.front());
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 23; ++k) sum += a[5 * 23 + k] * b[k * 16 + 3];
+  EXPECT_EQ(results.front()[5 * 16 + 3], sum);
+}
+
+// ---- Blocks ----------------------------------------------------------------------------------------------------
+
+// Small triangles about a few points.
+TriangleMesh dust(Random& random, int triangles) {
+  TriangleMesh mesh;
+  for (int n = 0; n < triangles; ++n) {
+    const Vec3 centre{0.4 * std::cos(0.7 * n), 0.4 * std::sin(0.7 * n), test::uniform(random, -0.4, 0.4)};
+    for (int corner = 0; corner < 3; ++corner) {
+      Vec3 p = centre;
+      for (int axis = 0; axis < 3; ++axis) p[axis] += test::uniform(random, -0.01, 0.01);
+      mesh.vertices.push_back(p);
+    }
+    const auto first = static_cast<std::uint32_t>(3 * n);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+Lattice cube_lattice(std::int64_t count) {
+  const double spacing = 1.0 / static_cast<double>(count - 1);
+  return {{-0.5, -0.5, -0.5}, {spacing, spacing, spacing}, {0, 0, 0}, {count, count, count}};
+}
+
+LatticeAxes axes_of(const Lattice& lattice) {
+  LatticeAxes axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::int64_t i = 0; i < lattice.counts[0]; ++i) {
+      axes[static_cast<std::size_t>(axis)].push_back(lattice.coordinate(axis, i));
+    }
+  }
+  return axes;
+}
+
+std::vector<double> sums_of(const LatticeBlocks& blocks, const LatticeAxes& axes,
+                            const std::array<SampleRange, 3>& part) {
+  std::vector<double> sums(std::size_t{part[0].size()} * part[1].size() * part[2].size());
+  blocks.for_each_row(axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> row) {
+    const std::size_t number = (z - part[2].begin) * part[1].size() + y - part[1].begin;
+    std::ranges::copy(row, sums.begin() + static_cast<std::ptrdiff_t>(number * part[0].size() + x - part[0].begin));
+  });
+  return sums;
+}
+
+constexpr std::uint32_t kSide = 33;
+
+TEST(LatticeBlocksTest, SumsAreWithinTheTolerance) {
+  Random random(6);
+  const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 300)).triangles;
+  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  const std::array<SampleRange, 3> all{{{0, kSide}, {0, kSide}, {0, kSide}}};
+  for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
+    const std::vector<double> sums = sums_of(LatticeBlocks(triangles, tolerance, SimdLevel::kBest), axes, all);
+    double largest = 0.0;
+    for (std::size_t n = 0; n < sums.size(); n += 37) {
+      SampleTile tile;
+      tile.clear();
+      tile.add({axes[0][n % kSide], axes[1][n / kSide % kSide], axes[2][n / kSide / kSide]});
+      tile.fill_up();
+      ProductTile products;
+      solid_angle_kernel(SimdLevel::kBest)(triangles, tile, products);
+      const double w = static_cast<double>(products.turns(0)) + products.argument[0];
+      largest = std::max(largest, std::abs(sums[n] - w));
+    }
+    EXPECT_LT(largest, tolerance);
+    EXPECT_GT(largest, tolerance * 1e-5);  // polynomials are at work
+  }
+}
+
+TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBits) {
+  Random random(7);
+  const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 200)).triangles;
+  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  const std::array<SampleRange, 3> all{{{0, kSide}, {0, kSide}, {0, kSide}}};
+  const std::vector<double> sums = sums_of(LatticeBlocks(triangles, 1e-8, SimdLevel::kBest), axes, all);
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {
+    EXPECT_EQ(sums_of(LatticeBlocks(triangles, 1e-8, level), axes, all), sums);
+  }
+  const std::array<SampleRange, 3> part{{{5, 30}, {15, 17}, {3, 14}}};
+  const std::vector<double> some = sums_of(LatticeBlocks(triangles, 1e-8, SimdLevel::kBest), axes, part);
+  for (std::uint32_t z = 3; z < 14; ++z) {
+    for (std::uint32_t y = 15; y < 17; ++y) {
+      for (std::uint32_t x = 5; x < 30; ++x) {
+        EXPECT_EQ(some[((z - 3) * 2 + y - 15) * 25 + x - 5], sums[(z * kSide + y) * kSide + x]);
+      }
+    }
+  }
+}
+
+// ---- Winding numbers -------------------------------------------------------------------------------------------
+
+// A sphere that is full of holes.
+TriangleMesh sieve() {
+  TriangleMesh mesh = test::moved(test::sphere(24), {0.45, 0.45, 0.45}, {0, 0, 0});
+  std::vector<Triangle> kept;
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+    if (n % 5 != 0) kept.push_back(mesh.triangles[n]);
+  }
+  mesh.triangles = std::move(kept);
+  return weld(std::move(mesh), {});
+}
+
+WindingNumberEvaluator evaluator(const TriangleMesh& mesh, double tolerance) {
+  return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, nullptr, {tolerance});
+}
+
+TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
+  const TriangleMesh mesh = sieve();
+  const Lattice lattice = cube_lattice(64);
+  std::vector<double> direct(64 * 64 * 4), values(64 * 64 * 4);
+  const LatticeBlock layers{{0, 0, 30}, {64, 64, 4}};  // across which slabs are cut
+  evaluator(mesh, 0.0).evaluate(lattice, layers, direct);
+  for (const double tolerance : {1e-5, 1e-9}) {
+    const Tally tally = evaluator(mesh, tolerance).evaluate(lattice, layers, values);
+    EXPECT_EQ(tally.degenerate, evaluator(mesh, 0.0).evaluate(lattice, layers, direct).degenerate);
+    double largest = 0.0;
+    for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+    EXPECT_LT(largest, tolerance);
+    EXPECT_GT(largest, tolerance * 1e-5);
+  }
+}
+
+TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
+  // The rim is in one plane: there, the winding number is a half-integer or 0 in a whole layer.
+  constexpr std::uint32_t kCorners = 700;
+  TriangleMesh mesh;
+  for (std::uint32_t n = 0; n < kCorners; ++n) {  // a fan that is notched
+    const double angle = 2 * std::numbers::pi * n / kCorners, radius = n % 2 == 0 ? 0.45 : 0.4;
+    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
+  }
+  mesh.vertices.push_back({0.01, 0.02, -0.45});
+  for (std::uint32_t n = 0; n < kCorners; ++n) mesh.triangles.push_back({n, kCorners, (n + 1) % kCorners});
+  Lattice lattice = cube_lattice(96);
+  lattice.origin.z = -48 * lattice.spacing.z;  // a layer at z = 0
+  LatticeBlock layer{{0, 0, 8}, {96, 96, 1}};
+  std::vector<double> direct(96 * 96), values(96 * 96);
+  const WindingNumberEvaluator exact = evaluator(mesh, 0.0), coarse = evaluator(mesh, 1e-3);
+  exact.evaluate(lattice, layer, direct);
+  coarse.evaluate(lattice, layer, values);
+  EXPECT_NE(values, direct);  // blocks are used
+  layer.first[2] = 48;
+  exact.evaluate(lattice, layer, direct);
+  coarse.evaluate(lattice, layer, values);
+  EXPECT_GT(std::ranges::count_if(direct, [](double w) { return std::abs(w) == 0.5; }), 100);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    EXPECT_EQ(values[n] == 0.5, direct[n] == 0.5);
+    EXPECT_EQ(values[n] > 0.5, direct[n] > 0.5);
+  }
+}
+
+}  // namespace
+}  // namespace raycone

@@ -160,10 +160,11 @@ TEST_F(SdfField, OfBandAllIsNotCutOff) {
   double farthest = 0.0;
   for (const Sample& s : samples) {
     ASSERT_NEAR(std::abs(s.distance), static_cast<double>(direct_distance(mesh, s.position)), 1e-12);
-    ASSERT_EQ(std::signbit(s.distance), s.w >= 0.5);
+    ASSERT_EQ(s.distance < 0.0, s.w >= 0.5 && s.distance != 0.0);
     farthest = std::max(farthest, s.distance);
   }
-  EXPECT_NEAR(farthest, std::sqrt(3.0) * 4 / 7, 1e-12);
+  const double voxel = samples[1].position.x - samples[0].position.x;
+  EXPECT_NEAR(farthest, std::sqrt(3.0) * 4 * voxel, 1e-12) << "at the lattice's corners";
   ASSERT_EQ(lattice(cube_, dir_ / "out.vdb", all).status, 0);
   EXPECT_EQ(surface_of(dir_ / "out.vdb")->active_voxel_count(), 16U * 16U * 16U);
 }

@@ -18,7 +18,7 @@ BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mes
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],
           "core/surface": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections",
-                           "core/crossings", "core/boundary", "core/evaluation", "core/distance"],
+                           "core/crossings", "core/boundary", "core/far", "core/evaluation", "core/distance"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]

@@ -139,8 +139,9 @@ class Numpy(Client):
         import numpy
 
         with numpy.load(path) as arrays:
-            self.assertEqual(set(arrays.files), {"points", "w", "inside", "sdf"})
-            self.assertEqual({name: len(arrays[name]) for name in arrays.files}, dict.fromkeys(arrays.files, len(table)))
+            self.assertEqual(set(arrays.files), {"points", "w", "inside", "sdf", "transform", "raycone"})
+            lengths = {name: len(arrays[name]) for name in ("points", "w", "inside", "sdf")}
+            self.assertEqual(lengths, dict.fromkeys(lengths, len(table)))
             for number, row in enumerate(table):
                 seen = [*arrays["points"][number], *(arrays[name][number] for name in ("w", "inside", "sdf"))]
                 self.assert_value(seen, list(row.values()), number)

@@ -44,5 +44,6 @@ sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
 export TSAN_OPTIONS=$tls:suppressions=$PWD/tests/tsan.supp
 cmake --preset tsan
 phase "build tsan" cmake --build --preset tsan --parallel "$jobs" --target raycone
-# Not: what ends before a thread begins, and what counts the threads of core/machine/threads.cpp, which this build replaces.
+# Not: what ends before a thread begins, and what counts the threads of core/machine/threads.cpp, which this build
+# replaces.
 black_box tsan -E '^(CommandLine|Depfile|DepfileText|Formats|InfoCommand|InfoGate)\.|NeverMoreThreadsAreBusyThanAllowed'

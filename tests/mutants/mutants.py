@@ -127,12 +127,12 @@ MUTANTS = [
 
     # --- The sum over triangles ---
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
-        ("core/boundary/solid_angle_kernel.cpp", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
+        ("core/boundary/triangle_lanes-inl.h", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
     Mutant("no_care_next_to_triangles", "next to a triangle z_T cancels", [
-        ("core/boundary/solid_angle_kernel.cpp", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
-        ("core/boundary/solid_angle_kernel.cpp", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
+        ("core/boundary/triangle_lanes-inl.h", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
+        ("core/boundary/triangle_lanes-inl.h", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
     Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
-        ("core/boundary/solid_angle_kernel.cpp", "if (crossing.crossed > 0) products", "if (false) products")]),
+        ("core/boundary/triangle_lanes-inl.h", "if (crossing.crossed > 0) products", "if (false) products")]),
     Mutant("triangles_as_they_come", "the order of faces changes no bit", [
         ("core/boundary/solid_angles.cpp", "  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });\n", "")]),
 

@@ -35,7 +35,7 @@ tls=intercept_tls_get_addr=0
 export ASAN_OPTIONS=$tls UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 cmake --preset asan-ubsan
 phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
-black_box asan-ubsan
+black_box asan-ubsan -E NeverMoreThreadsAreBusyThanAllowed  # which watches what unoptimised code takes
 phase 'test asan-ubsan: files and faults' \
   ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \
   -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'

@@ -46,7 +46,8 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
 }
 
 double bytes_per_sample(const FieldOptions& options, bool open) {
-  const double of_caps = open && options.rule_only() ? sizeof(double) : 0.0;  // their crossings
+  const bool caps = open && (options.rule_only() || options.tolerance > 0.0);
+  const double of_caps = caps ? sizeof(double) : 0.0;  // their crossings
   return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps;
 }
 

@@ -18,7 +18,7 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
 std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary,
                                                   const EvaluatorOptions& options) {
   if (boundary.exterior_edges() == 0) return nullptr;
-  const bool cheapest = options.summation == Summation::kCheapest || options.summation == Summation::kFarField;
+  const bool cheapest = options.summation != Summation::kCone && options.summation != Summation::kTriangles;
   const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
   if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
     auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);

@@ -45,7 +45,9 @@ enum class Summation {
   kCheapest,   // whichever of the following is cheaper for the mesh
   kCone,       // crossings, and the cone over the exterior edges
   kTriangles,  // the solid angles of all triangles
-  kFarField,   // as kCheapest, with a far field wherever the tolerance allows one, whether it pays or not; for tests
+  // For tests: as kCheapest, but wherever the tolerance allows it, whether it pays or not,
+  kFarField,  // with a far field,
+  kBlocks,    // with blocks of lattices
 };
 
 struct ExteriorEdge;

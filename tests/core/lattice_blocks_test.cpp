@@ -258,7 +258,7 @@ TriangleMesh sieve() {
 }
 
 WindingNumberEvaluator evaluator(const TriangleMesh& mesh, double tolerance) {
-  return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, nullptr, {tolerance});
+  return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kBlocks, nullptr, {tolerance});
 }
 
 TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The executable under sanitizers, as continuous integration runs it, behind tests/run.sh: sh tests/sanitize.sh
+# The executable under sanitizers, behind tests/run.sh: sh tests/sanitize.sh [asan-ubsan] [tsan]
+# Without arguments both; continuous integration takes the first alone.
 # The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and one
 # with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the hostile
 # files, the faults, the random command lines and the damaged meshes. The whole suite under sanitizers takes an hour:
@@ -32,18 +33,31 @@ phase "build dev" cmake --build --preset dev --parallel "$jobs" --target raycone
 # 16 bytes behind a page's start, and die of the addresses that they read there: they need not look.
 tls=intercept_tls_get_addr=0
 
-export ASAN_OPTIONS=$tls UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-cmake --preset asan-ubsan
-phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
-black_box asan-ubsan -E NeverMoreThreadsAreBusyThanAllowed  # which watches what unoptimised code takes
-phase 'test asan-ubsan: files and faults' \
-  ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \
-  -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'
-sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
+asan_ubsan() {
+  export ASAN_OPTIONS=$tls UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  cmake --preset asan-ubsan
+  phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
+  black_box asan-ubsan -E NeverMoreThreadsAreBusyThanAllowed  # which watches what unoptimised code takes
+  phase 'test asan-ubsan: files and faults' \
+    ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \
+    -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'
+  sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
+}
 
-export TSAN_OPTIONS=$tls:suppressions=$PWD/tests/tsan.supp
-cmake --preset tsan
-phase "build tsan" cmake --build --preset tsan --parallel "$jobs" --target raycone
-# Not: what ends before a thread begins, and what counts the threads of core/machine/threads.cpp, which this build
-# replaces.
-black_box tsan -E '^(CommandLine|Depfile|DepfileText|Formats|InfoCommand|InfoGate)\.|NeverMoreThreadsAreBusyThanAllowed'
+tsan() {
+  export TSAN_OPTIONS=$tls:suppressions=$PWD/tests/tsan.supp
+  cmake --preset tsan
+  phase "build tsan" cmake --build --preset tsan --parallel "$jobs" --target raycone
+  # Not: what ends before a thread begins, and what counts the threads of core/machine/threads.cpp, which this build
+  # replaces.
+  black_box tsan -E '^(CommandLine|Depfile|DepfileText|Formats|InfoCommand|InfoGate)\.|NeverMoreThreadsAreBusyThanAllowed'
+}
+
+[ $# -gt 0 ] || set -- asan-ubsan tsan
+for name; do
+  case $name in
+    asan-ubsan) asan_ubsan ;;
+    tsan) tsan ;;
+    *) echo "sanitize.sh: expected asan-ubsan or tsan, found '$name'" >&2; exit 2 ;;
+  esac
+done

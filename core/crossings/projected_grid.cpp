@@ -344,8 +344,8 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   codes_per_z_ = kMortonCodesPerSide / (upper_.z - lower_.z);
   triangles_ = in_morton_order(mesh);
   filters_.resize(triangles_.size());
-  constexpr std::size_t kTrianglesPerTask = 4096;
-  parallel_for(filters_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kTrianglesOfATask = 4096;
+  parallel_for(filters_.size(), kTrianglesOfATask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[triangles_[i]];
       filters_[i] = filter_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);

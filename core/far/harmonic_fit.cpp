@@ -242,7 +242,7 @@ void HarmonicFit::fit(std::span<const double> values, std::span<Coefficients> po
                       MatrixKernel multiply) const {
   std::vector<double> mixed(values.begin(), values.end());  // sums over mirror images, with the sign of each parity
   constexpr std::size_t kNumbers = kOctant * kTogether;
-  for (const std::size_t step : {4, 2, 1}) {
+  for (const std::size_t step : {4U, 2U, 1U}) {
     for (std::size_t s = 0; s < 8; ++s) {
       if (s & step) continue;
       for (std::size_t n = 0; n < kNumbers; ++n) {

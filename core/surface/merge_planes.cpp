@@ -135,8 +135,7 @@ class Merger {
       }
     }
     std::ranges::sort(all);
-    const auto repeated = std::ranges::unique(all);
-    all.erase(repeated.begin(), repeated.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());  // clang 14 knows no subranges
     return all;
   }
 

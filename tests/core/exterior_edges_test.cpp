@@ -15,13 +15,13 @@
 namespace raycone {
 namespace {
 
-using Key = std::tuple<double, double, double, double, double, double>;
+using DirectedPair = std::tuple<double, double, double, double, double, double>;
 
-Key key(const Vec3& a, const Vec3& b) { return {a.x, a.y, a.z, b.x, b.y, b.z}; }
+DirectedPair key(const Vec3& a, const Vec3& b) { return {a.x, a.y, a.z, b.x, b.y, b.z}; }
 
 // The boundary 1-chain by definition: for each directed pair of positions, how often triangles traverse it, net.
-std::map<Key, int> chain_by_definition(const TriangleMesh& mesh) {
-  std::map<Key, int> chain;
+std::map<DirectedPair, int> chain_by_definition(const TriangleMesh& mesh) {
+  std::map<DirectedPair, int> chain;
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 &a = mesh.vertices[t[i]], &b = mesh.vertices[t[(i + 1) % 3]];
@@ -33,8 +33,8 @@ std::map<Key, int> chain_by_definition(const TriangleMesh& mesh) {
   return chain;
 }
 
-std::map<Key, int> chain_of(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
-  std::map<Key, int> chain;
+std::map<DirectedPair, int> chain_of(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
+  std::map<DirectedPair, int> chain;
   for (const ExteriorEdge& e : edges) {
     chain[key(mesh.vertices[e.from], mesh.vertices[e.to])] += e.multiplicity;
     chain[key(mesh.vertices[e.to], mesh.vertices[e.from])] -= e.multiplicity;
@@ -42,8 +42,8 @@ std::map<Key, int> chain_of(const TriangleMesh& mesh, const std::vector<Exterior
   return chain;
 }
 
-std::vector<Key> coordinates_in_order(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
-  std::vector<Key> keys;
+std::vector<DirectedPair> coordinates_in_order(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
+  std::vector<DirectedPair> keys;
   for (const ExteriorEdge& e : edges) keys.push_back(key(mesh.vertices[e.from], mesh.vertices[e.to]));
   return keys;
 }
@@ -81,7 +81,7 @@ TEST(ExteriorEdges, AreChainedSoThatNeighboursShareAVertex) {
 TEST(ExteriorEdges, OrderDependsOnCoordinatesOnly) {
   test::Random random(2);
   const TriangleMesh mesh = test::lattice_soup(random, 60, 3);
-  const std::vector<Key> expected = coordinates_in_order(mesh, exterior_edges(mesh));
+  const std::vector<DirectedPair> expected = coordinates_in_order(mesh, exterior_edges(mesh));
   for (int i = 0; i < 5; ++i) {
     const TriangleMesh other = test::shuffled(mesh, random);
     EXPECT_EQ(coordinates_in_order(other, exterior_edges(other)), expected);

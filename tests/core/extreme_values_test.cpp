@@ -19,7 +19,7 @@ namespace {
 using test::Random;
 
 constexpr Summation kBoth[] = {Summation::kCone, Summation::kTriangles};
-constexpr RayEngine kEngines[] = {RayEngine::kScan, RayEngine::kEmbree};
+constexpr RayEngine kBothEngines[] = {RayEngine::kScan, RayEngine::kEmbree};
 
 // Of all exponents alike: 0, subnormal numbers and the largest ones among them.
 double of_any_magnitude(Random& random) {
@@ -82,7 +82,7 @@ TEST(ExtremeValues, AreRightForCoordinatesOfAllMagnitudes) {
   for (int i = 0; i < 24; ++i) {
     const TriangleMesh mesh = mesh_of_any_magnitudes(random, 1 + i % 4);
     const std::vector<Vec3> queries = queries_about(mesh, random, 12);
-    for (const Summation summation : kBoth) largest_error(mesh, queries, kEngines[i % 2], summation);
+    for (const Summation summation : kBoth) largest_error(mesh, queries, kBothEngines[i % 2], summation);
   }
 }
 

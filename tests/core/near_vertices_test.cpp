@@ -17,8 +17,8 @@
 namespace raycone {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLargestDouble = std::numeric_limits<double>::max();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTiniest = std::numeric_limits<double>::denorm_min();
 
@@ -73,14 +73,14 @@ std::vector<Family> families() {
       {"tenths", {0.1, 0.2, 0.1 + 0.2}, of([](auto& r) { return 0.1 * integer(r, 0, 12); })},
       {"clusters", {1e-9, 1e-6, 1e-3}, of([](auto& r) { return integer(r, 0, 2) + uniform(r, 0, 1e-6); })},
       {"far from the origin", {1e-10, 0.25, 1.0, 8.0}, of([](auto& r) { return 0x1p52 + integer(r, 0, 40); })},
-      {"huge", {1e-10, 1e284, 1e299, 1e300, kLargest}, of([](auto& r) { return 1.7e308 * uniform(r, -1, 1); })},
+      {"huge", {1e-10, 1e284, 1e299, 1e300, kLargestDouble}, of([](auto& r) { return 1.7e308 * uniform(r, -1, 1); })},
       {"all magnitudes", {1e-300, 1e-10, 1.0, 1e200}, of([](auto& r) { return any_magnitude(r, -1074, 1023); })},
       {"small magnitudes", {1e-15, 1e-3, 1.0}, of([](auto& r) { return any_magnitude(r, -60, 3); })},
       {"denormal", {kTiniest, 3 * kTiniest, 1e-300}, of([](auto& r) { return kTiniest * integer(r, -9, 9); })},
       {"last bits", {0x1p-52, 0x1p-51, 1e-15}, of([](auto& r) { return 1.0 + 0x1p-52 * integer(r, -9, 9); })},
-      {"partly not finite", {0.5, 2.0, kLargest}, of([](auto& r) {
+      {"partly not finite", {0.5, 2.0, kLargestDouble}, of([](auto& r) {
          const double x = integer(r, 0, 12);
-         return x == 12 ? kNaN : x == 11 ? kInfinity : x == 10 ? -kInfinity : x;
+         return x == 12 ? kNaN : x == 11 ? kInfinite : x == 10 ? -kInfinite : x;
        })},
   };
 }

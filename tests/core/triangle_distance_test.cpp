@@ -39,10 +39,10 @@ TEST_F(TriangleDistanceTest, IsThatOfTheClosestPointInEachRegion) {
 }
 
 // Products of numbers below 2 in magnitude, each rounded by 1.1e-16: some dozens of them.
-constexpr double kRounding = 1e-14;
+constexpr double kOfDistances = 1e-14;
 
 TEST_F(TriangleDistanceTest, AgreesWithTheOracle) {
-  for (int n = 0; n < 20000; ++n) expect_distance(point(), point(), point(), point(), kRounding);
+  for (int n = 0; n < 20000; ++n) expect_distance(point(), point(), point(), point(), kOfDistances);
 }
 
 TEST_F(TriangleDistanceTest, AgreesWithTheOracleNearTheTriangle) {
@@ -93,10 +93,10 @@ TEST_F(TriangleDistanceTest, ErrorsAreFound) {
 TEST_F(TriangleDistanceTest, TakesSegmentsAndPoints) {
   for (int n = 0; n < 2000; ++n) {
     const Vec3 a = point(), b = point(), p = point();
-    expect_distance(a, b, b, p, kRounding);
-    expect_distance(b, a, b, p, kRounding);
-    expect_distance(a, a, a, p, kRounding);
-    expect_distance(a, b, 0.5 * (a + b), p, kRounding);
+    expect_distance(a, b, b, p, kOfDistances);
+    expect_distance(b, a, b, p, kOfDistances);
+    expect_distance(a, a, a, p, kOfDistances);
+    expect_distance(a, b, 0.5 * (a + b), p, kOfDistances);
   }
 }
 
@@ -104,8 +104,8 @@ TEST_F(TriangleDistanceTest, TakesTinyTriangles) {
   for (const double size : {1e-60, 1e-100, 1e-160, 1e-300}) {
     for (int n = 0; n < 200; ++n) {
       const Vec3 a = 1e-3 * point();
-      expect_distance(a, a + size * point(), a + size * point(), point(), kRounding);
-      expect_distance(size * point(), size * point(), size * point(), point(), kRounding);
+      expect_distance(a, a + size * point(), a + size * point(), point(), kOfDistances);
+      expect_distance(size * point(), size * point(), size * point(), point(), kOfDistances);
     }
   }
 }

@@ -24,7 +24,7 @@ namespace {
 using test::contents;
 using test::TemporaryDirectory;
 
-std::set<std::string> entries(const TemporaryDirectory& directory) {
+std::set<std::string> names_in(const TemporaryDirectory& directory) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(directory.path())) {
     names.insert(entry.path().filename().string());
@@ -38,19 +38,19 @@ void put(const std::string& path) { std::ofstream(path) << "precious"; }
 TemporaryName own_name() {
   const TemporaryDirectory directory;
   const TemporaryFile file(directory.path().string());
-  return temporary_name_from(*entries(directory).begin()).value();
+  return temporary_name_from(*names_in(directory).begin()).value();
 }
 
 // A process that makes a temporary file, and is killed.
 TemporaryName name_of_killed(const TemporaryDirectory& directory) {
-  const std::set<std::string> before = entries(directory);
+  const std::set<std::string> before = names_in(directory);
   const pid_t child = fork();
   if (child == 0) {
     const TemporaryFile file(directory.path().string());
     raise(SIGKILL);
   }
   waitpid(child, nullptr, 0);
-  for (const std::string& name : entries(directory)) {
+  for (const std::string& name : names_in(directory)) {
     if (!before.contains(name)) return temporary_name_from(name).value();
   }
   return {};
@@ -97,7 +97,7 @@ TEST(TemporaryName, IsNoOther) {
     put(directory / name);
   }
   remove_abandoned_files(directory.path().string());
-  EXPECT_EQ(entries(directory), others) << "and the one that was abandoned is gone";
+  EXPECT_EQ(names_in(directory), others) << "and the one that was abandoned is gone";
 }
 
 TEST(RemoveAbandonedFiles, LeavesThoseOfOthersThatLive) {
@@ -107,10 +107,10 @@ TEST(RemoveAbandonedFiles, LeavesThoseOfOthersThatLive) {
   put(directory / other_host.text());
   OutputFile output(directory / "out");
   remove_abandoned_files(directory.path().string());
-  EXPECT_EQ(entries(directory).size(), 2U) << "that of another host, and that of `output`";
-  EXPECT_TRUE(entries(directory).contains(other_host.text()));
+  EXPECT_EQ(names_in(directory).size(), 2U) << "that of another host, and that of `output`";
+  EXPECT_TRUE(names_in(directory).contains(other_host.text()));
   output.commit();
-  EXPECT_TRUE(entries(directory).contains("out"));
+  EXPECT_TRUE(names_in(directory).contains("out"));
 }
 
 TEST(RemoveAbandonedFiles, NeverDisturbsWritersThatStart) {
@@ -128,7 +128,7 @@ TEST(RemoveAbandonedFiles, NeverDisturbsWritersThatStart) {
   done = true;
   remover.join();
   EXPECT_EQ(contents(directory / "out"), "299");
-  EXPECT_EQ(entries(directory), std::set<std::string>{"out"});
+  EXPECT_EQ(names_in(directory), std::set<std::string>{"out"});
 }
 
 }  // namespace

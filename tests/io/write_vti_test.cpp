@@ -47,7 +47,7 @@ std::string with_reader(const char* assertions) {
 
 Lattice small_lattice() { return {{0.1, -2, 1e-3}, {0.5, 0.25, 3}, {-3, 5, 7}, {4, 3, 2}}; }
 
-OutputDescription described() {
+OutputDescription described_with_flags() {
   OutputDescription description = test::described_with_diagnostics();
   description.fields.insert(description.fields.begin() + 1, {"inside", "inside", "inside", FieldKind::kFlag, 0.0, ""});
   return description;
@@ -78,7 +78,7 @@ void write_vti(const std::string& path, const OutputDescription& description) {
 TEST(WriteVti, HoldsEveryFieldWithXFastest) {
   if (!test::python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
   const TemporaryDirectory directory;
-  write_vti(directory / "out.vti", described());
+  write_vti(directory / "out.vti", described_with_flags());
   EXPECT_EQ(test::run_python(with_reader(R"(
 assert extent == [-3, 0, 5, 7, 7, 8]
 assert image.attrib['Origin'] == '0.1 -2 0.001' and image.attrib['Spacing'] == '0.5 0.25 3'
@@ -98,7 +98,7 @@ assert arrays['error_bound'].dtype == 'f8' and (arrays['error_bound'] == 1e-300)
 TEST(WriteVti, DoublesOnRequest) {
   if (!test::python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
   const TemporaryDirectory directory;
-  OutputDescription description = described();
+  OutputDescription description = described_with_flags();
   description.precision = Precision::kDouble;
   write_vti(directory / "out.vti", description);
   EXPECT_EQ(test::run_python(with_reader("assert (arrays['winding'].ravel()[1:] == "
@@ -109,10 +109,10 @@ TEST(WriteVti, DoublesOnRequest) {
 
 TEST(WriteVti, IsTheSameOnAPipe) {
   const TemporaryDirectory directory;
-  write_vti(directory / "out.vti", described());
+  write_vti(directory / "out.vti", described_with_flags());
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);  // holds 64 KiB
-  write_vti("/dev/fd/" + std::to_string(ends[1]), described());
+  write_vti("/dev/fd/" + std::to_string(ends[1]), described_with_flags());
   close(ends[1]);
   std::string received(65536, '\0');
   received.resize(static_cast<std::size_t>(read(ends[0], received.data(), received.size())));

@@ -97,8 +97,8 @@ const Blocks& ScaledMesh::blocks() const {
     TriangleMesh caps = counts_crossings() ? halved_caps(boundary_) : TriangleMesh();
     SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
     const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
-    blocks_.emplace(Blocks{std::move(caps), !faces.has_repeated_faces,
-                           LatticeBlocks(std::move(faces.triangles), tolerance, options_.level)});
+    blocks_.reset(new Blocks{std::move(caps), !faces.has_repeated_faces,
+                             LatticeBlocks(std::move(faces.triangles), tolerance, options_.level)});
   });
   return *blocks_;
 }

@@ -119,7 +119,10 @@ class ScaledMesh {
   }
 
   [[nodiscard]] Terms terms() const {
-    return {direct_terms_ + (far_ ? far_->near_terms() : 0), far_ ? far_->far_terms() : 0};
+    Terms terms{direct_terms_, 0};
+    if (far_) terms += {far_->near_terms(), far_->far_terms()};
+    if (blocks_) terms += {blocks_->sums.near_terms(), blocks_->sums.far_terms()};
+    return terms;
   }
 
  private:
@@ -144,7 +147,7 @@ class ScaledMesh {
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
   mutable std::optional<Changes> changes_;
-  mutable std::optional<Blocks> blocks_;
+  mutable std::unique_ptr<const Blocks> blocks_;
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };
 
@@ -158,8 +161,9 @@ class ScaledMeshes {
   // Built when first needed. Predicates are slower there.
   [[nodiscard]] const ScaledMesh& unscaled() const;
   [[nodiscard]] Terms terms() const {
-    const Terms scaled = scaled_.terms(), unscaled = unscaled_ ? unscaled_->terms() : Terms{};
-    return {scaled.near + unscaled.near, scaled.far + unscaled.far};
+    Terms terms = scaled_.terms();
+    if (unscaled_) terms += unscaled_->terms();
+    return terms;
   }
   [[nodiscard]] const ScaledMesh& of_query(bool scaling_is_exact) const {
     return scaling_is_exact ? scaled_ : unscaled();

@@ -65,6 +65,12 @@ struct Accuracy {
 struct Terms {
   std::uint64_t near = 0;
   std::uint64_t far = 0;
+
+  Terms& operator+=(const Terms& other) {
+    near += other.near;
+    far += other.far;
+    return *this;
+  }
 };
 
 class WindingNumberEvaluator {

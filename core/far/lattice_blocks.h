@@ -41,6 +41,11 @@ class LatticeBlocks {
   // How long one sample of the lattice takes, about; in units of a triangle's solid angle there.
   [[nodiscard]] double cost(const LatticeAxes& axes) const;
 
+  // Pairs that for_each_row() has summed so far: of a sample with a triangle; of a sample with a multipole or with the
+  // polynomial of its block. What is summed at nodes of fits counts too.
+  [[nodiscard]] std::uint64_t near_terms() const { return near_terms_; }
+  [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
+
   // No sum over so many triangles is off by more, rounding included.
   [[nodiscard]] static double doubt(double tolerance, double triangles);
 
@@ -55,6 +60,7 @@ class LatticeBlocks {
   std::vector<Source> sources_;  // the triangles of the tree
   double tolerance_;
   SimdLevel level_;
+  mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;
 };
 
 }  // namespace raycone

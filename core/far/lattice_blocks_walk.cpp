@@ -25,6 +25,8 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
     begin[0] = first[0], end[0] = last[0], begin[1] = first[1], end[1] = last[1];
     const BlockSums sums{numbers, begin, end};
     if (block.field) {
+      const std::size_t samples = (last[0] - first[0]) * (last[1] - first[1]) * (end[2] - begin[2]);
+      blocks_.far_terms_.fetch_add(samples, std::memory_order_relaxed);
       const auto values = grid.evaluate(block.field->coefficients, degree, block.field->cube, coordinates(0),
                                         coordinates(1), coordinates(2));
       numbers.assign(values.begin(), values.end());
@@ -55,6 +57,7 @@ void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std:
     last[axis] = std::min(block.last[axis], first[axis] + kSubBlock[axis]);
   }
   const Cover cover = cover_at_samples(block, first, last);
+  count_terms(cover, (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]));
   CoverSums cover_sums(blocks_.tree_, cover, shared_corners_, far_);
   SampleTile tile;
   std::array<std::size_t, kTile> places;

@@ -268,6 +268,7 @@ class LatticeBlocksWalk {
     if (far.cost == 0.0) return;
     const HarmonicFit& fit = HarmonicFit::instance();
     CoverSums sums(blocks_.tree_, far, shared_corners_, far_);
+    count_terms(far, HarmonicFit::kNodes);
     SampleTile nodes;
     for (std::size_t begin = 0; begin < HarmonicFit::kNodes; begin += kTile) {
       nodes.clear();
@@ -278,6 +279,11 @@ class LatticeBlocksWalk {
         values[(begin + i) * HarmonicFit::kTogether + place] = turns + rest;
       });
     }
+  }
+
+  void count_terms(const Cover& cover, std::size_t samples) const {
+    blocks_.near_terms_.fetch_add(samples * cover.triangles.size(), std::memory_order_relaxed);
+    blocks_.far_terms_.fetch_add(samples * cover.expansions.size(), std::memory_order_relaxed);
   }
 
   // Adds what is near to the sums of the samples [begin, end) of a sub-block.

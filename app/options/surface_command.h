@@ -20,6 +20,7 @@ struct SurfaceCommand {
   std::variant<LatticeRequest, GridReference> lattice;
   Rule rule;
   bool merge_planes = true;
+  double simplify = 0.0;  // how far the surface may move, world units
 };
 
 }  // namespace raycone

@@ -51,7 +51,8 @@ void check_inside(const NodeSet& inside, const SurfaceCommand& command) {
 
 SurfaceMesh surface_of(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                        const SurfaceCommand& command) {
-  const SurfaceOptions options{command.rule, command.merge_planes, is_single_precision(command.format)};
+  const SurfaceOptions options{command.rule, command.merge_planes, command.simplify,
+                               is_single_precision(command.format)};
   try {
     return closed_surface(mesh, evaluator, inside, options);
   } catch (const LatticeTooFine& error) {

@@ -69,6 +69,7 @@ CommandSpec surface_spec() {
                lattice_group_with_room(),
                {"Surface",
                 {{"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
+                 {"--thicken", "T", "Add all that is within T of the faces, so that sheets survive"},
                  {"--simplify", "0|E|none",
                   "Merge the faces of a plane (default: 0), or those that so move the surface by E at most, or none"}}},
                output,
@@ -77,7 +78,7 @@ CommandSpec surface_spec() {
                        "raycone surface part.stl -o part-closed.stl --voxel-size 0.2",
                        "raycone surface model.obj -o model.ply --orient auto --resolution 256",
                        "raycone info part-closed.stl --require closed,oriented,outward,manifold,embedded"},
-          .later = {{"--normalize", "--thicken"}, {}}};
+          .later = {{"--normalize"}, {}}};
 }
 
 Command parse_surface(const Values& values) {
@@ -88,6 +89,7 @@ Command parse_surface(const Values& values) {
   command.lattice = parse_lattice_request(values);
   make_room(command.lattice);
   if (values.given("--rule")) command.rule = parse_rule(values);
+  if (values.given("--thicken")) command.thickness = values.positive("--thicken");
   parse_simplify(values, command);
   command.output = parse_output_files(values);
   command.format = parse_surface_format(values, command.output.path);

@@ -12,6 +12,7 @@
 #include "core/surface/cell_triangles.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/simplify.h"
+#include "core/surface/thicken.h"
 
 namespace raycone {
 namespace {
@@ -60,7 +61,9 @@ class SurfaceMaker {
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
+      points_ = options_.thickness > 0.0 ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), distance_,
+                                                             options_.thickness, cells_, margins)
+                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
       FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (std::optional<SurfaceMesh> surface = attempt(sharp, margins)) return std::move(*surface);

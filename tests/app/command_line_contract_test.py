@@ -41,9 +41,6 @@ NOT_AVAILABLE = {
         "--field winding,solid": "--field winding,solid",
         "--parts group": "--parts",
     },
-    "surface": {
-        "--thicken 0.1": "--thicken",
-    },
     "batch": {
         "--field solid": "--field solid",
         "--parts group": "--parts",

@@ -128,6 +128,7 @@ TABLE = [
       for option in ("--bounds -1,-1,-1,3,3,3", "--padding .5", "--padding 2v", "--resolution 6", "--centers",
                      "--rule odd", "--simplify none")),
     Row(SURFACE, "--simplify 0", HARMLESS),  # the default
+    Row(SURFACE, "--thicken .1", CHANGES),
     Row("surface open.obj -o out/a.ply --resolution 9 --padding .5 --rule abs=.2", "--simplify .1", CHANGES),
     Row(SURFACE, "--voxel-size .25", REFUSED),
     Row(SURFACE, "--like grid.vdb", REFUSED),

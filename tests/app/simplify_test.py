@@ -56,7 +56,7 @@ class Simplify(unittest.TestCase):
 
     def test_no_point_moves_farther(self):
         for mesh in (TEAPOT + " --orient auto", MOEBIUS + " --orient auto"):
-            words = mesh + " --resolution 16"
+            words = mesh + " --resolution 13"
             all_faces, voxel = self.surface(words + " --simplify none", "none.ply")
             before, _ = self.surface(words, "0.ply")
             self.assertLess(before, all_faces)

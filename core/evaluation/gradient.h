@@ -33,7 +33,7 @@ class GradientEvaluator {
   GradientEvaluator(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
 
   // Sets the gradients of a block of `lattice`, x fastest, or of finite points. Preconditions: values.size() is
-  // block.size(), or points.size(). `done`, where given, grows by one per sample. Some 10 ns per exterior edge and
+  // block.size(), or points.size(). `done`, where given, grows by one per sample. Some 30 ns per exterior edge and
   // sample, on the threads that ThreadLimit allows; the same for any number of them.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<Vec3> values,
                 std::atomic<std::uint64_t>* done = nullptr) const;

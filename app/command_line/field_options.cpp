@@ -26,10 +26,10 @@ std::vector<Field> parse_fields(const Values& values) {
   const std::string text = values.text("--field");
   for (const std::string_view name : items_of(text)) {
     const std::optional<Field> field = field_from_name(name);
-    for (const char* const later : {"solid", "gradient", "label"}) {
+    for (const char* const later : {"solid", "label"}) {
       if (name == later) not_available("--field " + text);
     }
-    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf");
+    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf, gradient");
     if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
     fields.push_back(*field);
   }
@@ -57,8 +57,10 @@ SimdLevel parse_simd(const std::string& text) {
 
 OptionGroup field_group() {
   return {"Field",
-          {{"--field", "winding|inside|density|sdf[,...]",
-            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance", true},
+          {{"--field", "winding|inside|density|sdf|gradient[,...]",
+            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance, gradient of the "
+            "winding number",
+            true},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--band", "B",
             "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not cut it "

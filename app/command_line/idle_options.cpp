@@ -36,7 +36,7 @@ bool draws_in_box(const SampleRequest& request) {
 
 void refuse_idle_rule(const Values& values, const FieldOptions& field) {
   if (field.has(Field::kInside) || field.has(Field::kDistance)) return;
-  refuse_option(values, "--rule", "on winding and density, expected --field inside or sdf");
+  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside or sdf");
 }
 
 void refuse_idle_depfile(const Values& values, const OutputFiles& output) {

@@ -52,6 +52,10 @@ void check_one_field(const LatticeCommand& command) {
   const std::string reason = name->second + " holds one number per sample, expected vdb, csv, npz or vti";
   if (command.field.diagnostics) throw UsageError("--diagnostics: " + reason);
   if (command.field.fields.size() > 1) throw UsageError("several fields: " + reason);
+  if (command.field.has(Field::kGradient) && command.encoding.format != FieldFormat::kNpy) {
+    throw UsageError("--field gradient: " + name->second +
+                     " holds one number per sample, expected vdb, csv, npy, npz or vti");
+  }
 }
 
 void check_halves(const FieldEncoding& encoding) {

@@ -96,7 +96,8 @@ FieldOptions parse_slice_field(const Values& values) {
   const std::string name = values.given("--field") ? values.text("--field") : "winding";
   if (name == "label") not_available("--field label");
   const std::optional<Field> field = field_from_name(name);
-  if (!field || field == Field::kDensity) invalid("--field", name, "winding, inside or sdf");
+  if (!field || field == Field::kDensity || field == Field::kGradient)
+    invalid("--field", name, "winding, inside or sdf");
   if (field == Field::kWinding && values.given("--rule")) {
     throw UsageError("--rule " + values.text("--rule") + ": has no effect on --field winding");
   }

@@ -29,15 +29,16 @@ SurfaceFormat parse_surface_format(const Values& values, const std::string& outp
   throw UsageError(output + ": its extension names no format, expected " + kListed + ", or --format");
 }
 
-// Whether faces of one plane are merged.
-bool parse_simplify(const Values& values) {
-  if (!values.given("--simplify")) return true;
+void parse_simplify(const Values& values, SurfaceCommand& command) {
+  if (!values.given("--simplify")) return;
   const std::string text = values.text("--simplify");
-  if (text == "none") return false;
+  if (text == "none") {
+    command.merge_planes = false;
+    return;
+  }
   const std::optional<double> distance = number_from(text);
-  if (!distance || *distance < 0.0) invalid("--simplify", text, "none or 0");
-  if (*distance > 0.0) not_available("--simplify " + text);
-  return true;
+  if (!distance || *distance < 0.0) invalid("--simplify", text, "none, 0 or a distance");
+  command.simplify = *distance;
 }
 
 // A surface needs outside nodes around it.
@@ -63,19 +64,21 @@ CommandSpec surface_spec() {
   return {.name = "surface",
           .description = "Make a closed mesh, free of self-intersections, of what is inside",
           .operands = {mesh_operand()},
-          .groups = {mesh_group(),
-                     lattice_group_with_room(),
-                     {"Surface",
-                      {{"--rule", "threshold=T|abs=T|nonzero|positive|odd",
-                        "What counts as inside (default: threshold=0.5)"},
-                       {"--simplify", "0|none", "Merge the faces of a plane (default: 0), or none"}}},
-                     output,
-                     run_group()},
+          .groups =
+              {mesh_group(),
+               lattice_group_with_room(),
+               {"Surface",
+                {{"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
+                 {"--thicken", "T", "Add all that is within T of the faces, so that sheets survive"},
+                 {"--simplify", "0|E|none",
+                  "Merge the faces of a plane (default: 0), or those that so move the surface by E at most, or none"}}},
+               output,
+               run_group()},
           .examples = {"raycone surface scan.ply -o solid.ply                      64 samples along the longest side",
                        "raycone surface part.stl -o part-closed.stl --voxel-size 0.2",
                        "raycone surface model.obj -o model.ply --orient auto --resolution 256",
                        "raycone info part-closed.stl --require closed,oriented,outward,manifold,embedded"},
-          .later = {{"--normalize", "--thicken"}, {}}};
+          .later = {{"--normalize"}, {}}};
 }
 
 Command parse_surface(const Values& values) {
@@ -86,7 +89,8 @@ Command parse_surface(const Values& values) {
   command.lattice = parse_lattice_request(values);
   make_room(command.lattice);
   if (values.given("--rule")) command.rule = parse_rule(values);
-  command.merge_planes = parse_simplify(values);
+  if (values.given("--thicken")) command.thickness = values.positive("--thicken");
+  parse_simplify(values, command);
   command.output = parse_output_files(values);
   command.format = parse_surface_format(values, command.output.path);
   refuse_idle_depfile(values, command.output);

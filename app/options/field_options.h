@@ -19,9 +19,10 @@ enum class Field {
   kInside,    // whether the rule holds
   kDensity,   // the winding number, clamped to [0, 1]
   kDistance,  // to the triangles, signed: negative inside
+  kGradient,  // of the winding number, beside its jumps
 };
 
-// "winding", "inside", "density" or "sdf".
+// "winding", "inside", "density", "sdf" or "gradient".
 [[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
 
 // As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".

@@ -19,7 +19,9 @@ struct SurfaceCommand {
   SurfaceFormat format = SurfaceFormat::kPly;
   std::variant<LatticeRequest, GridReference> lattice;
   Rule rule;
+  double thickness = 0.0;  // by which the set grows, world units
   bool merge_planes = true;
+  double simplify = 0.0;  // how far the surface may move, world units
 };
 
 }  // namespace raycone

@@ -47,6 +47,9 @@ Json to_object(const Verification& verification) {
   if (verification.largest_distance_difference) {
     object["largest_distance_difference"] = *verification.largest_distance_difference;
   }
+  if (verification.largest_gradient_difference) {
+    object["largest_gradient_difference"] = *verification.largest_gradient_difference;
+  }
   return object;
 }
 

@@ -15,6 +15,10 @@ std::string verification_clause(const Verification& verification) {
     std::snprintf(difference, sizeof difference, " (of distances %.2g)", *verification.largest_distance_difference);
     clause += difference;
   }
+  if (verification.largest_gradient_difference) {
+    std::snprintf(difference, sizeof difference, " (of gradients %.2g)", *verification.largest_gradient_difference);
+    clause += difference;
+  }
   if (verification.unresolved > 0) clause += ", skipped " + std::to_string(verification.unresolved) + " unresolved";
   return clause;
 }

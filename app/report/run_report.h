@@ -32,6 +32,7 @@ struct Verification {
   double largest_difference = 0.0;                      // of winding numbers and densities
   double largest_bound = 0.0;                           // of the values' error bounds
   std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
+  std::optional<double> largest_gradient_difference{};  // of components, per world unit; where gradients are wanted
 };
 
 // What `raycone surface` made; the surface has been checked.

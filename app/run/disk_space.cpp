@@ -28,6 +28,9 @@ double bytes_of_values(const OutputDescription& description, double of_real) {
       case FieldKind::kDistance:
         bytes += of_real;
         break;
+      case FieldKind::kVector:
+        bytes += 3 * of_real;
+        break;
       case FieldKind::kBound:
       case FieldKind::kCount:
         bytes += sizeof(float);
@@ -51,7 +54,7 @@ double bytes_of_sample(FieldFormat format, const OutputDescription& description)
     case FieldFormat::kVti:
       return bytes_of_values(description, bytes_of_real(description, Precision::kSingle));
     case FieldFormat::kCsv:
-      return bytes_of_row(kIndicesAndPosition + description.fields.size());
+      return bytes_of_row(kIndicesAndPosition + description.components());
     default:
       return 0.0;
   }
@@ -59,19 +62,19 @@ double bytes_of_sample(FieldFormat format, const OutputDescription& description)
 
 double bytes_of_point(FieldFormat format, const OutputDescription& description) {
   constexpr double kCoordinates = 3.0;
-  const auto fields = static_cast<double>(description.fields.size());
+  const auto numbers = static_cast<double>(description.components());
   switch (format) {
     case FieldFormat::kNpy:
-      return fields * bytes_of_real(description, Precision::kDouble);
+      return numbers * bytes_of_real(description, Precision::kDouble);
     case FieldFormat::kRawDouble:
-      return fields * sizeof(double);
+      return numbers * sizeof(double);
     case FieldFormat::kRawFloat:
-      return fields * sizeof(float);
+      return numbers * sizeof(float);
     case FieldFormat::kNpz:
       return kCoordinates * (description.on_surface ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +
              bytes_of_values(description, bytes_of_real(description, Precision::kDouble));
     case FieldFormat::kCsv:
-      return bytes_of_row(3 + description.fields.size());
+      return bytes_of_row(3 + description.components());
     default:
       return 0.0;
   }

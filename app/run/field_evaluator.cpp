@@ -18,12 +18,10 @@ double tolerance_of(const FieldOptions& options) {
 
 bool has_rule(const FieldOptions& options) { return options.has(Field::kInside) || options.has(Field::kDistance); }
 
-Vec3 point_of(const Lattice& lattice, const LatticeBlock& block, std::size_t number) {
-  const auto n = static_cast<std::int64_t>(number);
-  const std::int64_t row = n / block.counts[0];
-  return {lattice.coordinate(0, block.first[0] + n % block.counts[0]),
-          lattice.coordinate(1, block.first[1] + row % block.counts[1]),
-          lattice.coordinate(2, block.first[2] + row / block.counts[1])};
+std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const FieldOptions& options,
+                                              const std::vector<ExteriorEdge>* edges) {
+  if (!options.has(Field::kGradient)) return std::nullopt;
+  return edges ? GradientEvaluator(mesh, *edges) : GradientEvaluator(mesh, exterior_edges(mesh));
 }
 
 }  // namespace
@@ -35,6 +33,7 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
       thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd)
                                               : std::nullopt),
+      gradient_(gradient_for(mesh, options, edges)),
       winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges,
                       Accuracy{tolerance_of(options), samples}) {}
 
@@ -68,10 +67,12 @@ Tally FieldEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block
                                std::atomic<std::uint64_t>* done) const {
   samples.resize(static_cast<std::size_t>(block.size()));
   const std::span<double> values = samples.winding_numbers();
+  std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
   const Tally tally = rule_ ? winding_number_.evaluate_for(*rule_, lattice, block, values, done)
                             : winding_number_.evaluate(lattice, block, values, done, samples.diagnostics());
-  settle([&](std::size_t n) { return point_of(lattice, block, n); }, samples);
+  settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
   if (distance_) distance_->evaluate(lattice, block, band_ * lattice.spacing.x, samples.distances());
+  if (gradient_) gradient_->evaluate(lattice, block, samples.gradients(), last);
   samples.derive();
   return tally;
 }
@@ -79,9 +80,11 @@ Tally FieldEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block
 Tally FieldEvaluator::evaluate(std::span<const Vec3> points, FieldSamples& samples,
                                std::atomic<std::uint64_t>* done) const {
   samples.resize(points.size());
+  std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
   const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
   settle([&](std::size_t n) { return points[n]; }, samples);
   if (distance_) distance_->evaluate(points, samples.distances());
+  if (gradient_) gradient_->evaluate(points, samples.gradients(), last);
   samples.derive();
   return tally;
 }

@@ -11,6 +11,7 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
+#include "core/evaluation/gradient.h"
 #include "core/evaluation/winding_number.h"
 
 namespace raycone {
@@ -44,6 +45,7 @@ class FieldEvaluator {
   std::optional<Rule> rule_;                   // where nothing but it is asked of winding numbers
   std::vector<double> thresholds_;             // that values may have to be settled for
   std::optional<DistanceEvaluator> distance_;  // where wanted
+  std::optional<GradientEvaluator> gradient_;  // likewise
   WindingNumberEvaluator winding_number_;
 };
 

@@ -24,6 +24,9 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
     case Field::kDistance:
       description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
       break;
+    case Field::kGradient:
+      description = {"gradient", "gradient_x,gradient_y,gradient_z", "gradient", FieldKind::kVector, 0.0, ""};
+      break;
   }
   description.threshold = rule.threshold;
   description.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
@@ -60,6 +63,7 @@ std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
   for (const Field field : options.fields) {
     if (field == Field::kInside) bytes += sizeof(std::uint8_t);
     if (field == Field::kDensity || field == Field::kDistance) bytes += sizeof(double);
+    if (field == Field::kGradient) bytes += sizeof(Vec3);
   }
   if (options.diagnostics) bytes += 2 * sizeof(std::int64_t) + sizeof(std::uint8_t) + sizeof(double);
   return bytes;
@@ -75,6 +79,8 @@ FieldValues FieldSamples::values_of(Field field) const {
       return std::span(density_);
     case Field::kDistance:
       return std::span(distances_);
+    case Field::kGradient:
+      return std::span<const Vec3>(gradients_);
   }
   return std::span(winding_numbers_);
 }
@@ -84,6 +90,7 @@ void FieldSamples::resize(std::size_t count) {
   if (options_.has(Field::kInside)) inside_.resize(count);
   if (options_.has(Field::kDensity)) density_.resize(count);
   if (options_.has(Field::kDistance)) distances_.resize(count);
+  if (options_.has(Field::kGradient)) gradients_.resize(count);
   fields_.clear();
   for (const Field field : options_.fields) fields_.push_back(values_of(field));
   if (!diagnostics_) return;

@@ -23,6 +23,7 @@ struct SampleNumbers {
   std::span<const std::uint8_t> inside{};
   std::span<const double> density{};
   std::span<const double> distance{};  // signed
+  std::span<const Vec3> gradient{};
 };
 
 // Room for all numbers of a slab or batch of samples.
@@ -41,6 +42,8 @@ class FieldSamples {
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
+  // Empty where they are not wanted.
+  [[nodiscard]] std::span<Vec3> gradients() { return gradients_; }
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
@@ -50,7 +53,7 @@ class FieldSamples {
   // After derive().
   [[nodiscard]] SampleNumbers numbers() const {
     const bool rule_only = options_.rule_only();
-    return {rule_only ? std::span<const double>() : winding_numbers_, inside_, density_, distances_};
+    return {rule_only ? std::span<const double>() : winding_numbers_, inside_, density_, distances_, gradients_};
   }
 
   // As describe_fields() lists them.
@@ -64,6 +67,7 @@ class FieldSamples {
   std::vector<std::uint8_t> inside_;
   std::vector<double> density_;
   std::vector<double> distances_;
+  std::vector<Vec3> gradients_;
   std::vector<std::int64_t> crossings_;
   std::vector<std::int64_t> degenerate_;
   std::vector<std::uint8_t> on_surface_;

@@ -51,7 +51,11 @@ void turn_rows_over(std::span<double> values, std::int64_t width, std::int64_t h
 }
 
 void take(const FieldValues& from, std::span<double> to) {
-  std::visit([&](const auto& values) { std::ranges::copy(values, to.begin()); }, from);
+  if (const auto* const flags = std::get_if<std::span<const std::uint8_t>>(&from)) {
+    std::ranges::copy(*flags, to.begin());
+  } else {
+    std::ranges::copy(std::get<std::span<const double>>(from), to.begin());
+  }
 }
 
 Tally evaluate_view(const FieldEvaluator& evaluator, const PlaneView& view, FieldSamples& samples,

@@ -1,6 +1,8 @@
 #include "app/run/run_surface.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -14,25 +16,36 @@
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
 #include "app/run/written_files.h"
+#include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/surface/surface.h"
 #include "core/surface/surface_measures.h"
+#include "core/surface/thicken.h"
 #include "io/files/file_error.h"
 #include "io/mesh/write_surface.h"
 
 namespace raycone {
 namespace {
 
-// With a layer of samples around what is asked for, unless that has one by itself.
+// That --thicken needs around a mesh.
+std::int64_t layers_of(const SurfaceCommand& command, const Vec3& spacing) {
+  constexpr double kMost = 1e6;
+  const double layers = std::ceil(command.thickness / std::min({spacing.x, spacing.y, spacing.z}));
+  if (layers <= kMost) return static_cast<std::int64_t>(layers);
+  throw LimitError(command.mesh.path + ": --thicken is more than a million voxels");
+}
+
+// With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
 Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const request = std::get_if<LatticeRequest>(&command.lattice);
   if (request) {
     Lattice lattice = choose_lattice(bounding_box(mesh), *request, warnings);
-    if (std::holds_alternative<VoxelPadding>(request->padding)) return lattice;
-    return with_layers(lattice, 1);
+    const std::int64_t around = std::holds_alternative<VoxelPadding>(request->padding) ? 0 : 1;
+    return with_layers(lattice, around + layers_of(command, lattice.spacing));
   }
   const GridReference& grid = std::get<GridReference>(command.lattice);
-  return with_layers(read_grid_lattice(grid.path, grid.name), 1);
+  const Lattice lattice = read_grid_lattice(grid.path, grid.name);
+  return with_layers(lattice, 1 + layers_of(command, lattice.spacing));
 }
 
 // What is inside must be something that a surface can go around.
@@ -40,7 +53,8 @@ void check_inside(const NodeSet& inside, const SurfaceCommand& command) {
   const std::string rule = name_of(command.rule);
   if (inside.empty()) {
     throw InputError(command.mesh.path + ": no sample is inside by the rule " + rule +
-                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N)?");
+                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, "
+                     "--thicken T)?");
   }
   if (inside.reaches_border()) {
     throw InputError(command.mesh.path + ": what is inside by the rule " + rule +
@@ -51,7 +65,8 @@ void check_inside(const NodeSet& inside, const SurfaceCommand& command) {
 
 SurfaceMesh surface_of(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                        const SurfaceCommand& command) {
-  const SurfaceOptions options{command.rule, command.merge_planes, is_single_precision(command.format)};
+  const SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
+                               is_single_precision(command.format)};
   try {
     return closed_surface(mesh, evaluator, inside, options);
   } catch (const LatticeTooFine& error) {
@@ -85,10 +100,11 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   report.exterior_edges = evaluator.exterior_edges();
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   SurfaceMesh surface = timed(report.seconds.evaluate, [&] {
-    const NodeSet inside = nodes_inside(evaluator, command.rule, *report.lattice, done);
+    NodeSet inside = nodes_inside(evaluator, command.rule, *report.lattice, done);
+    if (command.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), command.thickness);
     check_inside(inside, command);
     SurfaceMesh made = surface_of(mesh, evaluator, inside, command);
-    report.surface = report_of(made, measure_surface(made, mesh, *report.lattice));
+    report.surface = report_of(made, measure_surface(made, mesh, *report.lattice, command.thickness));
     return made;
   });
   for (std::int32_t& source : surface.sources) {

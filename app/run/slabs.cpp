@@ -35,6 +35,8 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
       const bool all = field.background / lattice.spacing.x >= 2 * static_cast<double>(longest);
       return real_bytes * ((all ? samples : at_surface) + blocks_in_the_making);
     }
+    case FieldKind::kVector:
+      return 3 * real_bytes * ((open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kBound:
       return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kCount:

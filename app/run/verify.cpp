@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/exact/direct_distance.h"
+#include "core/exact/direct_gradient.h"
 #include "core/exact/direct_sum.h"
 #include "core/machine/threads.h"
 
@@ -32,6 +33,7 @@ DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, c
   if (!numbers.inside.empty()) sample.inside = numbers.inside[n] != 0;
   if (!numbers.density.empty()) sample.density = numbers.density[n];
   if (!numbers.distance.empty()) sample.distance = numbers.distance[n];
+  if (!numbers.gradient.empty()) sample.gradient = numbers.gradient[n];
   return sample;
 }
 
@@ -46,6 +48,8 @@ std::string position_text(const DrawnSample& sample) {
          ", " + text(sample.point.z) + ")";
 }
 
+constexpr std::array kGradientNames{"gradient_x", "gradient_y", "gradient_z"};
+
 // All numbers of a sample under the names that users know, in one order.
 struct NamedNumber {
   std::string name;
@@ -57,6 +61,9 @@ std::vector<NamedNumber> numbers_of(const DrawnSample& sample) {
   if (sample.inside) numbers.push_back({"inside", *sample.inside ? 1.0 : 0.0});
   if (sample.density) numbers.push_back({"density", *sample.density});
   if (sample.distance) numbers.push_back({"sdf", *sample.distance});
+  for (int axis = 0; sample.gradient && axis < 3; ++axis) {
+    numbers.push_back({kGradientNames[static_cast<std::size_t>(axis)], (*sample.gradient)[axis]});
+  }
   return numbers;
 }
 
@@ -74,6 +81,7 @@ Quad absolute(Quad x) { return x < 0 ? -x : x; }
 struct Truth {
   QuadWithin winding{};
   Quad distance = 0;
+  DirectGradient gradient{};
 };
 
 // floor(w + 1/2)
@@ -161,6 +169,19 @@ void check_distance(const std::string& name, const DrawnSample& sample, const Tr
                tolerance, largest);
 }
 
+void check_gradient(const std::string& name, const DrawnSample& sample, const Truth& truth, double& largest) {
+  constexpr double kRelative = 1e-11, kMost = std::numeric_limits<double>::max();
+  const QuadVec3& g = truth.gradient.value;
+  const std::array expected{g.x, g.y, g.z};
+  const double tolerance =
+      std::min(kMost, kRelative * static_cast<double>(std::min(truth.gradient.magnitude, Quad(kMost)))) +
+      std::numeric_limits<double>::denorm_min();
+  for (std::size_t axis = 0; axis < expected.size(); ++axis) {
+    check_number(name, sample, {kGradientNames[axis], (*sample.gradient)[static_cast<int>(axis)]},
+                 std::clamp(expected[axis], Quad(-kMost), Quad(kMost)), tolerance, largest);
+  }
+}
+
 void check(const std::string& name, const DrawnSample& sample, const TriangleMesh& mesh,
            const Expectations& expectations, const Truth& truth, Verification& verification) {
   double& largest = verification.largest_difference;
@@ -171,6 +192,10 @@ void check(const std::string& name, const DrawnSample& sample, const TriangleMes
     check_number(name, sample, {"density", *sample.density}, expected, expectations.accuracy, largest);
   }
   if (sample.inside || sample.distance) check_side(name, sample, expectations, truth);
+  if (sample.gradient) {
+    if (!verification.largest_gradient_difference) verification.largest_gradient_difference = 0.0;
+    check_gradient(name, sample, truth, *verification.largest_gradient_difference);
+  }
   if (sample.distance) {
     if (!verification.largest_distance_difference) verification.largest_distance_difference = 0.0;
     check_distance(name, sample, mesh, expectations, truth, *verification.largest_distance_difference);
@@ -189,6 +214,7 @@ std::vector<Truth> truths_of(const TriangleMesh& mesh, std::span<const DrawnSamp
     for (std::size_t n = begin; n < end; ++n) {
       truths[n].winding = perturbed_direct_sum(mesh, samples[n].point);
       if (samples[n].distance) truths[n].distance = direct_distance(mesh, samples[n].point);
+      if (samples[n].gradient) truths[n].gradient = direct_gradient(mesh, samples[n].point);
     }
   });
   return truths;

@@ -8,6 +8,7 @@
 
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
+#include "core/surface/edge_roots.h"
 
 namespace raycone {
 namespace {
@@ -15,45 +16,11 @@ namespace {
 // Hits that are nearer to each other, as fractions of an edge, are one: of triangles that share an edge.
 constexpr double kSameHit = 0x1p-40;
 
-// From its inside end to its outside end.
-struct MixedEdge {
-  Vec3 inside, outside;
-  std::uint32_t number;
-
-  [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
-};
-
 // An edge of which more has to be known than where it meets triangles.
 struct OpenEdge {
   MixedEdge edge;
   std::vector<SegmentHit> hits;  // one for each place
   std::size_t first_probe = 0;
-};
-
-// The rule along edges, a continuous function between triangles: positive inside.
-class RuleAlong {
- public:
-  RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
-
-  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const {
-    std::vector<double> values(points.size());
-    evaluator_.evaluate(points, values);
-    for (double& w : values) w = holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
-    return values;
-  }
-  [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
-
- private:
-  const WindingNumberEvaluator& evaluator_;
-  const Rule& rule_;
-};
-
-// Where the rule ceases to hold between two places of an edge, bracketed.
-struct Bracket {
-  MixedEdge edge;
-  double low, high;                          // inside, outside
-  double low_value = 0.0, high_value = 0.0;  // positive or 0, negative or 0
-  int stays = 0;                             // how often in a row the same end was kept: > 0 low, < 0 high
 };
 
 class EdgePointFinder {
@@ -64,7 +31,10 @@ class EdgePointFinder {
   std::vector<EdgePoint> find() {
     find_hits();
     decide_open_edges();
-    find_roots();
+    find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.at(places); });
+    for (const Bracket& bracket : brackets_) {
+      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), {}, kHole};
+    }
     return std::move(points_);
   }
 
@@ -72,7 +42,6 @@ class EdgePointFinder {
   void find_hits();
   void decide_open_edges();
   void decide(const OpenEdge& open, std::span<const double> probes);
-  void find_roots();
 
   void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
     const Triangle& t = mesh_.triangles[hit.triangle];
@@ -171,65 +140,6 @@ void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probe
     inside_until = here;
   }
   brackets_.push_back({open.edge, inside_until, 1.0});
-}
-
-// The next place to look at: by the secant, with the value of an end that stays halved (the Illinois rule; Dowell,
-// Jarratt 1971); halfway where that does not get on.
-double next_place(const Bracket& bracket, int round) {
-  constexpr int kEveryRound = 3;
-  const double middle = bracket.low + (bracket.high - bracket.low) / 2;
-  if (round % kEveryRound == kEveryRound - 1) return middle;
-  const double weight = bracket.low_value / (bracket.low_value - bracket.high_value);
-  const double secant = bracket.low + weight * (bracket.high - bracket.low);
-  return secant > bracket.low && secant < bracket.high ? secant : middle;
-}
-
-void narrow(Bracket& bracket, double at, double value) {
-  constexpr double kHalf = 0.5;
-  if (value >= 0.0) {
-    bracket.low = at;
-    bracket.low_value = value;
-    bracket.stays = std::min(bracket.stays, 0) - 1;
-    if (bracket.stays < -1) bracket.high_value *= kHalf;
-  } else {
-    bracket.high = at;
-    bracket.high_value = value;
-    bracket.stays = std::max(bracket.stays, 0) + 1;
-    if (bracket.stays > 1) bracket.low_value *= kHalf;
-  }
-}
-
-void EdgePointFinder::find_roots() {
-  constexpr int kRounds = 90;          // a third of them halve the bracket
-  constexpr double kNarrow = 0x1p-34;  // of an edge
-  std::vector<Bracket*> waiting;
-  std::vector<Vec3> points;
-  for (Bracket& bracket : brackets_) {
-    waiting.push_back(&bracket);
-    points.push_back(bracket.edge.point(bracket.low));
-    points.push_back(bracket.edge.point(bracket.high));
-  }
-  // At a triangle the value may be that of its other side.
-  const std::vector<double> ends = rule_.at(points);
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    waiting[i]->low_value = std::max(ends[2 * i], 0.0);
-    waiting[i]->high_value = std::min(ends[2 * i + 1], 0.0);
-  }
-  for (int round = 0; round < kRounds && !waiting.empty(); ++round) {
-    std::vector<double> places;
-    points.clear();
-    for (const Bracket* const bracket : waiting) {
-      places.push_back(next_place(*bracket, round));
-      points.push_back(bracket->edge.point(places.back()));
-    }
-    const std::vector<double> values = rule_.at(points);
-    for (std::size_t i = 0; i < waiting.size(); ++i) narrow(*waiting[i], places[i], values[i]);
-    std::erase_if(waiting, [](const Bracket* bracket) { return bracket->high - bracket->low <= kNarrow; });
-  }
-  for (const Bracket& bracket : brackets_) {
-    const double at = bracket.low + (bracket.high - bracket.low) / 2;
-    points_[bracket.edge.number] = {bracket.edge.point(within(at)), {}, kHole};
-  }
 }
 
 }  // namespace

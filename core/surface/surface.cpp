@@ -11,6 +11,8 @@
 #include "core/machine/floating_point.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/simplify.h"
+#include "core/surface/thicken.h"
 
 namespace raycone {
 namespace {
@@ -59,7 +61,9 @@ class SurfaceMaker {
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
+      points_ = options_.thickness > 0.0 ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), distance_,
+                                                             options_.thickness, cells_, margins)
+                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
       FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (std::optional<SurfaceMesh> surface = attempt(sharp, margins)) return std::move(*surface);
@@ -80,7 +84,7 @@ class SurfaceMaker {
     failed_ = surface.mesh;
     if (!faults_.none()) return std::nullopt;
     if (!options_.merge_planes) return surface;
-    return merged(std::move(surface), margins);
+    return simplified(merged(std::move(surface), margins), margins);
   }
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
@@ -112,6 +116,26 @@ class SurfaceMaker {
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[into[v]];
     }
     return std::nullopt;
+  }
+
+  // Pulls around faces that intersect are undone, until there are none; at worst all.
+  SurfaceMesh simplified(SurfaceMesh surface, const SurfaceMargins& margins) {
+    constexpr double kMargins = 16.0, kMargin = 1.0 - 1e-6;
+    constexpr int kManyRounds = 16;
+    const Vec3& h = inside_.lattice().spacing;
+    // Merging has moved points by a few margins already.
+    const double most = kMargin * options_.simplify - kMargins * margins.inner * std::max({h.x, h.y, h.z});
+    std::vector<bool> kept(surface.mesh.vertices.size(), false);
+    for (int round = 0; round < kManyRounds && most > 0.0; ++round) {
+      MergedSurface result = simplify(surface, inside_, kept, most);
+      const std::vector<bool> touched = faulty_vertices(result.surface.mesh);
+      drop_unused_vertices(result.surface.mesh);
+      const SurfaceFaults faults = faults_of(result.surface.mesh, inside_);
+      if (faults.none()) return std::move(result.surface);
+      if (faults.intersections.pairs == 0) return surface;
+      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[result.into[v]];
+    }
+    return surface;
   }
 
   // Vertices near faces that intersect: those of these faces, and of their neighbours.

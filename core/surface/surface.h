@@ -15,7 +15,9 @@ namespace raycone {
 
 struct SurfaceOptions {
   Rule rule;
+  double thickness = 0.0;         // the set has grown by this distance from the mesh, world units
   bool merge_planes = true;       // faces of one plane, which changes no point of the surface
+  double simplify = 0.0;          // after that, how far the surface may move, world units
   bool single_precision = false;  // vertices are rounded to float
 };
 
@@ -31,12 +33,14 @@ class LatticeTooFine : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The surface that separates `inside`, which nodes_inside() found by `evaluator` of `mesh` and the rule, from the other
-// nodes: closed, oriented outward, 2-manifold, without self-intersections; all of that has been checked, exactly, on
-// the vertices returned. They lie on the mesh (where the source is a triangle) or where the winding number passes a
-// threshold of the rule (kHole), at most by the margin off. The same for any number of threads.
-// Preconditions: !inside.empty(), !inside.reaches_border(); `mesh` is welded and its used vertices are finite.
-// Throws SurfaceFailure, LatticeTooFine, std::length_error for more than 2^31 - 1 faces.
+// The surface that separates `inside`, which nodes_inside() found by `evaluator` of `mesh` and the rule, and where it
+// has a thickness insert_near(), from the other nodes: closed, oriented outward, 2-manifold, without
+// self-intersections; all of that has been checked, exactly, on the vertices returned. They lie on the mesh (where the
+// source is a triangle) or where the winding number passes a threshold of the rule (kHole), at most by the margin off;
+// with `simplify` that is so of vertices, and no point of the surface is farther than that from the surface without,
+// nor the other way round. The same for any number of threads. Preconditions: !inside.empty(),
+// !inside.reaches_border(); `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
+// std::length_error for more than 2^31 - 1 faces.
 [[nodiscard]] SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
                                          const NodeSet& inside, const SurfaceOptions& options);
 

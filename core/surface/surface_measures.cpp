@@ -58,7 +58,7 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, const Triangle&
   }
 }
 
-double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
+double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice, double thickness) {
   constexpr std::size_t kTrianglesAtOnce = 1024;
   const double diagonal = length_of_vector(lattice.spacing);
   const DistanceEvaluator distance(surface.mesh);
@@ -70,21 +70,23 @@ double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, con
     }
     std::vector<double> distances(samples.points.size());
     distance.evaluate(samples.points, distances);
-    for (std::size_t i = 0; i < distances.size(); ++i) dropped += distances[i] > diagonal ? samples.areas[i] : 0.0;
+    for (std::size_t i = 0; i < distances.size(); ++i)
+      dropped += distances[i] > diagonal + thickness ? samples.areas[i] : 0.0;
   }
   return dropped;
 }
 
 }  // namespace
 
-SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
+SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice,
+                                double thickness) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;
   measures.max_distance = largest_distance(surface, mesh);
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }
-  measures.dropped_area = dropped_area_of(surface, mesh, lattice);
+  measures.dropped_area = dropped_area_of(surface, mesh, lattice, thickness);
   return measures;
 }
 

@@ -1,6 +1,7 @@
 #include "io/fields/array_elements.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -59,6 +60,16 @@ struct HalfElement {
   Narrowing narrowing;
 };
 
+// Convert: one of the types above, for each component.
+template <typename Convert>
+struct VectorElement {
+  using Number = Vec3;
+  using Element = std::array<typename Convert::Element, 3>;
+  static constexpr const char* kDescriptor = Convert::kDescriptor;
+  Element operator()(const Vec3& vector) const { return {convert(vector.x), convert(vector.y), convert(vector.z)}; }
+  Convert convert;
+};
+
 template <typename Convert>
 class TypedElements final : public ArrayElements {
  public:
@@ -114,10 +125,13 @@ class TypedElements final : public ArrayElements {
     }
   }
 
-  void check_range(std::span<const Number> numbers) const {
+  void check_range(std::span<const Vec3>) const {}
+
+  template <typename Scalar>
+  void check_range(std::span<const Scalar> numbers) const {
     if (!std::isfinite(largest_)) return;
     const auto beyond = std::ranges::find_if(
-        numbers, [this](Number number) { return std::abs(static_cast<double>(number)) > largest_; });
+        numbers, [this](Scalar number) { return std::abs(static_cast<double>(number)) > largest_; });
     if (beyond == numbers.end()) return;
     char message[160];
     std::snprintf(message, sizeof message,
@@ -136,6 +150,19 @@ class TypedElements final : public ArrayElements {
   std::vector<Element> elements_;
 };
 
+// Components beyond the range of fewer bits are stored as the largest there.
+std::unique_ptr<ArrayElements> make_vector_elements(const FieldDescription& field, Precision precision,
+                                                    const std::string& output) {
+  const auto made = [&](auto convert) -> std::unique_ptr<ArrayElements> {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    using Vector = VectorElement<decltype(convert)>;
+    return std::make_unique<TypedElements<Vector>>(Vector{convert}, kAny, output);
+  };
+  if (precision == Precision::kDouble) return made(DoubleElement{});
+  if (precision == Precision::kSingle) return made(FloatElement{Narrowing(field)});
+  return made(HalfElement{Narrowing(field, &nearest_half, &next_half_above)});
+}
+
 }  // namespace
 
 std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field, Precision precision,
@@ -145,6 +172,7 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
   if (field.kind == FieldKind::kCount) {
     return std::make_unique<TypedElements<IntegerElement>>(IntegerElement{}, kAny, output);
   }
+  if (field.kind == FieldKind::kVector) return make_vector_elements(field, precision, output);
   if (field.kind == FieldKind::kBound || precision == Precision::kDouble) {
     return std::make_unique<TypedElements<DoubleElement>>(DoubleElement{}, kAny, output);
   }

@@ -40,21 +40,24 @@ enum class FieldKind {
   kReal,      // doubles, stored in the precision asked for
   kDensity,   // likewise: a fog volume
   kDistance,  // likewise: a level set, of magnitude `background` where it is not active
+  kVector,    // three doubles, stored likewise; those beyond the range of fewer bits as the largest there
   kBound,     // doubles, rounded up where 32 bits are stored
   kCount,     // 64-bit integers
   kFlag,      // 0 or 1
 };
 
-// One number per sample, and its names.
+// One number or vector per sample, and its names.
 struct FieldDescription {
   std::string name = "winding";  // in metadata
-  std::string column = "w";      // of a table
+  std::string column = "w";      // of a table; of vectors those of the components, with commas between
   std::string grid = "winding";  // in VDB
   FieldKind kind = FieldKind::kReal;
   double background = 0.0;  // the value far away, where grids hold nothing
   std::string rule;         // empty where the field has none: not written then
   double threshold = 0.5;   // fewer digits keep numbers on its side (io/fields/narrowing.h); for kReal and kDensity
   bool threshold_of_magnitude = false;  // and so their magnitudes
+
+  [[nodiscard]] std::size_t components() const { return kind == FieldKind::kVector ? 3 : 1; }
 };
 
 // Bits of a stored real number: 16, 32, 64.
@@ -79,10 +82,17 @@ struct OutputDescription {
   std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
 
   [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }
+  // Numbers of a sample.
+  [[nodiscard]] std::size_t components() const {
+    std::size_t count = 0;
+    for (const FieldDescription& field : fields) count += field.components();
+    return count;
+  }
 };
 
-// Numbers of one field: integers for kCount, bytes for kFlag, else doubles.
-using FieldValues = std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>>;
+// Of one field: integers for kCount, bytes for kFlag, vectors for kVector, else doubles.
+using FieldValues = std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>,
+                                 std::span<const Vec3>>;
 
 // Known only when all values are.
 struct FieldTotals {
@@ -107,14 +117,14 @@ class LatticeWriter {
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
 // below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY, NRRD
-// and NIfTI hold one field; the last two and VTI no halves.
+// and NIfTI hold one field; the last two no vectors, and like VTI no halves.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const Lattice& lattice,
                                                                  const OutputDescription& description);
 
 // Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
-// shape (n,), with several fields (n, fields), all in the precision asked for; NPZ: an array of the points and one per
-// field; raw: the numbers of the first point, those of the second, and so on.
+// shape (n,), with several numbers (n, numbers), all in the precision asked for; NPZ: an array of the points and one
+// per field; raw: the numbers of the first point, those of the second, and so on.
 class PointWriter {
  public:
   virtual ~PointWriter() = default;

@@ -2,9 +2,9 @@
 
 namespace raycone {
 
-std::string shape_of(const Lattice& lattice) {
+std::string shape_of(const Lattice& lattice, std::size_t components) {
   return '(' + std::to_string(lattice.counts[0]) + ", " + std::to_string(lattice.counts[1]) + ", " +
-         std::to_string(lattice.counts[2]) + ')';
+         std::to_string(lattice.counts[2]) + (components > 1 ? ", " + std::to_string(components) : "") + ')';
 }
 
 int array_slab_axis(const Lattice& lattice, bool seekable) {

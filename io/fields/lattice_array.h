@@ -13,8 +13,8 @@
 
 namespace raycone {
 
-// "(2, 3, 4)"
-[[nodiscard]] std::string shape_of(const Lattice& lattice);
+// "(2, 3, 4)", of vectors "(2, 3, 4, 3)"
+[[nodiscard]] std::string shape_of(const Lattice& lattice, std::size_t components);
 
 // Across which axis such arrays take their slabs. Those across the slowest axis, x, can be appended, but cut all rays,
 // and each slab has to look for crossings again. Slabs across y are pieces of planes across x: long ones, as z is the

@@ -19,7 +19,8 @@ namespace raycone {
 // magnitude, only for itself. Half-integers beyond 2^23 are not floats.
 class Narrowing {
  public:
-  explicit Narrowing(const FieldDescription& field) : Narrowing(field, &nearest_float, &next_float) {}
+  explicit Narrowing(const FieldDescription& field)
+      : Narrowing(field, field.kind == FieldKind::kVector ? &float_in_range : &nearest_float, &next_float) {}
 
   // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards.
   Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
@@ -40,6 +41,10 @@ class Narrowing {
 
  private:
   static float nearest_float(double value) { return static_cast<float>(value); }
+  static float float_in_range(double value) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(value, -kMost, kMost));
+  }
   static float next_float(float value) { return std::nextafter(value, std::numeric_limits<float>::infinity()); }
   [[nodiscard]] float up(float value) const { return next_(value); }
   [[nodiscard]] float down(float value) const { return -next_(-value); }

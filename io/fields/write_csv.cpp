@@ -51,13 +51,25 @@ char* print(char* at, std::string_view text) {
   return at + text.size();
 }
 
-// Prints sample n's number of each field, and the end of the row.
+char* print(char* at, const Vec3& vector) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) *at++ = ',';
+    at = print(at, vector[axis]);
+  }
+  return at;
+}
+
+// Prints what sample n has of each field, and the end of the row.
 char* print(char* at, std::span<const FieldValues> fields, std::size_t n) {
   for (const FieldValues& field : fields) {
     if (const auto* const reals = std::get_if<std::span<const double>>(&field)) {
       at = print(at, (*reals)[n]);
+    } else if (const auto* const vectors = std::get_if<std::span<const Vec3>>(&field)) {
+      at = print(at, (*vectors)[n]);
+    } else if (const auto* const counts = std::get_if<std::span<const std::int64_t>>(&field)) {
+      at = print(at, (*counts)[n]);
     } else {
-      std::visit([&](const auto& numbers) { at = print(at, std::int64_t(numbers[n])); }, field);
+      at = print(at, std::int64_t{std::get<std::span<const std::uint8_t>>(field)[n]});
     }
     *at++ = ',';
   }
@@ -111,7 +123,7 @@ class RowWriter {
 class CsvLatticeWriter final : public LatticeWriter {
  public:
   CsvLatticeWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description)
-      : output_(output), lattice_(lattice), rows_(output, 6 + description.fields.size()) {
+      : output_(output), lattice_(lattice), rows_(output, 6 + description.components()) {
     const std::string header = "i,j,k,x,y,z," + columns_of(description);
     output_.write(header.data(), header.size());
     // The texts of one axis are the same in every row; printing them once makes rows three times as fast.
@@ -164,7 +176,7 @@ class CsvLatticeWriter final : public LatticeWriter {
 class CsvPointWriter final : public PointWriter {
  public:
   CsvPointWriter(OutputFile& output, const OutputDescription& description)
-      : output_(output), rows_(output, 3 + description.fields.size()) {
+      : output_(output), rows_(output, 3 + description.components()) {
     const std::string header = "x,y,z," + columns_of(description);
     output_.write(header.data(), header.size());
   }

@@ -194,7 +194,7 @@ class ImageWriter final : public LatticeWriter {
 };
 
 void check_fields(const OutputDescription& description) {
-  if (description.fields.size() != 1) throw std::logic_error("an image holds one field");
+  if (description.components() != 1) throw std::logic_error("an image holds one number per sample");
 }
 
 }  // namespace

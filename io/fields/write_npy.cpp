@@ -24,7 +24,8 @@ class NpyLatticeWriter final : public LatticeWriter {
       : output_(output), slab_axis_(array_slab_axis(lattice, output.seekable())) {
     auto elements = make_array_elements(description.fields.front(), description.precision.value_or(Precision::kSingle),
                                         output.name());
-    const std::string header = npy_header(elements->descriptor(), shape_of(lattice));
+    const std::string header =
+        npy_header(elements->descriptor(), shape_of(lattice, description.fields.front().components()));
     output_.write(header.data(), header.size());
     header_size_ = next_ = header.size();
     array_.emplace(lattice, std::move(elements));
@@ -57,11 +58,11 @@ class NpyPointWriter final : public PointWriter {
   NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, const OutputDescription& description)
       : output_(output),
         announced_(size),
-        shape_end_(description.fields.size() > 1 ? ", " + std::to_string(description.fields.size()) + ")" : ",)"),
+        shape_end_(description.components() > 1 ? ", " + std::to_string(description.components()) + ")" : ",)"),
         precision_(description.precision.value_or(Precision::kDouble)) {
     for (FieldDescription field : description.fields) {
       // Columns are of one type, whatever they hold.
-      if (field.kind != FieldKind::kDistance) field.kind = FieldKind::kReal;
+      if (field.kind != FieldKind::kDistance && field.kind != FieldKind::kVector) field.kind = FieldKind::kReal;
       columns_.push_back(make_array_elements(field, precision_, output.name()));
     }
     if (announced_ || output_.seekable()) {
@@ -79,7 +80,7 @@ class NpyPointWriter final : public PointWriter {
       columns.push_back(columns_[f]->in_order(as_reals(fields[f], numbers[f])));
     }
     if (columns.size() == 1) return append(columns.front());
-    append(rows_of(columns, columns_.front()->size()));
+    append(rows_of(columns, points.size()));
   }
 
   void flush() override { output_.flush(); }
@@ -98,17 +99,26 @@ class NpyPointWriter final : public PointWriter {
 
  private:
   static FieldValues as_reals(const FieldValues& values, std::vector<double>& numbers) {
-    if (std::holds_alternative<std::span<const double>>(values)) return values;
-    std::visit([&](const auto& others) { numbers.assign(others.begin(), others.end()); }, values);
+    if (const auto* const counts = std::get_if<std::span<const std::int64_t>>(&values)) {
+      for (const std::int64_t count : *counts) numbers.push_back(static_cast<double>(count));
+    } else if (const auto* const flags = std::get_if<std::span<const std::uint8_t>>(&values)) {
+      numbers.assign(flags->begin(), flags->end());
+    } else {
+      return values;
+    }
     return std::span<const double>(numbers);
   }
 
-  static std::vector<char> rows_of(const std::vector<std::span<const char>>& columns, std::size_t size) {
-    std::vector<char> rows(columns.size() * columns.front().size());
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      for (std::size_t n = 0; n < columns[c].size() / size; ++n) {
-        std::memcpy(&rows[(n * columns.size() + c) * size], &columns[c][n * size], size);
-      }
+  static std::vector<char> rows_of(const std::vector<std::span<const char>>& columns, std::size_t count) {
+    std::size_t all = 0;
+    for (const std::span<const char>& column : columns) all += column.size();
+    if (count == 0) return {};
+    std::vector<char> rows(all);
+    std::size_t before = 0;  // bytes of a row
+    for (const std::span<const char>& column : columns) {
+      const std::size_t size = column.size() / count;
+      for (std::size_t n = 0; n < count; ++n) std::memcpy(&rows[n * (all / count) + before], &column[n * size], size);
+      before += size;
     }
     return rows;
   }

@@ -49,6 +49,10 @@ bool is_packed(const FieldDescription& field, const OutputDescription& descripti
   return description.packs_flags && field.name == "inside";
 }
 
+std::string array_name(const FieldDescription& field) {
+  return field.kind == FieldKind::kVector ? field.name : field.column;
+}
+
 // `size` bytes of one array, known by its description.
 NpzArray packed_array(const FieldDescription& field, std::uint64_t samples) {
   const std::uint64_t bytes = (samples + 7) / 8;
@@ -112,8 +116,8 @@ class NpzLatticeWriter final : public LatticeWriter {
         continue;
       }
       auto elements = make_array_elements(field, precision, output.name());
-      const std::string header = npy_header(elements->descriptor(), shape_of(lattice));
-      arrays_.push_back({field.column, header, samples * elements->size()});
+      const std::string header = npy_header(elements->descriptor(), shape_of(lattice, field.components()));
+      arrays_.push_back({array_name(field), header, samples * elements->size()});
       column.array.emplace(lattice, std::move(elements));
     }
     append(arrays_, arrays_of(lattice, packed));
@@ -216,7 +220,7 @@ class NpzPointWriter final : public PointWriter {
         arrays.push_back(packed_array(field, size));
         shapes.push_back(small_array("inside_shape", "<i8", "(1,)", std::array{static_cast<std::int64_t>(size)}));
       } else {
-        arrays.push_back(array_of(field.column, *columns_[f], size));
+        arrays.push_back(array_of(field, *columns_[f], size));
       }
     }
     if (description_.on_surface) {
@@ -229,8 +233,9 @@ class NpzPointWriter final : public PointWriter {
     start_archive(*zip_, arrays);
   }
 
-  static NpzArray array_of(const std::string& name, const ArrayElements& elements, std::uint64_t size) {
-    return {name, npy_header(elements.descriptor(), '(' + std::to_string(size) + ",)"), elements.size() * size};
+  static NpzArray array_of(const FieldDescription& field, const ArrayElements& elements, std::uint64_t size) {
+    const std::string shape = '(' + std::to_string(size) + (field.components() > 1 ? ", 3)" : ",)");
+    return {array_name(field), npy_header(elements.descriptor(), shape), elements.size() * size};
   }
 
   [[nodiscard]] NpzArray array_of_vectors(const std::string& name, std::uint64_t size) const {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "io/fields/format_writers.h"
@@ -46,7 +47,7 @@ std::string extent_of(const Lattice& lattice) {
 
 struct ElementType {
   const char* name;
-  std::size_t size;
+  std::size_t size;  // of a component
 };
 
 ElementType element_type(FieldKind kind, bool double_precision) {
@@ -59,6 +60,7 @@ ElementType element_type(FieldKind kind, bool double_precision) {
       return {"Float64", 8};
     case FieldKind::kReal:
     case FieldKind::kDensity:
+    case FieldKind::kVector:
     case FieldKind::kDistance:
       break;
   }
@@ -84,9 +86,10 @@ class VtiWriter final : public LatticeWriter {
     std::uint64_t offset = 0;  // behind the head
     for (const FieldDescription& field : description.fields) {
       const ElementType type = element_type(field.kind, description.is(Precision::kDouble));
-      declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name +
-                      "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-      arrays_.push_back({type.size, offset, samples * type.size, Narrowing(field)});
+      declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name + '"' +
+                      (field.components() > 1 ? " NumberOfComponents=\"3\"" : "") + " format=\"appended\" offset=\"" +
+                      std::to_string(offset) + "\"/>\n";
+      arrays_.push_back({type.size, offset, samples * type.size * field.components(), Narrowing(field)});
       offset += sizeof(ArraySize) + arrays_.back().bytes;
     }
     const std::string extent = extent_of(lattice);
@@ -95,8 +98,9 @@ class VtiWriter final : public LatticeWriter {
         "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "  <ImageData WholeExtent=\"" +
         extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.spacing) +
-        "\">\n    <Piece Extent=\"" + extent + "\">\n      <PointData Scalars=\"" + description.fields.front().name +
-        "\">\n" + declarations +
+        "\">\n    <Piece Extent=\"" + extent + "\">\n      <PointData " +
+        (description.fields.front().components() > 1 ? "Vectors" : "Scalars") + "=\"" +
+        description.fields.front().name + "\">\n" + declarations +
         "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
     output_.write_at(0, head.data(), head.size());
     for (Array& array : arrays_) {
@@ -139,6 +143,10 @@ class VtiWriter final : public LatticeWriter {
   }
   void append_numbers(Array& array, std::span<const std::uint8_t> numbers) {
     append(array, numbers.data(), numbers.size_bytes());
+  }
+  void append_numbers(Array& array, std::span<const Vec3> vectors) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double) && std::is_standard_layout_v<Vec3>);
+    append_numbers(array, std::span<const double>(vectors.empty() ? nullptr : &vectors.front().x, 3 * vectors.size()));
   }
   void append_numbers(Array& array, std::span<const double> numbers) {
     if (array.element_size == sizeof(double)) return append_as<double>(array, numbers);

@@ -28,7 +28,8 @@ float next_half(float value) {
 }  // namespace
 
 bool has_chosen_precision(FieldKind kind) {
-  return kind == FieldKind::kReal || kind == FieldKind::kDensity || kind == FieldKind::kDistance;
+  return kind == FieldKind::kReal || kind == FieldKind::kDensity || kind == FieldKind::kDistance ||
+         kind == FieldKind::kVector;
 }
 
 Narrowing narrowing_of(const FieldDescription& field, bool half) {

@@ -90,6 +90,7 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   if (const openvdb::GridClass grid_class = class_of(field.kind); grid_class != openvdb::GRID_UNKNOWN) {
     grid.setGridClass(grid_class);
   }
+  if (field.kind == FieldKind::kVector) grid.setVectorType(openvdb::VEC_COVARIANT);  // as a gradient is
   insert(grid, "raycone_version", RAYCONE_VERSION);
   insert(grid, "raycone_field", field.name);
   if (!field.rule.empty()) insert(grid, "raycone_rule", field.rule);
@@ -240,6 +241,25 @@ std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan) {
   return make_builder<Grid>(plan, vdb::StoreDistance<Value>{band_width, background}, background);
 }
 
+// Components as Store keeps numbers.
+template <typename Store, typename Vector>
+struct StoreVector {
+  using Number = Vec3;
+  using Stored = Vector;
+  Stored operator()(const Vec3& v) const { return {store(v.x), store(v.y), store(v.z)}; }
+  Store store;
+};
+
+std::unique_ptr<GridBuilder> make_vector_builder(const GridPlan& plan) {
+  using openvdb::Vec3f;
+  if (plan.description.is(Precision::kDouble)) {
+    using Wide = StoreVector<vdb::StoreDouble, openvdb::Vec3d>;
+    return make_builder<openvdb::Vec3DGrid>(plan, Wide{}, openvdb::Vec3d(0.0));
+  }
+  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf));
+  return make_builder<openvdb::Vec3SGrid>(plan, StoreVector<vdb::StoreFloat, Vec3f>{{narrowing}}, Vec3f(0.0F));
+}
+
 std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
   using openvdb::BoolGrid, openvdb::DoubleGrid, openvdb::FloatGrid;
   const double background = plan.field.background;
@@ -254,6 +274,8 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
       return make_builder<FloatGrid>(plan, vdb::StoreBound{}, narrow_background);
     case FieldKind::kDistance:
       return wide ? make_level_set_builder<DoubleGrid>(plan) : make_level_set_builder<FloatGrid>(plan);
+    case FieldKind::kVector:
+      return make_vector_builder(plan);
     case FieldKind::kReal:
     case FieldKind::kDensity:
       break;

@@ -33,18 +33,13 @@ WORKING = {
 NOT_AVAILABLE = {
     "lattice": {
         "--field solid": "--field solid",
-        "--field winding,gradient": "--field winding,gradient",
         "--field label": "--field label",
         "--parts component": "--parts",
         "--mesh-format 3mf": "--mesh-format 3mf",
     },
     "points": {
-        "--field gradient": "--field gradient",
+        "--field winding,solid": "--field winding,solid",
         "--parts group": "--parts",
-    },
-    "surface": {
-        "--thicken 0.1": "--thicken",
-        "--simplify 0.1": "--simplify 0.1",
     },
     "batch": {
         "--field solid": "--field solid",

@@ -65,6 +65,9 @@ TABLE = [
       for option in ("--resolution 5", "--voxel-size 1", "--like grid.vdb", "--centers")),
     # --- Fields
     *(Row(words, "--field inside", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, "slice cubes.obj -o out/a.png --size 8")),
+    *(Row(words, "--field gradient", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, FILE + "npy")),
+    *(Row(FILE + name, "--field gradient", REFUSED) for name in ("nrrd", "nii", "nii.gz")),
+    *(Row(words + " --field gradient", "--rule odd", REFUSED) for words in (LATTICE, POINTS, BATCH)),
     *(Row(words + " --field inside", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, SLICE)),
     *(Row(words + " --field sdf", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     Row(SAMPLE, "--rule odd", CHANGES),  # whose fields are winding, inside and sdf
@@ -125,6 +128,8 @@ TABLE = [
       for option in ("--bounds -1,-1,-1,3,3,3", "--padding .5", "--padding 2v", "--resolution 6", "--centers",
                      "--rule odd", "--simplify none")),
     Row(SURFACE, "--simplify 0", HARMLESS),  # the default
+    Row(SURFACE, "--thicken .1", CHANGES),
+    Row("surface open.obj -o out/a.ply --resolution 9 --padding .5 --rule abs=.2", "--simplify .1", CHANGES),
     Row(SURFACE, "--voxel-size .25", REFUSED),
     Row(SURFACE, "--like grid.vdb", REFUSED),
     *(Row(SURFACE.replace(" --resolution 5", ""), option, CHANGES)

@@ -414,6 +414,21 @@ MUTANTS = [
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 
+    Mutant("simplify_forgets", "distances that a face moved by add up", [
+        ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
+    Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [
+        ("core/surface/star_change.cpp", "if (j != i && j != target_) gap = std::max(", "if (j != i && j != target_ && j > 99) gap = std::max(")]),
+    Mutant("simplify_over_nodes", "no node lies between faces before and after", [
+        ("core/surface/star_change.cpp", "if (is_between(node)) return true;", "if (is_between(node)) continue;")]),
+    Mutant("thick_source_is_not_nearest", "a branch is left out only beyond the least distance", [
+        ("core/surface/nearest_triangle.cpp", "> beyond_error(best.first)", "> best.first / 2")]),
+
+    # --- The gradient ---
+    Mutant("gradient_next_to_edges", "next to an edge doubles lose the vector", [
+        ("core/evaluation/gradient.cpp", "(ab < 0.0 && square < kNear * (aa * bb))", "(ab < 0.0 && square < 0.0 * kNear)")]),
+    Mutant("gradient_obtuse", "where the angle is obtuse |A| |B| + A B cancels", [
+        ("core/evaluation/gradient.cpp", "ab < 0.0 ? square / (lab - ab) : lab + ab", "lab + ab")]),
+
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),

@@ -1,0 +1,107 @@
+#include "core/evaluation/gradient.h"
+
+#include <quadmath.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/exact/quad.h"
+#include "core/machine/floating_point.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+double within_doubles(Quad x) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  if (absolute(x) > Quad(kMost)) return x < 0 ? -kMost : kMost;
+  return static_cast<double>(x);
+}
+
+QuadVec3 quad_difference(const Vec3& a, const Vec3& b) { return {Quad(a.x) - b.x, Quad(a.y) - b.y, Quad(a.z) - b.z}; }
+
+Quad quad_dot(const QuadVec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+QuadVec3 quad_cross(const QuadVec3& a, const QuadVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// As GradientEvaluator::part(), for queries next to the segment and for numbers whose products leave the doubles.
+Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q) {
+  const QuadVec3 a = quad_difference(from, q), b = quad_difference(to, q);
+  const Quad la = sqrtq(quad_dot(a, a)), lb = sqrtq(quad_dot(b, b)), ab = quad_dot(a, b);
+  const QuadVec3 normal = quad_cross(la < lb ? a : b, quad_difference(to, from));
+  const Quad square = quad_dot(normal, normal);
+  if (square == 0) return {};
+  const Quad opening = ab < 0 ? square / (la * lb - ab) : la * lb + ab;
+  const Quad factor = weight * ((la + lb) / (la * lb * opening));
+  return {within_doubles(factor * normal.x), within_doubles(factor * normal.y), within_doubles(factor * normal.z)};
+}
+
+}  // namespace
+
+GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges)
+    : scale_(unit_scale(mesh)) {
+  segments_.reserve(edges.size());
+  for (const ExteriorEdge& edge : edges) {
+    const Vec3 from = scale_(mesh.vertices[edge.from]), to = scale_(mesh.vertices[edge.to]);
+    segments_.push_back({from, to, to - from, edge.multiplicity / (4.0 * std::numbers::pi)});
+  }
+}
+
+// (a x b) (|a| + |b|) / (|a| |b| (|a| |b| + a b)) for the ends a, b as the query sees them. Where the angle between
+// them is obtuse, the last factor is |a x b|^2 / (|a| |b| - a b).
+Vec3 GradientEvaluator::part(const Segment& segment, const Vec3& q) {
+  constexpr double kLeast = 0x1p-400, kMost = 0x1p400;  // of squares
+  constexpr double kNear = 0x1p-16;                     // of a sine's square: a x b loses eight bits
+  const Vec3 a = segment.from - q, b = segment.to - q;
+  const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b);
+  const Vec3 normal = cross(aa < bb ? a : b, segment.step);
+  const double square = dot(normal, normal);
+  const bool in_range = std::min(aa, bb) >= kLeast && std::max(aa, bb) <= kMost;
+  if (!in_range || (ab < 0.0 && square < kNear * (aa * bb))) {
+    return careful_part(segment.from, segment.to, segment.weight, q);
+  }
+  const double la = std::sqrt(aa), lb = std::sqrt(bb), lab = la * lb;
+  const double opening = ab < 0.0 ? square / (lab - ab) : lab + ab;
+  return segment.weight * ((la + lb) / (lab * opening)) * normal;
+}
+
+Vec3 GradientEvaluator::at(const Vec3& point) const {
+  const Vec3 q = scale_(point);
+  // So far away that the gradient is no double but 0.
+  if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) return {};
+  Vec3 sum;
+  for (const Segment& segment : segments_) sum = sum + part(segment, q);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    sum[axis] = std::clamp(scale_(std::clamp(sum[axis], -kMost, kMost)), -kMost, kMost) + 0.0;
+  }
+  return sum;
+}
+
+template <class Point>
+void GradientEvaluator::evaluate_each(const Point& point, std::span<Vec3> values,
+                                      std::atomic<std::uint64_t>* done) const {
+  constexpr std::size_t kTerms = std::size_t{1} << 16;  // per task
+  const std::size_t grain = std::max<std::size_t>(1, kTerms / (segments_.size() + 1));
+  parallel_for(values.size(), grain, [&](std::size_t begin, std::size_t end) {
+    const DefaultFloatingPoint guard;
+    for (std::size_t n = begin; n < end; ++n) values[n] = segments_.empty() ? Vec3{} : at(point(n));
+    if (done) done->fetch_add(end - begin, std::memory_order_relaxed);
+  });
+}
+
+void GradientEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<Vec3> values,
+                                 std::atomic<std::uint64_t>* done) const {
+  evaluate_each([&](std::size_t n) { return sample_point(lattice, block, n); }, values, done);
+}
+
+void GradientEvaluator::evaluate(std::span<const Vec3> points, std::span<Vec3> values,
+                                 std::atomic<std::uint64_t>* done) const {
+  evaluate_each([&](std::size_t n) { return points[n]; }, values, done);
+}
+
+}  // namespace raycone

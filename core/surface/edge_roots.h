@@ -1,0 +1,49 @@
+// Where edges of a lattice leave a set, as functions tell that are positive inside.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/data/rule.h"
+#include "core/data/vec3.h"
+#include "core/evaluation/winding_number.h"
+
+namespace raycone {
+
+// From its inside end to its outside end.
+struct MixedEdge {
+  Vec3 inside, outside;
+  std::uint32_t number;
+
+  [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
+};
+
+// The rule along edges, a continuous function between triangles: positive inside, turns.
+class RuleAlong {
+ public:
+  RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
+
+  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const;
+  [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
+
+ private:
+  const WindingNumberEvaluator& evaluator_;
+  const Rule& rule_;
+};
+
+// Two places of an edge, between which it leaves the set.
+struct Bracket {
+  MixedEdge edge;
+  double low, high;                          // inside, outside
+  double low_value = 0.0, high_value = 0.0;  // positive or 0, negative or 0
+  int stays = 0;                             // how often in a row the same end was kept: > 0 low, < 0 high
+
+  [[nodiscard]] double middle() const { return low + (high - low) / 2; }
+};
+
+// Narrows brackets to 2^-34 of their edges. `values` answers for many points at once.
+void find_roots(std::vector<Bracket>& brackets,
+                const std::function<std::vector<double>(const std::vector<Vec3>&)>& values);
+
+}  // namespace raycone

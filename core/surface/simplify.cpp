@@ -1,0 +1,173 @@
+#include "core/surface/simplify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/mesh/vertex_faces.h"
+#include "core/surface/star_change.h"
+
+namespace raycone {
+namespace {
+
+// A triangle's area over the square of its longest edge. Pulls make none below this, unless there was one before.
+constexpr double kLeastShape = 1e-2;
+
+double shape_of(const Corners3& c) {
+  const Vec3 u = c[1] - c[0], v = c[2] - c[0], w = c[2] - c[1], normal = cross(u, v);
+  return std::sqrt(dot(normal, normal)) / 2.0 / std::max({dot(u, u), dot(v, v), dot(w, w)});
+}
+
+class Simplifier {
+ public:
+  Simplifier(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept)
+      : surface_(surface),
+        lattice_(inside.lattice()),
+        kept_(kept),
+        off_(surface.mesh.triangles.size(), 0.0),
+        into_(surface.mesh.vertices.size()) {
+    const VertexFaces faces(surface.mesh);
+    for (std::uint32_t v = 0; v < into_.size(); ++v) {
+      const auto star = faces.of(v);
+      star_.emplace_back(star.begin(), star.end());
+      into_[v] = v;
+    }
+  }
+
+  // What costs little comes first.
+  MergedSurface simplify(double most) {
+    for (const double part : {1.0 / 64, 1.0 / 16, 1.0 / 4, 1.0}) pull_all(part * most);
+    for (std::uint32_t& target : into_) {
+      while (into_[target] != target) target = into_[target];
+    }
+    SurfaceMesh result;
+    result.mesh.vertices = std::move(surface_.mesh.vertices);
+    for (std::size_t face = 0; face < off_.size(); ++face) {
+      const Triangle& t = surface_.mesh.triangles[face];
+      if (t[0] == t[1]) continue;
+      result.mesh.triangles.push_back(t);
+      result.sources.push_back(surface_.sources[face]);
+    }
+    return {std::move(result), std::move(into_)};
+  }
+
+ private:
+  struct Pull {
+    std::uint32_t target;
+    double off;
+  };
+
+  // In each pass no vertex is pulled that a neighbour was pulled into, so that faces grow evenly.
+  void pull_all(double most) {
+    std::vector<bool> waits(into_.size(), true);
+    for (bool pulled = true; pulled;) {
+      pulled = false;
+      std::vector<bool> next(into_.size(), false);
+      for (std::uint32_t v = 0; v < into_.size(); ++v) {
+        if (!waits[v] || next[v] || kept_[v] || star_[v].empty()) continue;
+        const std::optional<Pull> best = best_pull(v, most);
+        if (!best) continue;
+        for (const std::uint32_t neighbour : ring_of(v)) next[neighbour] = true;
+        pull(v, *best);
+        pulled = true;
+      }
+      waits = std::move(next);
+    }
+  }
+
+  [[nodiscard]] static bool has(const Triangle& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
+
+  // The vertices around v, in the order of the faces there.
+  [[nodiscard]] std::vector<std::uint32_t> ring_of(std::uint32_t v) const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
+    for (const std::uint32_t face : star_[v]) {
+      const Triangle& t = surface_.mesh.triangles[face];
+      const std::size_t at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+      sides.emplace_back(t[(at + 1) % 3], t[(at + 2) % 3]);
+    }
+    std::vector<std::uint32_t> ring{sides.front().first};
+    while (ring.size() < sides.size()) {
+      const auto next = std::ranges::find(sides, ring.back(), [](const auto& side) { return side.first; });
+      ring.push_back(next->second);
+    }
+    return ring;
+  }
+
+  [[nodiscard]] std::optional<Pull> best_pull(std::uint32_t v, double most) const {
+    const std::vector<std::uint32_t> ring = ring_of(v);
+    std::vector<Vec3> places;
+    for (const std::uint32_t neighbour : ring) places.push_back(surface_.mesh.vertices[neighbour]);
+    double before = 0.0, shape = kLeastShape;
+    for (const std::uint32_t face : star_[v]) {
+      before = std::max(before, off_[face]);
+      shape = std::min(shape, shape_of(corners_of(surface_.mesh.triangles[face])));
+    }
+    std::optional<Pull> best;
+    for (std::size_t n = 0; n < ring.size(); ++n) {
+      const double left = (best ? best->off : most) - before;
+      if (!(left > 0.0) || !keeps_topology(ring[n], ring)) continue;
+      const StarChange change(surface_.mesh.vertices[v], places, n);
+      if (!keeps_shape(change, shape)) continue;
+      const std::optional<double> distance = change.distance(left);
+      if (!distance || change.passes_node(lattice_, *distance)) continue;
+      best = Pull{ring[n], before + *distance};
+    }
+    return best;
+  }
+
+  [[nodiscard]] Corners3 corners_of(const Triangle& t) const {
+    const std::vector<Vec3>& at = surface_.mesh.vertices;
+    return {at[t[0]], at[t[1]], at[t[2]]};
+  }
+
+  [[nodiscard]] static bool keeps_shape(const StarChange& change, double least) {
+    return std::ranges::all_of(change.after(), [&](const Corners3& c) { return shape_of(c) >= least; });
+  }
+
+  // As Merger::keeps_topology() has it; besides, a tetrahedron is as small as a closed surface gets.
+  [[nodiscard]] bool keeps_topology(std::uint32_t target, const std::vector<std::uint32_t>& ring) const {
+    const std::vector<std::uint32_t> others = ring_of(target);
+    const auto common = std::ranges::count_if(
+        others, [&](std::uint32_t other) { return std::ranges::find(ring, other) != ring.end(); });
+    return common == 2 && ring.size() + others.size() > 6;
+  }
+
+  void pull(std::uint32_t v, const Pull& by) {
+    for (const std::uint32_t face : star_[v]) {
+      Triangle& t = surface_.mesh.triangles[face];
+      if (has(t, by.target)) {
+        for (const std::uint32_t corner : t) {
+          if (corner != v) std::erase(star_[corner], face);
+        }
+        t = {};
+      } else {
+        std::ranges::replace(t, v, by.target);
+        star_[by.target].push_back(face);
+        off_[face] = by.off;
+      }
+    }
+    star_[v].clear();
+    into_[v] = by.target;
+  }
+
+  SurfaceMesh surface_;
+  const Lattice& lattice_;
+  const std::vector<bool>& kept_;
+  std::vector<double>
+      off_;  // of each face: how far from the surface as it was its points, and those it stands for, are
+  std::vector<std::vector<std::uint32_t>> star_;  // faces
+  std::vector<std::uint32_t> into_;
+};
+
+}  // namespace
+
+MergedSurface simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept, double most) {
+  return Simplifier(surface, inside, kept).simplify(most);
+}
+
+}  // namespace raycone

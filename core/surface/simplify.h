@@ -1,0 +1,19 @@
+// Fewer triangles for nearly the same surface.
+#pragma once
+
+#include <vector>
+
+#include "core/surface/contour.h"
+#include "core/surface/merge_planes.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// The closed surface with vertices pulled into neighbours along edges. No point of the result is farther from the
+// surface than `most`, world units, and no point of the surface farther from the result; no node of the lattice changes
+// sides. Faces keep their order and sources; vertices keep their numbers and places, and some are no longer used. Those
+// of `kept` stay. Parts that are as near to each other as `most` may cross: that is for the caller to find.
+[[nodiscard]] MergedSurface simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept,
+                                     double most);
+
+}  // namespace raycone

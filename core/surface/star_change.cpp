@@ -1,0 +1,156 @@
+#include "core/surface/star_change.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace raycone {
+namespace {
+
+// What rounding may do, beside numbers of the size of the faces. It decides on the careful side.
+constexpr double kDoubt = 1e-9;
+
+double turn(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// The height of the triangle above p. Nothing where p is outside.
+std::optional<double> height_above(const Corners3& t, const Vec3& p) {
+  const double area = turn(t[0], t[1], t[2]);
+  const std::array parts{turn(t[1], t[2], p) / area, turn(t[2], t[0], p) / area, turn(t[0], t[1], p) / area};
+  if (std::ranges::min(parts) < -kDoubt) return std::nullopt;
+  return parts[0] * t[0].z + parts[1] * t[1].z + parts[2] * t[2].z;
+}
+
+std::optional<double> height_of(const std::vector<Corners3>& faces, const Vec3& p) {
+  for (const Corners3& face : faces) {
+    if (const std::optional<double> height = height_above(face, p)) return height;
+  }
+  return std::nullopt;
+}
+
+// How far apart two lines are in height where they cross; 0 where they do not.
+double gap_at_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const double ca = turn(c, d, a), cb = turn(c, d, b), ac = turn(a, b, c), ad = turn(a, b, d);
+  if (ca * cb >= 0.0 || ac * ad >= 0.0) return 0.0;
+  const double along = ca / (ca - cb), across = ac / (ac - ad);
+  return std::abs(a.z + along * (b.z - a.z) - (c.z + across * (d.z - c.z)));
+}
+
+Vec3 across_of(const Vec3& n) {
+  const Vec3 size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  const Vec3 least = size.x <= size.y && size.x <= size.z ? Vec3{1, 0, 0}
+                     : size.y <= size.z                   ? Vec3{0, 1, 0}
+                                                          : Vec3{0, 0, 1};
+  const Vec3 across = cross(least, n);
+  return 1.0 / std::sqrt(dot(across, across)) * across;
+}
+
+}  // namespace
+
+StarChange::StarChange(const Vec3& vertex, const std::vector<Vec3>& ring, std::size_t target)
+    : vertex_(vertex), target_(target) {
+  Vec3 sum;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const std::size_t next = (i + 1) % ring.size();
+    before_.push_back({vertex, ring[i], ring[next]});
+    if (i != target && next != target) after_.push_back({ring[target], ring[i], ring[next]});
+    sum = sum + cross(ring[i] - vertex, ring[next] - vertex);
+  }
+  const double length = std::sqrt(dot(sum, sum));
+  axes_[2] = 1.0 / length * sum;
+  axes_[0] = across_of(axes_[2]);
+  axes_[1] = cross(axes_[2], axes_[0]);
+  const auto all_seen = [&](const std::vector<Corners3>& faces) {
+    std::vector<Corners3> result;
+    for (const Corners3& c : faces) result.push_back({seen(c[0]), seen(c[1]), seen(c[2])});
+    return result;
+  };
+  seen_vertex_ = seen(vertex);
+  for (const Vec3& neighbour : ring) seen_ring_.push_back(seen(neighbour));
+  seen_before_ = all_seen(before_);
+  seen_after_ = all_seen(after_);
+}
+
+Vec3 StarChange::seen(const Vec3& p) const {
+  const Vec3 from = p - vertex_;
+  return {dot(from, axes_[0]), dot(from, axes_[1]), dot(from, axes_[2])};
+}
+
+bool StarChange::is_graph() const {
+  constexpr double kSlope = 1e-3;  // the least part of a face's area that is seen
+  const auto is_front = [](const Corners3& c) {
+    const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
+    return normal.z > kSlope * std::sqrt(dot(normal, normal));
+  };
+  if (!std::ranges::all_of(seen_before_, is_front) || !std::ranges::all_of(seen_after_, is_front)) return false;
+  std::size_t rounds = 0;
+  for (std::size_t i = 0; i < seen_ring_.size(); ++i) {
+    const Vec3 &a = seen_ring_[i], &b = seen_ring_[(i + 1) % seen_ring_.size()];
+    if (a.y < seen_vertex_.y && b.y >= seen_vertex_.y) ++rounds;
+  }
+  return rounds == 1;
+}
+
+std::optional<double> StarChange::distance(double most) const {
+  if (!is_graph()) return std::nullopt;
+  const std::optional<double> at_vertex = height_of(seen_after_, seen_vertex_);
+  if (!at_vertex) return std::nullopt;
+  double gap = std::abs(*at_vertex), size = gap;
+  const Vec3& target = seen_ring_[target_];
+  for (std::size_t i = 0; i < seen_ring_.size(); ++i) {
+    const Vec3& spoke = seen_ring_[i];
+    size = std::max({size, std::abs(spoke.x), std::abs(spoke.y), std::abs(spoke.z)});
+    for (std::size_t j = 0; j < seen_ring_.size() && i != target_; ++j) {
+      if (j != i && j != target_) gap = std::max(gap, gap_at_crossing(seen_vertex_, spoke, target, seen_ring_[j]));
+    }
+  }
+  gap += kDoubt * kDoubt * size + 0x1p-45 * size;
+  return gap < most ? std::optional(gap) : std::nullopt;
+}
+
+bool StarChange::is_between(const Vec3& node) const {
+  const Vec3 p = seen(node);
+  const std::optional<double> before = height_of(seen_before_, p), after = height_of(seen_after_, p);
+  if (!before || !after) return false;
+  const double doubt = kDoubt * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+  return p.z >= std::min(*before, *after) - doubt && p.z <= std::max(*before, *after) + doubt;
+}
+
+// Nodes near each face after, row by row along the axis that it is steepest to.
+bool StarChange::passes_node(const Lattice& lattice, double distance) const {
+  for (const Corners3& c : after_) {
+    const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
+    const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+    const int axis = static_cast<int>(std::ranges::max_element(sizes) - sizes.begin());
+    const double length = std::sqrt(dot(normal, normal));
+    const double reach = distance * length / std::abs(normal[axis]) + kDoubt * lattice.spacing[axis];
+    const auto index = [&](int a, double coordinate) { return (coordinate - lattice.origin[a]) / lattice.spacing[a]; };
+    const auto range = [&](int a) {
+      const auto [low, high] = std::minmax({c[0][a], c[1][a], c[2][a]});
+      return std::array{static_cast<std::int64_t>(std::ceil(index(a, low - distance) - kDoubt)),
+                        static_cast<std::int64_t>(std::floor(index(a, high + distance) + kDoubt))};
+    };
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto [u_begin, u_end] = range(u);
+    const auto [v_begin, v_end] = range(v);
+    for (std::int64_t j = v_begin; j <= v_end; ++j) {
+      for (std::int64_t i = u_begin; i <= u_end; ++i) {
+        Vec3 node;
+        node[u] = lattice.coordinate(u, i);
+        node[v] = lattice.coordinate(v, j);
+        const double on_plane =
+            c[0][axis] - (normal[u] * (node[u] - c[0][u]) + normal[v] * (node[v] - c[0][v])) / normal[axis];
+        const auto first = static_cast<std::int64_t>(std::ceil(index(axis, on_plane - reach) - kDoubt));
+        const auto last = static_cast<std::int64_t>(std::floor(index(axis, on_plane + reach) + kDoubt));
+        for (std::int64_t k = first; k <= last; ++k) {
+          node[axis] = lattice.coordinate(axis, k);
+          if (is_between(node)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace raycone

@@ -1,0 +1,50 @@
+// What happens to the faces around a vertex when it is pulled into one of its neighbours.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/data/lattice.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+using Corners3 = std::array<Vec3, 3>;
+
+// Faces before and after are compared along one direction, in which all of them are seen from their fronts and the
+// vertex's neighbours around it once. Both sets of faces are then graphs over one polygon, and their difference is
+// linear between the crossings of their edges.
+class StarChange {
+ public:
+  // `ring`: the neighbours in the order of the faces around `vertex`; it is pulled into the one numbered `target`.
+  StarChange(const Vec3& vertex, const std::vector<Vec3>& ring, std::size_t target);
+
+  // Those that have an area.
+  [[nodiscard]] const std::vector<Corners3>& after() const { return after_; }
+
+  // No point of the faces after is farther from those before, and the other way round. Nothing where that is not below
+  // `most`, or where there is no such direction.
+  [[nodiscard]] std::optional<double> distance(double most) const;
+
+  // Whether a node of the lattice is, or may be, between the faces before and after. Precondition: distance() is
+  // `distance`.
+  [[nodiscard]] bool passes_node(const Lattice& lattice, double distance) const;
+
+ private:
+  // By two coordinates across the direction and the height along it.
+  [[nodiscard]] Vec3 seen(const Vec3& p) const;
+  [[nodiscard]] bool is_graph() const;
+  [[nodiscard]] bool is_between(const Vec3& node) const;
+
+  Vec3 vertex_;
+  std::array<Vec3, 3> axes_;  // the direction is the last
+  Vec3 seen_vertex_;
+  std::vector<Vec3> seen_ring_;
+  std::size_t target_;
+  std::vector<Corners3> before_, after_;
+  std::vector<Corners3> seen_before_, seen_after_;
+};
+
+}  // namespace raycone

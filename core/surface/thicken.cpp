@@ -1,0 +1,111 @@
+#include "core/surface/thicken.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/machine/threads.h"
+#include "core/surface/nearest_triangle.h"
+
+namespace raycone {
+namespace {
+
+// Positive in the set, of the order of voxels and turns: the larger of what is left of the thickness, and the rule.
+class ThickRule {
+ public:
+  ThickRule(const RuleAlong& rule, const DistanceEvaluator& distance, double thickness, double voxel)
+      : rule_(rule), distance_(distance), thickness_(thickness), voxel_(voxel) {}
+
+  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const {
+    std::vector<double> values(points.size());
+    distance_.evaluate(points, values);
+    std::vector<Vec3> beyond;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      values[n] = (thickness_ - values[n]) / voxel_;
+      if (values[n] < 0.0) beyond.push_back(points[n]);
+    }
+    const std::vector<double> there = rule_.at(beyond);
+    std::size_t next = 0;
+    for (double& value : values) {
+      if (value < 0.0) value = std::max(value, there[next++]);
+    }
+    return values;
+  }
+
+  // Whether it is the distance that ends the set near here.
+  [[nodiscard]] std::vector<bool> at_thickness(const std::vector<Vec3>& points) const {
+    constexpr double kNear = 1e-6;  // voxels: far above what rounding and roots leave
+    std::vector<double> distances(points.size());
+    distance_.evaluate(points, distances);
+    std::vector<bool> near;
+    for (const double d : distances) near.push_back(d <= thickness_ + kNear * voxel_);
+    return near;
+  }
+
+ private:
+  const RuleAlong& rule_;
+  const DistanceEvaluator& distance_;
+  double thickness_, voxel_;
+};
+
+std::vector<Bracket> mixed_edges(const SurfaceCells& cells) {
+  std::vector<Bracket> edges;
+  for (const SurfaceCell& cell : cells.cells()) {
+    const Vec3 low = cells.corner(cell, 0);
+    for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
+      if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
+      const Vec3 high = cells.corner(cell, direction);
+      edges.push_back(
+          {{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)}, 0.0, 1.0});
+    }
+  }
+  return edges;
+}
+
+}  // namespace
+
+void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thickness) {
+  constexpr std::int64_t kNodesAtOnce = std::int64_t{1} << 20;
+  const Lattice& lattice = nodes.lattice();
+  const double band = 2.0 * thickness;  // distances are cut off there
+  const std::int64_t layer_nodes = lattice.counts[0] * lattice.counts[1];
+  const std::int64_t layers = std::max<std::int64_t>(1, kNodesAtOnce / layer_nodes);
+  std::vector<double> distances;
+  for (std::int64_t layer = 0; layer < lattice.counts[2]; layer += layers) {
+    LatticeBlock slab = whole(lattice);
+    slab.first[2] += layer;
+    slab.counts[2] = std::min(layers, lattice.counts[2] - layer);
+    distances.resize(static_cast<std::size_t>(slab.size()));
+    distance.evaluate(lattice, slab, band, distances);
+    for (std::int64_t n = 0; n < slab.size(); ++n) {
+      if (distances[static_cast<std::size_t>(n)] > thickness) continue;
+      const std::int64_t row = n / slab.counts[0];
+      nodes.insert(n % slab.counts[0], row % slab.counts[1], layer + row / slab.counts[1]);
+    }
+  }
+}
+
+std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
+                                         const DistanceEvaluator& distance, double thickness, const SurfaceCells& cells,
+                                         const SurfaceMargins& margins) {
+  const Vec3& h = cells.lattice().spacing;
+  const ThickRule thick(rule, distance, thickness, std::min({h.x, h.y, h.z}));
+  std::vector<Bracket> brackets = mixed_edges(cells);
+  find_roots(brackets, [&](const std::vector<Vec3>& places) { return thick.at(places); });
+  std::vector<Vec3> places;
+  for (const Bracket& bracket : brackets) {
+    places.push_back(bracket.edge.point(std::clamp(bracket.middle(), margins.inner, 1.0 - margins.inner)));
+  }
+  const std::vector<bool> at_thickness = thick.at_thickness(places);
+  const NearestTriangle nearest(mesh);
+  std::vector<EdgePoint> points(cells.edges());
+  parallel_for(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::int32_t source = at_thickness[n] ? static_cast<std::int32_t>(nearest.of(places[n])) : kHole;
+      points[brackets[n].edge.number] = {places[n], {}, source};
+    }
+  });
+  return points;
+}
+
+}  // namespace raycone

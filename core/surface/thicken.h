@@ -1,0 +1,24 @@
+// A set that has grown by a distance from triangles.
+#pragma once
+
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
+#include "core/surface/edge_points.h"
+#include "core/surface/edge_roots.h"
+#include "core/surface/node_set.h"
+#include "core/surface/surface_cells.h"
+
+namespace raycone {
+
+// Adds the nodes that are no farther than `thickness` (world units, positive) from the mesh.
+void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thickness);
+
+// As edge_points(), for the set where the rule holds or that is no farther than `thickness` from the mesh. Where the
+// distance ends it, `source` is the nearest triangle. Normals are zero.
+[[nodiscard]] std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
+                                                       const DistanceEvaluator& distance, double thickness,
+                                                       const SurfaceCells& cells, const SurfaceMargins& margins);
+
+}  // namespace raycone

@@ -1,0 +1,113 @@
+"""raycone surface --thicken T: python3 thicken_test.py RAYCONE MESH_DIRECTORY
+
+The oracles: distances of the surface's points from the mesh, as raycone measures distances to any mesh; the volumes of
+boxes and plates that have grown, by Steiner's formula; and `info --require`.
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy
+except ImportError:
+    print("no numpy in %s: skipped" % sys.executable)
+    sys.exit(0)
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+CUBE, TEAPOT, MOEBIUS, SOUP = (os.path.join(MESHES, name)
+                               for name in ("cube.obj", "teapot.obj", "moebius.obj", "soup.obj"))
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+ALL = "closed,oriented,outward,manifold,embedded"
+
+
+def run(words):
+    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
+
+
+class Thicken(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.addCleanup(os.chdir, "/")
+        os.chdir(directory.name)
+        with open("sheet.obj", "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+
+    def works(self, words):
+        result = run(words + " --quiet")
+        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
+        return result.stdout
+
+    def surface(self, words, output="a.ply"):
+        """Its part of the report, and its volume."""
+        self.works("surface %s -o %s --report report.json" % (words, output))
+        self.works("info %s --require %s" % (output, ALL))
+        with open("report.json") as file:
+            surface = json.load(file)["surface"]
+        return surface, json.loads(self.works("info %s --json" % output))["signed_volume"]
+
+    def test_volumes_are_steiners(self):
+        t = 0.15
+        quarter, ball = math.pi * t * t / 4, 4 / 3 * math.pi * t**3
+        expected = {"sheet.obj": 2 * t + 4 * 2 * quarter + ball, CUBE: 1 + 6 * t + 12 * quarter + ball}
+        for mesh, volume in expected.items():
+            # Chords of a rounded edge lose a part of (h / t)^2 / 12 of it; edges are a fifth of what is added.
+            surface, got = self.surface("%s --thicken %r --resolution 24" % (mesh, t))
+            self.assertLess(abs(got - volume), 0.005 * volume, mesh)
+            self.assertAlmostEqual(surface["max_distance"], t, delta=1e-9)
+            self.assertEqual((surface["hole_area"], surface["dropped_area"], surface["components"]), (0, 0, 1), mesh)
+
+    def test_no_point_is_elsewhere(self):
+        for mesh in (MOEBIUS, SOUP, TEAPOT + " --orient auto"):
+            self.surface("%s --thicken .05 --resolution 20 --rule abs=1e9" % mesh)  # nothing but what is near
+            with open("a.ply", "rb") as file:
+                data = file.read()
+            count = int(data.split(b"element vertex ")[1].split()[0])
+            begin = data.index(b"end_header\n") + 11
+            points = numpy.frombuffer(data[begin : begin + 24 * count]).reshape(-1, 3)
+            numpy.save("points.npy", points)
+            self.works("points %s points.npy -o distances.npy --field sdf" % mesh.split()[0])
+            distances = abs(numpy.load("distances.npy"))
+            # Roots are good to 2^-34 of an edge, and points keep off nodes by 2^-30 of it: edges are below 0.5.
+            self.assertLess(abs(distances - 0.05).max(), 1e-9, mesh)
+
+    def test_sheets_survive_that_do_not_without(self):
+        words = "surface sheet.obj -o a.ply --resolution 7"
+        self.assertEqual(run(words + " --rule abs=.6").returncode, 2)
+        for t in ("1e-6", "1e-3", ".3"):
+            surface, volume = self.surface("sheet.obj --resolution 7 --rule abs=.6 --thicken " + t)
+            self.assertEqual(surface["components"], 1)
+            self.assertGreater(volume, 0)
+
+    def test_formats_scales_and_simplifying(self):
+        self.surface(MOEBIUS + " --thicken .1 --resolution 16", "a.stl")
+        self.surface(MOEBIUS + " --thicken 1e9 --scale 1e10 --resolution 16", "a.ply")
+        self.surface(MOEBIUS + " --thicken 1e-11 --scale 1e-10 --resolution 16 --simplify 1e-12", "a.off")
+        self.surface("sheet.obj --thicken .1 --voxel-size .0625 --padding 2v", "a.obj")
+        self.surface("sheet.obj --thicken .1 --resolution 12,9,5 --bounds 0,0,-1,1,1,1", "a.obj")
+        self.surface(CUBE + " --thicken 1e-300 --resolution 6")
+
+    def test_the_same_for_any_threads(self):
+        written = []
+        for threads in ("1", "3"):
+            self.surface("%s --resolution 16 --thicken .1 --threads %s" % (MOEBIUS, threads))
+            with open("a.ply", "rb") as file:
+                written.append(file.read())
+        self.assertEqual(*written)
+
+    def test_what_is_no_thickness(self):
+        for text in ("0", "-1", "nan", "1e999", "some"):
+            result = run("surface sheet.obj -o a.ply --thicken " + text)
+            self.assertEqual(result.returncode, 1, text)
+            self.assertIn("--thicken %s: expected a positive number" % text, result.stderr.decode())
+        result = run("surface sheet.obj -o a.ply --thicken 1e300")
+        self.assertEqual(result.returncode, 4)
+        self.assertIn("--thicken is more than a million voxels", result.stderr.decode())
+
+
+unittest.main()

@@ -1,0 +1,169 @@
+// The gradient of the winding number, against differences of winding numbers and the sum over all triangles, both in
+// 113-bit arithmetic.
+#include "core/evaluation/gradient.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/exact/direct_gradient.h"
+#include "core/exact/direct_sum.h"
+#include "core/machine/threads.h"
+#include "core/mesh/weld.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+GradientEvaluator evaluator_of(const TriangleMesh& mesh) { return {mesh, exterior_edges(mesh)}; }
+
+std::vector<Vec3> gradients_of(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
+  std::vector<Vec3> values(points.size());
+  evaluator_of(mesh).evaluate(points, values);
+  return values;
+}
+
+TriangleMesh welded_soup(int seed, int triangles = 30) {
+  test::Random random(static_cast<std::uint64_t>(seed));
+  return weld(test::soup(random, triangles), {});
+}
+
+double component(const QuadVec3& v, int axis) { return static_cast<double>(axis == 0 ? v.x : axis == 1 ? v.y : v.z); }
+
+// By central differences: the step leaves an error of the third derivative times its square, and is far above what 113
+// bits lose.
+QuadVec3 difference_quotient(const TriangleMesh& mesh, const Vec3& q) {
+  const Quad step = 1e-9;
+  const auto w = [&](Quad x, Quad y, Quad z) {
+    return direct_winding_number(mesh, {q.x + x, q.y + y, q.z + z}).value / (2 * step);
+  };
+  return {w(step, 0, 0) - w(-step, 0, 0), w(0, step, 0) - w(0, -step, 0), w(0, 0, step) - w(0, 0, -step)};
+}
+
+TEST(Gradient, IsTheLimitOfDifferencesOfWindingNumbers) {
+  test::Random random(7);
+  for (const TriangleMesh& mesh : {test::open_box(), welded_soup(3)}) {
+    std::vector<Vec3> points;
+    for (int n = 0; n < 100; ++n) points.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
+    const std::vector<Vec3> gradients = gradients_of(mesh, points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const QuadVec3 expected = difference_quotient(mesh, points[n]);
+      for (int axis = 0; axis < 3; ++axis) {
+        // The third derivative is below 1e4 a hundredth away from edges; nearer points are rare.
+        EXPECT_NEAR(gradients[n][axis], component(expected, axis), 1e-12) << n;
+      }
+    }
+  }
+}
+
+// Beside, behind and on edges and vertices, at all distances.
+std::vector<Vec3> points_beside_edges(const TriangleMesh& mesh, test::Random& random) {
+  std::vector<Vec3> points;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 a = mesh.vertices[t[i]], b = mesh.vertices[t[(i + 1) % 3]];
+      for (const double at : {-0.5, 0.0, 1e-12, 0.25, 0.5, 1.0, 1.5}) {
+        const Vec3 foot = a + at * (b - a);
+        const Vec3 aside = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+        for (const double distance : {1e-15, 1e-9, 1e-4, 1e-2}) points.push_back(foot + distance * aside);
+        points.push_back(foot);
+      }
+    }
+  }
+  return points;
+}
+
+TEST(Gradient, IsTheSumOverAllSidesOfTrianglesAlsoBesideThem) {
+  test::Random random(11);
+  for (const TriangleMesh& mesh : {welded_soup(5, 6), test::moved(welded_soup(9, 6), {1, 1, 1}, {100, -100, 50})}) {
+    const std::vector<Vec3> points = points_beside_edges(mesh, random);
+    const std::vector<Vec3> gradients = gradients_of(mesh, points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const DirectGradient expected = direct_gradient(mesh, points[n]);
+      for (int axis = 0; axis < 3; ++axis) {
+        // All sides of a soup are exterior: what is added is what the evaluator promises 1e-12 of.
+        EXPECT_NEAR(gradients[n][axis], component(expected.value, axis),
+                    1e-12 * static_cast<double>(expected.magnitude))
+            << points[n].x << ' ' << points[n].y << ' ' << points[n].z;
+      }
+    }
+  }
+}
+
+TEST(Gradient, OfAClosedMeshIsZero) {
+  const std::vector<Vec3> points{{0.5, 0.5, 0.5}, {0, 0, 0}, {0.5, 0, 0}, {1e300, 0, -1e300}, {3, 1, 2}};
+  for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 1, 1}), test::sphere(5), TriangleMesh{}}) {
+    for (const Vec3& gradient : gradients_of(weld(mesh, {}), points)) EXPECT_EQ(gradient, (Vec3{0, 0, 0}));
+  }
+}
+
+TEST(Gradient, InTheMiddleOfASquareHole) {
+  const Vec3 gradient = gradients_of(test::open_box(), {{0.5, 0.5, 1.0}}).front();
+  constexpr double kPi = 3.14159265358979323846;
+  EXPECT_NEAR(gradient.x, 0.0, 1e-15);
+  EXPECT_NEAR(gradient.y, 0.0, 1e-15);
+  // The field of a square loop of side 1 at its middle is 8 sqrt(2) / (4 pi); w falls on the way out.
+  EXPECT_NEAR(gradient.z, -8 * std::sqrt(2.0) / (4 * kPi), 1e-15);
+}
+
+TEST(Gradient, OnTheLineOfAnEdgeThatEdgeAddsNothing) {
+  const TriangleMesh mesh = weld({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}, {});
+  const auto without = [&](const Vec3& q) {
+    std::vector<ExteriorEdge> others = exterior_edges(mesh);
+    std::erase_if(
+        others, [&](const ExteriorEdge& e) { return mesh.vertices[e.from].y == 0.0 && mesh.vertices[e.to].y == 0.0; });
+    Vec3 value;
+    GradientEvaluator(mesh, others).evaluate(std::vector<Vec3>{q}, {&value, 1});
+    return value;
+  };
+  for (const Vec3& q : {Vec3{0.5, 0, 0}, Vec3{2, 0, 0}, Vec3{-1e-200, 0, 0}}) {
+    const Vec3 gradient = gradients_of(mesh, {q}).front();
+    EXPECT_EQ(gradient, without(q));
+    EXPECT_TRUE(std::isfinite(gradient.z));
+  }
+}
+
+TEST(Gradient, ScalesWithTheMeshAtAllMagnitudes) {
+  const TriangleMesh mesh = welded_soup(2);
+  const std::vector<Vec3> points{{0.3, 0.4, 0.6}, {-2, 5, 1}};
+  const std::vector<Vec3> expected = gradients_of(mesh, points);
+  for (const int exponent : {-900, -300, 1, 300, 900}) {
+    const double s = std::ldexp(1.0, exponent);
+    const std::vector<Vec3> scaled =
+        gradients_of(test::moved(mesh, {s, s, s}, {0, 0, 0}), {s * points[0], s * points[1]});
+    for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(s * scaled[n], expected[n]) << exponent;
+  }
+}
+
+TEST(Gradient, IsFiniteEverywhere) {
+  const TriangleMesh mesh = weld({{{0, 0, 0}, {1e-300, 0, 0}, {0, 1e300, 0}, {5e-324, 1, 0}, {0, 0, 1e-310}},
+                                  {{{0, 1, 2}}, {{0, 3, 4}}, {{1, 2, 4}}}},
+                                 {});
+  std::vector<Vec3> points;
+  const std::array values{0.0, -0.0, 5e-324, -1e-310, 1e-160, 1.0, 1e154, -1e300, 1.7e308};
+  for (const double x : values) {
+    for (const double y : values) {
+      for (const double z : values) points.push_back({x, y, z});
+    }
+  }
+  for (const Vec3& g : gradients_of(mesh, points)) {
+    EXPECT_TRUE(std::isfinite(g.x) && std::isfinite(g.y) && std::isfinite(g.z));
+  }
+}
+
+TEST(Gradient, OfALatticeIsThatAtItsPointsForAnyThreads) {
+  const TriangleMesh mesh = welded_soup(4);
+  const Lattice lattice{{-0.5, -0.25, 0.1}, {0.1, 0.2, 0.3}, {-3, 1, 2}, {13, 7, 5}};
+  const LatticeBlock block{{-2, 2, 3}, {11, 5, 3}};
+  std::vector<Vec3> points, values(static_cast<std::size_t>(block.size()));
+  for (std::size_t n = 0; n < values.size(); ++n) points.push_back(sample_point(lattice, block, n));
+  EXPECT_EQ(points[12], (Vec3{lattice.coordinate(0, -1), lattice.coordinate(1, 3), lattice.coordinate(2, 3)}));
+  evaluator_of(mesh).evaluate(lattice, block, values);
+  const ThreadLimit one(1);
+  EXPECT_EQ(values, gradients_of(mesh, points));
+}
+
+}  // namespace
+}  // namespace raycone

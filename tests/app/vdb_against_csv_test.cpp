@@ -16,21 +16,21 @@
 namespace raycone::test {
 namespace {
 
-struct Sample {
+struct CsvSample {
   VoxelIndex index;
   Vec3 position;
   double value;
 };
 
-std::vector<Sample> read_csv(const std::string& path) {
+std::vector<CsvSample> read_csv(const std::string& path) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
   EXPECT_EQ(line, "i,j,k,x,y,z,w");
-  std::vector<Sample> samples;
+  std::vector<CsvSample> samples;
   while (std::getline(file, line)) {
     std::istringstream row(line);
-    Sample s;
+    CsvSample s;
     char comma = 0;
     row >> s.index.x >> comma >> s.index.y >> comma >> s.index.z;
     row >> comma >> s.position[0] >> comma >> s.position[1] >> comma >> s.position[2] >> comma >> s.value;
@@ -49,12 +49,12 @@ void compare(const std::string& mesh, const std::vector<std::string>& options) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     ASSERT_EQ(run_raycone(arguments).status, 0);
   }
-  const std::vector<Sample> samples = read_csv(dir / "out.csv");
+  const std::vector<CsvSample> samples = read_csv(dir / "out.csv");
   const VdbGridPtr grid = read_vdb_grid(dir / "out.vdb", "winding");
   ASSERT_TRUE(grid);
   ASSERT_GT(samples.size(), 100U);
   std::uint64_t active = 0;
-  for (const Sample& s : samples) {
+  for (const CsvSample& s : samples) {
     EXPECT_EQ(grid->value(s.index), static_cast<float>(s.value));
     EXPECT_EQ(grid->is_active(s.index), static_cast<float>(s.value) != grid->background());
     active += grid->is_active(s.index);

@@ -15,13 +15,13 @@
 namespace raycone {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kUnset = 7.0;
 
 const std::array<RayEngine, 2> kEngines{RayEngine::kScan, RayEngine::kEmbree};
 const Lattice kLattice{{0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}, {0, 0, 0}, {4, 3, 2}};
 
-std::vector<TriangleMesh> empty_meshes() { return {TriangleMesh{}, TriangleMesh{{{0, 0, 0}, {1, kInfinity, 0}}, {}}}; }
+std::vector<TriangleMesh> empty_meshes() { return {TriangleMesh{}, TriangleMesh{{{0, 0, 0}, {1, kUnbounded, 0}}, {}}}; }
 
 struct DiagnosticsStorage {
   explicit DiagnosticsStorage(std::size_t count)
@@ -69,7 +69,7 @@ TEST(EmptyMesh, IsInfinitelyFarAway) {
     evaluator.evaluate(kLattice, whole(kLattice), 1.5, distances);
     evaluator.evaluate(points, at_points);
     EXPECT_EQ(distances, std::vector<double>(24, 1.5));
-    EXPECT_EQ(at_points, std::vector<double>(points.size(), kInfinity));
+    EXPECT_EQ(at_points, std::vector<double>(points.size(), kUnbounded));
   }
 }
 

@@ -36,7 +36,7 @@ bool on_surface(const TriangleMesh& mesh, const Vec3& q) {
 }
 
 // Between vertices, level with them, one unit in the last place beside that, and next to faces.
-std::vector<Vec3> queries_about(const TriangleMesh& mesh, Random& random, int count) {
+std::vector<Vec3> queries_beside(const TriangleMesh& mesh, Random& random, int count) {
   const Box box = bounding_box(mesh);
   const auto vertex = [&] { return mesh.vertices[mesh.triangles[random() % mesh.triangles.size()][random() % 3]]; };
   std::vector<Vec3> queries;
@@ -68,7 +68,7 @@ TEST(Magnitude, FarFromTheOriginAsInUtmCoordinates) {
   for (const double size : {1e-3, 1.0, 300.0}) {
     for (const TriangleMesh& mesh : samples_of_meshes(random)) {
       const TriangleMesh there = weld(test::moved(mesh, {size, size, size}, shift), {});
-      expect_right(there, queries_about(there, random, 20));
+      expect_right(there, queries_beside(there, random, 20));
     }
   }
 }
@@ -78,7 +78,7 @@ TEST(Magnitude, OfMinuteAndHugeMeshes) {
   for (const double size : {1e-300, 1e-120, 1e120, 1e300}) {
     for (const TriangleMesh& mesh : samples_of_meshes(random)) {
       const TriangleMesh scaled = weld(test::moved(mesh, {size, size, size}, {}), {});
-      expect_right(scaled, queries_about(scaled, random, 20));
+      expect_right(scaled, queries_beside(scaled, random, 20));
     }
   }
 }
@@ -97,7 +97,7 @@ TEST(Magnitude, MixedWithinOneMesh) {
       for (Vec3& v : mesh.vertices) {
         for (int axis = 0; axis < 3; ++axis) v[axis] = of_any_magnitude(random, exponent);
       }
-      std::vector<Vec3> queries = queries_about(mesh, random, 10);
+      std::vector<Vec3> queries = queries_beside(mesh, random, 10);
       std::erase_if(queries, [&](const Vec3& q) { return on_surface(mesh, q); });
       expect_right(mesh, queries);
     }
@@ -143,7 +143,7 @@ TEST(Magnitude, OfFlatMeshes) {
       factors[axis] = 0;
       shift[axis] = level;
       const TriangleMesh mesh = weld(test::moved(test::lattice_soup(random, 15, 3), factors, shift), {});
-      std::vector<Vec3> queries = queries_about(mesh, random, 20);
+      std::vector<Vec3> queries = queries_beside(mesh, random, 20);
       for (const Vec3& q : std::vector<Vec3>(queries)) {
         for (const double distance : {-1.0, 1e-200, 0.3}) {
           queries.push_back(q);
@@ -174,9 +174,9 @@ TEST(Magnitude, AnisotropicAndRotated) {
   for (const Vec3& factors : {Vec3{1e7, 1, 1}, Vec3{1, 1e7, 1}, Vec3{1, 1, 1e7}, Vec3{1, 1e-7, 1e7}}) {
     for (const TriangleMesh& mesh : samples_of_meshes(random)) {
       const TriangleMesh stretched = test::moved(mesh, factors, {});
-      expect_right(stretched, queries_about(stretched, random, 10));
+      expect_right(stretched, queries_beside(stretched, random, 10));
       const TriangleMesh oblique = weld(rotated(stretched, random), {});
-      expect_right(oblique, queries_about(oblique, random, 10));
+      expect_right(oblique, queries_beside(oblique, random, 10));
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 
 using test::largest_difference;
 
-constexpr Summation kBoth[] = {Summation::kCone, Summation::kTriangles};
+constexpr Summation kBothSums[] = {Summation::kCone, Summation::kTriangles};
 
 std::vector<double> evaluate(const TriangleMesh& mesh, const Lattice& lattice, Summation summation,
                              SimdLevel level = SimdLevel::kBest) {
@@ -42,7 +42,8 @@ TEST(SolidAngles, SumUpToWhatCrossingsAndConeGive) {
   for (int i = 0; i < 20; ++i) {
     const TriangleMesh mesh = weld(test::lattice_soup(random, 60, 4), {});
     const Lattice lattice = half_integers(-2, 13);
-    EXPECT_LT(largest_difference(evaluate(mesh, lattice, kBoth[0]), evaluate(mesh, lattice, kBoth[1])), kTolerance);
+    EXPECT_LT(largest_difference(evaluate(mesh, lattice, kBothSums[0]), evaluate(mesh, lattice, kBothSums[1])),
+              kTolerance);
   }
 }
 
@@ -105,7 +106,8 @@ TEST(SolidAngles, OfTrianglesOfAllSizes) {
     mesh = weld(mesh, {});
     Lattice lattice = half_integers(-30, 60);
     lattice.spacing = scale * Vec3{0.1, 0.1, 0.1};
-    EXPECT_LT(largest_difference(evaluate(mesh, lattice, kBoth[0]), evaluate(mesh, lattice, kBoth[1])), kTolerance);
+    EXPECT_LT(largest_difference(evaluate(mesh, lattice, kBothSums[0]), evaluate(mesh, lattice, kBothSums[1])),
+              kTolerance);
   }
 }
 

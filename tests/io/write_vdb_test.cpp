@@ -63,7 +63,7 @@ Field ball_field() {
   });
 }
 
-OutputDescription described() {
+OutputDescription described_mesh() {
   OutputDescription description;
   description.mesh = "bunny.obj";
   description.mesh_sha256 = "0123456789abcdef";
@@ -72,13 +72,13 @@ OutputDescription described() {
   return description;
 }
 
-void write_vdb(const std::string& path, const Field& field, const OutputDescription& description = described(),
+void write_vdb(const std::string& path, const Field& field, const OutputDescription& description = described_mesh(),
                std::int64_t thickness = 8) {
   OutputFile output(path);
   test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9});
 }
 
-VdbGridPtr written_grid(const Field& field, const OutputDescription& description = described(),
+VdbGridPtr written_grid(const Field& field, const OutputDescription& description = described_mesh(),
                         VdbType type = VdbType::kFloat) {
   const TemporaryDirectory directory;
   write_vdb(directory / "out.vdb", field, description);
@@ -127,7 +127,7 @@ TEST(WriteVdb, HoldsEveryVoxel) { expect_holds(*written_grid(random_field()), ra
 TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_field()), ball_field()); }
 
 TEST(WriteVdb, HoldsDoublesOnRequest) {
-  OutputDescription description = described();
+  OutputDescription description = described_mesh();
   description.precision = Precision::kDouble;
   expect_holds(*written_grid(random_field(), description, VdbType::kDouble), random_field());
 }
@@ -139,9 +139,9 @@ TEST(WriteVdb, HoldsASingleSample) {
 
 TEST(WriteVdb, DoesNotDependOnTheSlabs) {
   const TemporaryDirectory directory;
-  write_vdb(directory / "aligned", ball_field(), described(), 66);
+  write_vdb(directory / "aligned", ball_field(), described_mesh(), 66);
   for (const std::int64_t thickness : {1, 3, 8, 13}) {
-    write_vdb(directory / "other", ball_field(), described(), thickness);
+    write_vdb(directory / "other", ball_field(), described_mesh(), thickness);
     EXPECT_EQ(contents(directory / "other"), contents(directory / "aligned")) << thickness;
   }
 }
@@ -209,7 +209,7 @@ TEST(WriteVdb, CubicVoxelsHaveUniformScale) {
 }
 
 TEST(WriteVdb, DescribesItself) {
-  OutputDescription description = described();
+  OutputDescription description = described_mesh();
   description.fields.front().rule = "threshold=0.5";
   const auto grid = written_grid(random_field(), description);
   EXPECT_EQ(grid->name(), "winding");

@@ -55,13 +55,13 @@ GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector
 // them is obtuse, the last factor is |a x b|^2 / (|a| |b| - a b).
 Vec3 GradientEvaluator::part(const Segment& segment, const Vec3& q) {
   constexpr double kLeast = 0x1p-400, kMost = 0x1p400;  // of squares
-  constexpr double kNear = 0x1p-16;                     // of a sine's square: a x b loses eight bits
+  constexpr double kNear = 0x1p-16;                     // of a sine's square: the cross product loses eight bits
   const Vec3 a = segment.from - q, b = segment.to - q;
   const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b);
   const Vec3 normal = cross(aa < bb ? a : b, segment.step);
   const double square = dot(normal, normal);
   const bool in_range = std::min(aa, bb) >= kLeast && std::max(aa, bb) <= kMost;
-  if (!in_range || (ab < 0.0 && square < kNear * (aa * bb))) {
+  if (!in_range || square < kNear * (std::min(aa, bb) * dot(segment.step, segment.step))) {
     return careful_part(segment.from, segment.to, segment.weight, q);
   }
   const double la = std::sqrt(aa), lb = std::sqrt(bb), lab = la * lb;

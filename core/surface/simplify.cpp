@@ -158,8 +158,7 @@ class Simplifier {
   SurfaceMesh surface_;
   const Lattice& lattice_;
   const std::vector<bool>& kept_;
-  std::vector<double>
-      off_;  // of each face: how far from the surface as it was its points, and those it stands for, are
+  std::vector<double> off_;  // of each face: how far its points, and those it stands for, are from where they were
   std::vector<std::vector<std::uint32_t>> star_;  // faces
   std::vector<std::uint32_t> into_;
 };

@@ -92,6 +92,28 @@ TEST(Gradient, IsTheSumOverAllSidesOfTrianglesAlsoBesideThem) {
   }
 }
 
+// Near the line of all sides of a needle, also beyond its ends: no other part hides what one loses.
+TEST(Gradient, IsTheSumOverTheSidesOfANeedleNearItsLine) {
+  test::Random random(13);
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 along = test::uniform_point(random, box);
+    const auto beside = [&](double at, double distance) {
+      return at * along + distance * test::uniform_point(random, box);
+    };
+    const TriangleMesh mesh{{beside(0.0, 1e-7), beside(1.0, 1e-7), beside(0.5, 1e-7)}, {{0, 1, 2}}};
+    const std::vector<Vec3> points{beside(-3.0, 1e-8), beside(0.3, 1e-6), beside(1.5, 1e-8), beside(1e3, 1e-5)};
+    const std::vector<Vec3> gradients = gradients_of(mesh, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const DirectGradient expected = direct_gradient(mesh, points[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(gradients[i][axis], component(expected.value, axis),
+                    1e-12 * static_cast<double>(expected.magnitude));
+      }
+    }
+  }
+}
+
 TEST(Gradient, OfAClosedMeshIsZero) {
   const std::vector<Vec3> points{{0.5, 0.5, 0.5}, {0, 0, 0}, {0.5, 0, 0}, {1e300, 0, -1e300}, {3, 1, 2}};
   for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 1, 1}), test::sphere(5), TriangleMesh{}}) {

@@ -425,7 +425,7 @@ MUTANTS = [
 
     # --- The gradient ---
     Mutant("gradient_next_to_edges", "next to an edge doubles lose the vector", [
-        ("core/evaluation/gradient.cpp", "(ab < 0.0 && square < kNear * (aa * bb))", "(ab < 0.0 && square < 0.0 * kNear)")]),
+        ("core/evaluation/gradient.cpp", "square < kNear * (std::min(aa, bb)", "square < 0.0 * kNear * (std::min(aa, bb)")]),
     Mutant("gradient_obtuse", "where the angle is obtuse |A| |B| + A B cancels", [
         ("core/evaluation/gradient.cpp", "ab < 0.0 ? square / (lab - ab) : lab + ab", "lab + ab")]),
 

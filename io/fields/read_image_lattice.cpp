@@ -70,14 +70,18 @@ std::array<double, kCount> read_numbers_of(const std::string& path, const Entrie
   std::array<double, kCount> numbers{};
   const char* at = found->second.data();
   const char* const end = at + found->second.size();
+  const auto skip = [&] {
+    while (at < end && std::string_view("(), \t\r").find(*at) != std::string_view::npos) ++at;
+  };
+  const auto fail = [&] { fail_image(path, key + ", expected " + std::to_string(kCount) + " numbers"); };
   for (double& number : numbers) {
-    while (at < end && std::string_view("(), ").find(*at) != std::string_view::npos) ++at;
+    skip();
     const auto [after, error] = std::from_chars(at, end, number);
-    if (error != std::errc() || !std::isfinite(number)) {
-      fail_image(path, key + ", expected " + std::to_string(kCount) + " numbers");
-    }
+    if (error != std::errc() || !std::isfinite(number)) fail();
     at = after;
   }
+  skip();
+  if (at != end) fail();
   return numbers;
 }
 
@@ -100,7 +104,9 @@ Placement read_nrrd(const std::string& path) {
   Placement placement;
   const auto turned = [turn](double x, double y, double z) { return Vec3{turn * x, turn * y, z}; };
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(sizes[a] >= 1.0) || sizes[a] > 0x1p53) fail_image(path, "sizes, expected numbers of at least 1");
+    if (!(sizes[a] >= 1.0) || sizes[a] > 0x1p53 || sizes[a] != std::floor(sizes[a])) {
+      fail_image(path, "sizes, expected whole numbers of at least 1");
+    }
     placement.counts[a] = static_cast<std::int64_t>(sizes[a]);
     placement.steps[a] = turned(steps[3 * a], steps[3 * a + 1], steps[3 * a + 2]);
   }

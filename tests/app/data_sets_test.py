@@ -237,7 +237,10 @@ class ImagesToFollow(DataSets):
         self.assertEqual(self.lattice_like("b.nrrd"), ((3, 4, 5), [1, 2, 0.5], [-1, 1, 0.5]))
         for change, message in (({"steps": "(-1,0,0) (0,-2,0)"}, "space directions, expected 9 numbers"),
                                 ({"space": "scanner-xyz"}, "its space, expected"), ({"sizes": None}, "has no sizes"),
-                                ({"sizes": "3 0 5"}, "sizes, expected"), ({"dimension": 4}, "dimension, expected 3"),
+                                ({"sizes": "3 0 5"}, "sizes, expected"),
+                                ({"sizes": "3 2.5 5"}, "sizes, expected whole"),
+                                ({"sizes": "3 4 5 6"}, "sizes, expected 3"),
+                                ({"dimension": 4}, "dimension, expected 3"),
                                 ({"space origin": "(nan,0,0)"}, "space origin, expected 3 numbers")):
             self.nrrd(**change)
             self.refused("lattice %s -o c.vdb --like b.nrrd" % CUBE, 2, "b.nrrd: not a readable volume: ")

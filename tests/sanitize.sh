@@ -27,7 +27,7 @@ black_box() {
 }
 
 sh app/install_packages.sh --tests
-phase "build dev" cmake --build --preset dev --parallel "$jobs" --target raycone_tests
+phase "build dev" cmake --build --preset dev --parallel "$jobs" --target raycone_tests raycone_vdb_tests
 
 # GCC 12's sanitizers take a loaded module's thread-local storage for that of an older C library where it happens to begin
 # 16 bytes behind a page's start, and die of the addresses that they read there: they need not look.

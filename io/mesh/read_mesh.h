@@ -11,6 +11,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "io/files/named_bytes.h"
+#include "io/mesh/face_groups.h"
 
 namespace raycone {
 
@@ -31,6 +32,7 @@ struct ParsedMesh {
   std::vector<PolygonFan> polygons;  // those of more than three corners, which may leave the polygon if it is concave
   std::uint64_t skipped_faces = 0;   // faces of one or two corners
   std::vector<Warning> warnings;     // one per kind, with its count
+  FaceGroups groups;
 };
 
 struct FileRead {

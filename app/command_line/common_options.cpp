@@ -79,6 +79,13 @@ bool has_extension(const std::string& path, const std::string& extension) {
 
 OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB file; - for standard input"}; }
 
+OperandSpec meshes_operand() {
+  OperandSpec operand = mesh_operand();
+  operand.description += "; for labels several, or @LIST of them";
+  operand.count = OperandCount::kMany;
+  return operand;
+}
+
 OptionGroup mesh_group() {
   return {"Mesh",
           {{"--mesh-format", "obj|ply|stl|off|gltf|glb",
@@ -92,8 +99,10 @@ OptionGroup mesh_group() {
 
 MeshOptions parse_mesh(const Values& values) {
   MeshOptions mesh;
-  mesh.path = values.text("MESH");
-  if (mesh.path.empty()) throw UsageError("MESH: expected a file, not an empty name");
+  const std::vector<std::string> paths = values.texts("MESH");
+  if (paths.empty() || paths.front().empty()) throw UsageError("MESH: expected a file, not an empty name");
+  mesh.path = paths.front();
+  mesh.further.assign(paths.begin() + 1, paths.end());
   if (values.text("--mesh-format") == "3mf") not_available("--mesh-format 3mf");
   if (values.given("--mesh-format")) {
     mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));

@@ -30,7 +30,8 @@ class FieldRun {
   void evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
   void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
-  [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
+  [[nodiscard]] std::span<std::int32_t> labels() { return samples_.labels(); }
+  [[nodiscard]] std::span<double> winding_numbers() { return samples_.winding_numbers(); }
 
   // Whether a rule was asked for, and held for no sample.
   [[nodiscard]] bool found_nothing_inside() const { return has_rule_ && !found_inside_; }

@@ -1,6 +1,7 @@
 #include "app/run/labels.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "app/process/stopwatch.h"
 #include "app/run/mesh_warnings.h"
 #include "app/run/slabs.h"
+#include "core/data/interval.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -56,6 +58,29 @@ bool add_part(MeshToEvaluate part, std::int32_t label, LabelledParts& parts, Lab
   parts.spent(evaluator.evaluator());
   return found;
 }
+
+// Of many small parts, each reaches few of the points.
+class PointsByX {
+ public:
+  PointsByX(std::span<const Vec3> points, bool sorted) : points_(points), sorted_(sorted), order_(points.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (sorted) std::ranges::stable_sort(order_, {}, [this](std::uint32_t n) { return points_[n].x; });
+  }
+
+  // At least the points whose x lies in `interval`.
+  [[nodiscard]] std::span<const std::uint32_t> between(const Interval& interval) const {
+    if (!sorted_) return order_;
+    const auto x = [this](std::uint32_t n) { return points_[n].x; };
+    const auto begin = std::ranges::lower_bound(order_, interval.lower, {}, x);
+    const auto end = std::ranges::upper_bound(order_, interval.upper, {}, x);
+    return {begin, end};
+  }
+
+ private:
+  std::span<const Vec3> points_;
+  bool sorted_;
+  std::vector<std::uint32_t> order_;
+};
 
 std::string quoted_names(const std::vector<std::size_t>& empty, const MeshParts& parts) {
   constexpr std::size_t kMost = 3;
@@ -239,13 +264,15 @@ PointLabels::PointLabels(LabelledParts& parts, const FieldOptions& field, double
 
 void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t> labels) {
   std::ranges::fill(labels, 0);
+  constexpr std::size_t kWorthSorting = 16;  // parts
+  const PointsByX by_x(points, evaluators_.size() > kWorthSorting);
   std::vector<Vec3> reached;
   std::vector<std::size_t> numbers;  // of these among the points
   for (std::size_t part = 0; part < evaluators_.size(); ++part) {
     const PartEvaluator& evaluator = *evaluators_[part];
     reached.clear();
     numbers.clear();
-    for (std::size_t n = 0; n < points.size(); ++n) {
+    for (const std::uint32_t n : by_x.between(evaluator.reach_along_x())) {
       if (!evaluator.reaches(points[n]) || (parts_.first_wins() && labels[n] != 0)) continue;
       reached.push_back(points[n]);
       numbers.push_back(n);

@@ -63,7 +63,7 @@ class MeshParts {
   Matrix4 transform_{};
   Box box_;
   std::optional<MeshSplit> split_;                 // of all; absent where files are kept one by one, or not at all
-  std::vector<std::optional<TriangleMesh>> kept_;  // of each file then
+  std::vector<std::optional<TriangleMesh>> kept_;  // of each file then, welded
 };
 
 }  // namespace raycone

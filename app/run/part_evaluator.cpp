@@ -1,7 +1,7 @@
 #include "app/run/part_evaluator.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace raycone {
@@ -53,6 +53,11 @@ LatticeBlock PartEvaluator::reach(const Lattice& lattice, const MeshToEvaluate& 
   const Box box = bounding_box(part.mesh);
   for (int axis = 0; axis < 3; ++axis) restrict(block, lattice, axis, box.lower[axis], box.upper[axis]);
   return block;
+}
+
+Interval PartEvaluator::reach_along_x() const {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  return bounded_ ? Interval{box_.lower.x, box_.upper.x} : Interval{-kAll, kAll};
 }
 
 bool PartEvaluator::reaches(const Vec3& point) const {

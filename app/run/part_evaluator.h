@@ -9,6 +9,7 @@
 #include "app/options/field_options.h"
 #include "app/run/field_evaluator.h"
 #include "app/run/mesh_input.h"
+#include "core/data/interval.h"
 #include "core/data/lattice.h"
 
 namespace raycone {
@@ -26,7 +27,8 @@ class PartEvaluator {
 
   [[nodiscard]] const FieldEvaluator& evaluator() const { return evaluator_; }
 
-  // Whether the rule may hold at `point`.
+  // Where the rule may hold: along x, and at `point`.
+  [[nodiscard]] Interval reach_along_x() const;
   [[nodiscard]] bool reaches(const Vec3& point) const;
 
  private:

@@ -185,6 +185,17 @@ class Values(Labels):
         place = " --resolution 20,15,1 --centers"
         labels = self.lattice("many.obj", " --parts group", place)
         self.assertTrue((labels[:, :, 0] == 1 + numpy.arange(300).reshape(15, 20).T).all())
+        # Points of many parts are sorted first; some lie on the faces between parts.
+        x, y = numpy.meshgrid(numpy.arange(41) / 20, numpy.arange(31) / 20, indexing="ij")
+        points = numpy.stack([x.ravel(), y.ravel(), numpy.full(x.size, 0.05)], axis=1)[::-1]
+        numpy.save("p.npy", points)
+        self.works("points many.obj p.npy -o v.npy --field label --parts group --verify 100")
+        self.works("points many.obj p.npy -o w.npy --field inside")
+        self.assertTrue(((numpy.load("v.npy") > 0) == (numpy.load("w.npy") > 0)).all())
+        names = numpy.load("v.npy")
+        centres = (points[:, 0] * 20 % 2 == 1) & (points[:, 1] * 20 % 2 == 1)
+        cells = numpy.floor(points[centres] * 10 + 1e-9)
+        self.assertTrue((names[centres] == 1 + cells[:, 0] + 20 * cells[:, 1]).all() and centres.sum() == 300)
 
     def test_points_are_what_lattices_are(self):
         index = numpy.indices((15, 9, 9)).reshape(3, -1).T

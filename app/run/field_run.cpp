@@ -58,6 +58,13 @@ void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>
   draw_.offer(points, samples_.numbers());
 }
 
+void FieldRun::take_labels(const LabelVolume& volume, const LatticeBlock& block) {
+  volume.copy(block, samples_.labels());
+  if (!field_.labels_only()) return;
+  std::ranges::transform(samples_.labels(), samples_.winding_numbers().begin(),
+                         [](std::int32_t label) { return label != 0 ? 1.0 : 0.0; });
+}
+
 void FieldRun::look_for_largest_bound() {
   const Diagnostics* diagnostics = samples_.diagnostics();
   if (!diagnostics || diagnostics->error_bound.empty()) return;

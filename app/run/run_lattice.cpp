@@ -139,7 +139,7 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* l
   std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
     fields.evaluate(lattice, slab, done);
-    if (labels) labels->copy(slab, fields.labels());
+    if (labels) fields.take_labels(*labels, slab);
     if (observe) observe(lattice, slab, fields.winding_numbers());
     timed(run.report.seconds.write, [&] { writer.write(slab, fields.values()); });
   }

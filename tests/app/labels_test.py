@@ -151,6 +151,10 @@ class Values(Labels):
                 self.assertTrue((labels == expected).all(), (options, first))
             if options == " --orient auto":
                 self.assertEqual(sorted(numpy.unique(labels)), [0, 1, 2, 3, 4])
+        # A fine lattice has samples just within all faces.
+        for place in (" --bounds -.25,.3,.3,3.25,1.7,1.7 --resolution 701,3,3",
+                      " --bounds .3,.3,-.25,2.7,1.7,1.75 --resolution 5,3,401"):
+            self.assertTrue((self.lattice(self.files, "", place) == self.expected(self.files, place=place)).all())
         # Overlap is there, and decides.
         self.assertFalse((self.lattice(self.files) == self.lattice(self.files, " --priority")).all())
 

@@ -138,6 +138,7 @@ Json to_object(const MeshInfo& info) {
                 {"warnings", names_of(info.warnings)},
                 {"warning_lines", lines_of(info.warnings)}};
   if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
+  if (!info.unit.empty()) document["unit"] = info.unit;
   if (info.intersections) document["self_intersections"] = info.intersections->pairs.value_or(0);
   return document;
 }
@@ -202,6 +203,7 @@ std::string to_json(const RunReport& report) {
                 {"warnings", names_of(report.warnings)},
                 {"warning_lines", lines_of(report.warnings)},
                 {"seconds", to_object(report.seconds)}};
+  if (!report.unit.empty()) document["unit"] = report.unit;
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
   if (!report.parts.empty()) {
     document["meshes"] = to_array(report.meshes);

@@ -111,6 +111,7 @@ LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldO
     report.faces += file.faces;
   }
   report.sha256 = report.meshes.front().sha256;
+  report.unit = parts_.files().front().unit;
   refuse_to_replace_input(written, report.files_read);
   for (const MeshParts::File& file : parts_.files()) run.warn_about(file.read.path, file.warnings);
   for (std::size_t n = 0; n < parts_.size(); ++n) {

@@ -87,6 +87,7 @@ TriangleMesh MeshParts::read(std::size_t file) {
     throw InputError(known.read.path + ": has changed since it was read first");
   }
   known.read.sha256 = read.sha256;
+  known.unit = read.parsed.unit;
   known.companions = std::move(read.companions);
   known.vertices = read.parsed.mesh.vertices.size();
   known.faces = read.parsed.mesh.triangles.size();
@@ -94,7 +95,7 @@ TriangleMesh MeshParts::read(std::size_t file) {
   transform_ = transformed.transform;
   if (options_.parts.by == PartsBy::kGroup && names_.empty()) {
     if (read.parsed.groups.runs.empty()) {
-      throw InputError(known.read.path + ": its format has no groups, expected OBJ, STL or glTF, or --parts component");
+      throw InputError(known.read.path + ": its format has no groups, expected OBJ, STL, glTF or 3MF, or --parts component");
     }
     groups_ = std::move(read.parsed.groups);
   }

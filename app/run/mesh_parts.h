@@ -21,6 +21,7 @@ class MeshParts {
  public:
   struct File {
     FileRead read;
+    std::string unit;  // of its coordinates, where the format has one
     std::vector<FileRead> companions;
     std::uint64_t vertices = 0, faces = 0;
     std::vector<Warning> warnings;

@@ -28,6 +28,7 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   MeshFile& file = transformed.file;
   report.transform = transformed.transform;
   report.sha256 = file.sha256;
+  report.unit = file.parsed.unit;
   report.companions = file.companions;
   report.files_read.push_back(report.mesh);
   for (const FileRead& companion : file.companions) report.files_read.push_back(companion.path);

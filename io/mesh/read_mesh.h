@@ -15,9 +15,9 @@
 
 namespace raycone {
 
-enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb };
+enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb, k3mf };
 
-// "obj", "ply", "stl", "off", "gltf" or "glb", in any case; nothing else.
+// "obj", "ply", "stl", "off", "gltf", "glb" or "3mf", in any case; nothing else.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
 
 struct ReadMeshOptions {
@@ -33,6 +33,7 @@ struct ParsedMesh {
   std::uint64_t skipped_faces = 0;   // faces of one or two corners
   std::vector<Warning> warnings;     // one per kind, with its count
   FaceGroups groups;
+  std::string unit;  // of length, as the file names it; empty where its format has none
 };
 
 struct FileRead {
@@ -57,5 +58,7 @@ struct MeshFile {
 [[nodiscard]] ParsedMesh read_off(const NamedBytes& source);
 // glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
 [[nodiscard]] ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions);
+// The items of the build, components resolved, in the file's unit. Groups are objects with triangles.
+[[nodiscard]] ParsedMesh read_3mf(const NamedBytes& source);
 
 }  // namespace raycone

@@ -5,7 +5,8 @@
 set -eu
 
 # libboost-iostreams-dev: CMake's find module of Debian's OpenVDB asks for it, the package does not depend on it.
-build_packages='g++ cmake ninja-build pkg-config libcgal-dev libcli11-dev libdraco-dev libembree-dev libhwy-dev
+build_packages='g++ cmake ninja-build pkg-config libcgal-dev libcli11-dev libdraco-dev libembree-dev libexpat1-dev
+  libhwy-dev
   libopenvdb-dev libboost-iostreams-dev libpng-dev libtbb-dev libtinygltf-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev'
 test_packages='libfaketime libgtest-dev libbenchmark-dev make mandoc python3 python3-numpy python3-openvdb strace zsh'
 

@@ -7,6 +7,7 @@
 #include "app/batch/report_page.h"
 #include "app/batch/run_batch.h"
 #include "app/process/messages.h"
+#include "app/run/mesh_list.h"
 #include "app/run/run_info.h"
 #include "app/run/run_lattice.h"
 #include "app/run/run_limits.h"
@@ -31,10 +32,23 @@ RunReport evaluate(const PointsCommand& command, const RunLimits& limits) { retu
 RunReport evaluate(const SliceCommand& command, const RunLimits& limits) { return run_slice(command, limits); }
 RunReport evaluate(const SurfaceCommand& command, const RunLimits& limits) { return run_surface(command, limits); }
 
+// With the meshes that lists name.
+LatticeCommand expanded(LatticeCommand command) {
+  if (command.field.has(Field::kLabel)) command.mesh = with_listed_meshes(command.mesh);
+  return command;
+}
+PointsCommand expanded(PointsCommand command) {
+  if (command.field.has(Field::kLabel)) command.mesh = with_listed_meshes(command.mesh, command.points);
+  return command;
+}
+const SliceCommand& expanded(const SliceCommand& command) { return command; }
+const SurfaceCommand& expanded(const SurfaceCommand& command) { return command; }
+
 // From a mesh to files about it: lattice, points, slice, surface.
 template <typename EvaluatingCommand>
-ExitCode dispatch(const EvaluatingCommand& command) {
-  within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
+ExitCode dispatch(const EvaluatingCommand& given) {
+  within_limits(given.run, given.mesh.path, [&given](const RunLimits& limits) {
+    const auto& command = expanded(given);
     refuse_terminal(files_written(command));
     refuse_to_replace_input(files_written(command), inputs_of(command));
     const SideFiles side_files = open_side_files(command.output);

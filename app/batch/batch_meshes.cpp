@@ -11,8 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "app/batch/mesh_list.h"
 #include "app/process/usage_error.h"
+#include "app/run/mesh_list.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/files/unpack.h"

@@ -126,7 +126,8 @@ class Carrier {
   void carry(ReadMeshOptions& options) { carry_members<3>(options); }
   void carry(Weld& weld) { carry_members<2>(weld); }
   void carry(Normalize& normalize) { carry_members<2>(normalize); }
-  void carry(MeshOptions& options) { carry_members<5>(options); }
+  void carry(PartsOptions& options) { carry_members<2>(options); }
+  void carry(MeshOptions& options) { carry_members<7>(options); }
   void carry(RunOptions& options) { carry_members<8>(options); }
   void carry(Rule& rule) { carry_members<2>(rule); }
   void carry(FieldOptions& options) { carry_members<8>(options); }

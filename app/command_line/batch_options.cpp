@@ -111,6 +111,12 @@ MeshCommand parse_for_each(const std::string& format, MeshValues of_mesh) {
   return sampled ? finish(std::get<PointsCommand>(command)) : finish(std::get<LatticeCommand>(command));
 }
 
+// Each mesh of a batch is evaluated alone.
+void refuse_parts_by_file(const MeshOptions& mesh, const FieldOptions& field) {
+  if (!field.has(Field::kLabel) || mesh.parts.by != PartsBy::kFile) return;
+  throw UsageError("--field label: a batch evaluates each mesh alone, expected --parts group or component");
+}
+
 bool is_list(const std::string& operand) { return operand.starts_with('@') || operand == "-"; }
 
 // A line an option, as it was given: "--name=value", flags "--name". Batches keep this text: to change how an option is
@@ -166,6 +172,7 @@ Command parse_batch(const Values& values) {
   if (!command.writes) refuse_options_of_outputs(values);
   command.for_each = parse_for_each(format, of_mesh);
   command.result_options = result_options(format, of_mesh);
+  std::visit([](const auto& one) { refuse_parts_by_file(one.mesh, one.field); }, command.for_each);
   command.directory = values.text("--out-dir");
   const bool full_names = values.given("--full-names") || !command.writes;  // no outputs, no collisions
   const std::vector<std::string> operands = values.texts("MESH|DIR|@LIST");

@@ -22,7 +22,7 @@ struct OptionGroup {
   std::vector<OptionSpec> options;
 };
 
-enum class OperandCount { kOne, kOptional, kMany };  // kMany: at least one; only the last operand
+enum class OperandCount { kOne, kOptional, kMany };  // kMany: at least one; it takes all
 
 struct OperandSpec {
   std::string name;

@@ -77,11 +77,18 @@ bool has_extension(const std::string& path, const std::string& extension) {
                     [](char small, char c) { return small == ('A' <= c && c <= 'Z' ? c - 'A' + 'a' : c); });
 }
 
-OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF or GLB file; - for standard input"}; }
+OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF, GLB or 3MF file; - for standard input"}; }
+
+OperandSpec meshes_operand() {
+  OperandSpec operand = mesh_operand();
+  operand.description += "; for labels several, or @LIST of them";
+  operand.count = OperandCount::kMany;
+  return operand;
+}
 
 OptionGroup mesh_group() {
   return {"Mesh",
-          {{"--mesh-format", "obj|ply|stl|off|gltf|glb",
+          {{"--mesh-format", "obj|ply|stl|off|gltf|glb|3mf",
             "Format of a mesh whose name and content do not tell it, as in pipes"},
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
            {"--orient", "keep|flip|auto", "Turn no face, all, or those that make the mesh agree and face outward"},
@@ -92,12 +99,14 @@ OptionGroup mesh_group() {
 
 MeshOptions parse_mesh(const Values& values) {
   MeshOptions mesh;
-  mesh.path = values.text("MESH");
-  if (mesh.path.empty()) throw UsageError("MESH: expected a file, not an empty name");
-  if (values.text("--mesh-format") == "3mf") not_available("--mesh-format 3mf");
+  const std::vector<std::string> paths = values.texts("MESH");
+  if (paths.empty() || paths.front().empty()) throw UsageError("MESH: expected a file, not an empty name");
+  mesh.path = paths.front();
+  mesh.further.assign(paths.begin() + 1, paths.end());
   if (values.given("--mesh-format")) {
     mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));
-    if (!mesh.reading.format) invalid("--mesh-format", values.text("--mesh-format"), "obj, ply, stl, off, gltf or glb");
+    if (!mesh.reading.format)
+      invalid("--mesh-format", values.text("--mesh-format"), "obj, ply, stl, off, gltf, glb or 3mf");
   }
   if (values.given("--scale")) mesh.reading.scale = values.positive("--scale");
   mesh.reading.y_up_to_z_up = values.given("--up");

@@ -14,6 +14,7 @@
 namespace raycone {
 
 [[nodiscard]] OperandSpec mesh_operand();
+[[nodiscard]] OperandSpec meshes_operand();  // of commands that label parts
 [[nodiscard]] OptionGroup mesh_group();
 [[nodiscard]] MeshOptions parse_mesh(const Values& values);
 

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/command_line/common_options.h"
+#include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 
 namespace raycone {
@@ -26,14 +28,19 @@ std::vector<Field> parse_fields(const Values& values) {
   const std::string text = values.text("--field");
   for (const std::string_view name : items_of(text)) {
     const std::optional<Field> field = field_from_name(name);
-    for (const char* const later : {"solid", "label"}) {
-      if (name == later) not_available("--field " + text);
-    }
-    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf, gradient");
+    if (name == "solid") not_available("--field " + text);
+    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf, gradient, label");
     if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
     fields.push_back(*field);
   }
   return fields;
+}
+
+PartsBy parse_parts_by(const std::string& text) {
+  if (text == "file") return PartsBy::kFile;
+  if (text == "group") return PartsBy::kGroup;
+  if (text == "component") return PartsBy::kComponent;
+  invalid("--parts", text, "file, group or component");
 }
 
 RayEngine parse_engine(const std::string& text) {
@@ -57,10 +64,13 @@ SimdLevel parse_simd(const std::string& text) {
 
 OptionGroup field_group() {
   return {"Field",
-          {{"--field", "winding|inside|density|sdf|gradient[,...]",
+          {{"--field", "winding|inside|density|sdf|gradient|label[,...]",
             "Winding number (default), inside mask, winding number clamped to 0..1, signed distance, gradient of the "
-            "winding number",
+            "winding number, number of the part that a sample is inside of",
             true},
+           {"--parts", "file|group|component",
+            "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"},
+           {"--priority", "", "Where parts overlap, label is the first of them, not the last"},
            {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
            {"--band", "B",
             "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not cut it "
@@ -87,6 +97,19 @@ Rule parse_rule(const Values& values) {
   const std::optional<Rule> rule = rule_from_name(values.text("--rule"));
   if (!rule) invalid("--rule", values.text("--rule"), kRules);
   return *rule;
+}
+
+MeshOptions parse_meshes(const Values& values, const FieldOptions& field) {
+  MeshOptions mesh = parse_mesh(values);
+  if (values.given("--parts")) mesh.parts.by = parse_parts_by(values.text("--parts"));
+  mesh.parts.first_wins = values.given("--priority");
+  if (!mesh.further.empty() && !field.has(Field::kLabel)) {
+    throw UsageError("unexpected operand " + mesh.further.front() + ", expected one mesh, or --field label");
+  }
+  for (const std::string& path : mesh.further) {
+    if (path.empty() || path == "@") throw UsageError("MESH: expected a file, not an empty name");
+  }
+  return mesh;
 }
 
 FieldOptions parse_field(const Values& values) {

@@ -4,6 +4,7 @@
 #include "app/command_line/command_spec.h"
 #include "app/command_line/values.h"
 #include "app/options/field_options.h"
+#include "app/options/mesh_options.h"
 
 namespace raycone {
 
@@ -13,6 +14,8 @@ namespace raycone {
 [[nodiscard]] double parse_tolerance(const Values& values);
 // What --rule says. Precondition: it is given.
 [[nodiscard]] Rule parse_rule(const Values& values);
+// One mesh, or for labels several and their parts.
+[[nodiscard]] MeshOptions parse_meshes(const Values& values, const FieldOptions& field);
 [[nodiscard]] FieldOptions parse_field(const Values& values);
 
 }  // namespace raycone

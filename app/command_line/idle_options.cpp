@@ -23,8 +23,11 @@ void refuse_option(const Values& values, const std::string& name, const std::str
   refuse(values, name, false, because);
 }
 
+constexpr const char* kNoDigits = "on inside and label, which have no digits, expected another field";
+
+// Real ones, whose precision can be chosen.
 bool has_numbers(const FieldOptions& field) {
-  return std::ranges::any_of(field.fields, [](Field one) { return one != Field::kInside; });
+  return std::ranges::any_of(field.fields, [](Field one) { return one != Field::kInside && one != Field::kLabel; });
 }
 
 bool draws_in_box(const SampleRequest& request) {
@@ -35,8 +38,17 @@ bool draws_in_box(const SampleRequest& request) {
 }  // namespace
 
 void refuse_idle_rule(const Values& values, const FieldOptions& field) {
-  if (field.has(Field::kInside) || field.has(Field::kDistance)) return;
-  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside or sdf");
+  if (field.has_rule()) return;
+  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside, sdf or label");
+}
+
+void refuse_idle_parts(const Values& values, const FieldOptions& field) {
+  if (field.labels_only()) {
+    refuse_flag(values, "--diagnostics", "on labels, expected another field with them");
+  }
+  if (field.has(Field::kLabel)) return;
+  refuse_option(values, "--parts", "without labels, expected --field label");
+  refuse_flag(values, "--priority", "without labels, expected --field label");
 }
 
 void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
@@ -47,7 +59,7 @@ void refuse_idle_encoding(const Values& values, const FieldOptions& field, const
   const std::string on_csv = "on CSV, which holds all digits, expected another format";
   if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", on_csv);
   if (!has_numbers(field)) {
-    refuse_option(values, "--dtype", "on inside, which is yes or no, expected another field");
+    refuse_option(values, "--dtype", kNoDigits);
   }
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
@@ -56,18 +68,20 @@ void refuse_idle_encoding(const Values& values, const FieldOptions& field, const
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   refuse_idle_encoding(values, command.field, command.encoding);
   refuse_idle_rule(values, command.field);
+  refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
   if (!command.field.has(Field::kDistance)) refuse_option(values, "--band", "without a distance, expected --field sdf");
   const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {
-    if (!has_numbers(command.field)) refuse_flag(values, name, "on inside, which is yes or no, expected another field");
+    if (!has_numbers(command.field)) refuse_flag(values, name, kNoDigits);
   }
 }
 
 void refuse_idle_options(const Values& values, const PointsCommand& command) {
   refuse_idle_encoding(values, command.field, command.encoding);
   refuse_idle_rule(values, command.field);
+  refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
   refuse_option(values, "--band", "on distances at points, which are not cut off");
   if (!command.sample || draws_in_box(*command.sample)) return;

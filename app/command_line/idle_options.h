@@ -16,6 +16,7 @@ void refuse_idle_options(const Values& values, const PointsCommand& command);
 
 // Parts of them for other commands: options of fields, and of files.
 void refuse_idle_rule(const Values& values, const FieldOptions& field);
+void refuse_idle_parts(const Values& values, const FieldOptions& field);
 void refuse_idle_depfile(const Values& values, const OutputFiles& output);
 
 // Of a batch that writes no outputs.

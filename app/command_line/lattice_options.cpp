@@ -167,21 +167,22 @@ CommandSpec lattice_spec() {
   output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
   return {.name = "lattice",
           .description = "Evaluate a mesh on a regular lattice",
-          .operands = {mesh_operand()},
+          .operands = {meshes_operand()},
           .groups = {mesh_group(), lattice_group(), field_group(), output, run_group()},
           .examples = {"raycone lattice bunny.obj -o bunny.vdb                     64 samples along the longest side",
                        "raycone lattice bunny.obj -o bunny.npy --resolution 50,50,50",
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
                        "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
+                       "raycone lattice femur.stl tibia.stl -o knee.nii.gz --field label",
                        "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"},
-          .later = {{"--parts"}, {}}};
+          .later = {}};
 }
 
 Command parse_lattice(const Values& values) {
   if (!values.given("--output")) throw UsageError("no output given, expected -o OUT" + help_hint("lattice"));
   LatticeCommand command;
   command.field = parse_field(values);
-  command.mesh = parse_mesh(values);
+  command.mesh = parse_meshes(values, command.field);
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
   if (command.field.has(Field::kDistance)) make_room_for_band(values, command);

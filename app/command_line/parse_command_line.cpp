@@ -207,7 +207,9 @@ void check_options(const CommandSpec& spec, const Arguments& arguments) {
 // CLI11 would list its own end-of-options mark among them.
 void check_operand_count(const CommandSpec& spec, const Arguments& arguments) {
   const std::size_t most = spec.operands.size();
-  if (arguments.operands.size() <= most || spec.operands.back().count == OperandCount::kMany) return;
+  const bool many = std::ranges::any_of(
+      spec.operands, [](const OperandSpec& operand) { return operand.count == OperandCount::kMany; });
+  if (arguments.operands.size() <= most || many) return;
   throw UsageError("unexpected operand " + arguments.operands[most] + help_hint(arguments.command));
 }
 

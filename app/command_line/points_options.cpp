@@ -52,8 +52,23 @@ OutputFormats output_formats(const PointsCommand& command) {
 // NPY has one type for all columns, which must be able to hold counts and bounds.
 void check_npy_columns(const PointsCommand& command) {
   const bool narrow = command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
-  if (command.encoding.format != FieldFormat::kNpy || !command.field.diagnostics || !narrow) return;
-  throw UsageError("--diagnostics: takes 64 bits in npy, expected --dtype f64, or npz");
+  if (command.encoding.format != FieldFormat::kNpy || !narrow) return;
+  if (command.field.diagnostics) {
+    throw UsageError("--diagnostics: takes 64 bits in npy, expected --dtype f64, or npz");
+  }
+  if (command.field.has(Field::kLabel)) {
+    throw UsageError("--field label: takes 64 bits beside other fields in npy, expected --dtype f64, or npz");
+  }
+}
+
+// Operands are meshes as long as nothing tells which of them is POINTS: the last one, unless all are meshes to draw
+// points from.
+Values with_points_operand(const Values& values, const FieldOptions& field) {
+  std::vector<std::string> meshes = values.texts("MESH");
+  if (meshes.size() < 2 || (values.given("--sample") && field.has(Field::kLabel))) return values;
+  const std::string points = meshes.back();
+  meshes.pop_back();
+  return values.with("MESH", meshes).with("POINTS", {points});
 }
 
 // One of a file of points and a description of those to draw.
@@ -86,7 +101,7 @@ CommandSpec points_spec() {
   return {
       .name = "points",
       .description = "Evaluate a mesh at given or random points",
-      .operands = {mesh_operand(),
+      .operands = {meshes_operand(),
                    {"POINTS", "CSV, TSV or blank-separated text, NPY, NPZ or PLY file; - for text on standard input",
                     OperandCount::kOptional}},
       .groups = {mesh_group(),
@@ -103,13 +118,14 @@ CommandSpec points_spec() {
                    "raycone points bunny.obj cloud.ply -o values.csv",
                    "raycone points bunny.obj table.tsv --columns 2,3,4", "echo 0 0.1 0 | raycone points bunny.obj -",
                    "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"},
-      .later = {{"--parts"}, {}}};
+      .later = {}};
 }
 
-Command parse_points(const Values& values) {
+Command parse_points(const Values& given) {
   PointsCommand command;
-  command.field = parse_field(values);
-  command.mesh = parse_mesh(values);
+  command.field = parse_field(given);
+  const Values values = with_points_operand(given, command.field);
+  command.mesh = parse_meshes(values, command.field);
   command.run = parse_run(values);
   parse_points_source(values, command);
   command.reading = parse_point_columns(values);

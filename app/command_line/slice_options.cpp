@@ -91,12 +91,11 @@ SliceRequest parse_request(const Values& values, const Values& up) {
   return request;
 }
 
-// One field to look at. Those of open issues are refused by name.
+// One field to look at.
 FieldOptions parse_slice_field(const Values& values) {
   const std::string name = values.given("--field") ? values.text("--field") : "winding";
-  if (name == "label") not_available("--field label");
   const std::optional<Field> field = field_from_name(name);
-  if (!field || field == Field::kDensity || field == Field::kGradient)
+  if (!field || field == Field::kDensity || field == Field::kGradient || field == Field::kLabel)
     invalid("--field", name, "winding, inside or sdf");
   if (field == Field::kWinding && values.given("--rule")) {
     throw UsageError("--rule " + values.text("--rule") + ": has no effect on --field winding");

@@ -20,9 +20,10 @@ enum class Field {
   kDensity,   // the winding number, clamped to [0, 1]
   kDistance,  // to the triangles, signed: negative inside
   kGradient,  // of the winding number, beside its jumps
+  kLabel,     // which part the rule holds for
 };
 
-// "winding", "inside", "density", "sdf" or "gradient".
+// "winding", "inside", "density", "sdf", "gradient" or "label".
 [[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
 
 // As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
@@ -43,6 +44,12 @@ struct FieldOptions {
   SimdLevel simd = SimdLevel::kBest;
 
   [[nodiscard]] bool has(Field field) const;
+
+  // Whether the mesh as a whole is not asked about.
+  [[nodiscard]] bool labels_only() const;
+
+  // Whether a field depends on the rule.
+  [[nodiscard]] bool has_rule() const;
 
   // Whether of winding numbers nothing is asked but whether the rule holds.
   [[nodiscard]] bool rule_only() const;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/mesh/normalize.h"
 #include "core/mesh/weld.h"
@@ -11,12 +12,26 @@
 
 namespace raycone {
 
+// What the parts are that labels tell apart.
+enum class PartsBy {
+  kFile,       // each mesh is one
+  kGroup,      // what the file names: groups and objects of OBJ, solids of STL, meshes of glTF
+  kComponent,  // faces that are joined through vertices
+};
+
+struct PartsOptions {
+  PartsBy by = PartsBy::kFile;
+  bool first_wins = false;  // where parts overlap; else the last one does
+};
+
 struct MeshOptions {
-  std::string path;  // "-": standard input
+  std::string path;  // "-": standard input; on the command line also @LIST
   ReadMeshOptions reading;
   Weld weld;
   Orient orient = Orient::kKeep;
   std::optional<Normalize> normalize;  // after scaling, before welding
+  std::vector<std::string> further;    // meshes behind the first; for labels only
+  PartsOptions parts;
 };
 
 }  // namespace raycone

@@ -84,6 +84,7 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("faces", readable(info.faces));
   if (info.skipped_faces > 0) table.row("skipped faces", readable(info.skipped_faces) + " of fewer than three corners");
   table.row("vertices", readable(info.vertices) + ", after welding " + readable(info.welded_vertices));
+  if (!info.unit.empty()) table.row("unit", info.unit);
   table.row("components", readable(s.components));
   table.row("surface", s.closed() ? "closed" : "open");
   table.row("exterior edges", readable(s.exterior_edges));

@@ -24,6 +24,7 @@ struct MeshInfo {
   std::uint64_t vertices = 0;
   std::uint64_t welded_vertices = 0;
   std::uint64_t skipped_faces = 0;  // of one or two corners
+  std::string unit;                 // of the file's coordinates, where its format has one
   Box bounds;
   MeshStatistics statistics;                   // of the welded mesh
   std::uint64_t opposite_duplicate_faces = 0;  // pairs of faces that cancel

@@ -1,7 +1,9 @@
 // By nlohmann-json: it escapes names correctly and prints doubles shortest-round-trip.
 #include "app/report/json.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -66,6 +68,44 @@ Json to_object(const SurfaceReport& surface) {
           {"dropped_area", surface.dropped_area}};
 }
 
+Json names_of(const std::vector<PartReport>& parts) {
+  Json names = Json::array();
+  for (const PartReport& part : parts) names.push_back(part.name);
+  return names;
+}
+
+Json to_array(const std::vector<PartReport>& parts) {
+  Json array = Json::array();
+  for (const PartReport& part : parts) {
+    array.push_back({{"label", array.size() + 1},
+                     {"name", part.name},
+                     {"mesh", part.mesh},
+                     {"faces", part.faces},
+                     {"exterior_edges", part.exterior_edges},
+                     {"samples", part.samples}});
+  }
+  return array;
+}
+
+Json to_array(const std::vector<FileRead>& meshes) {
+  Json array = Json::array();
+  for (const FileRead& mesh : meshes) array.push_back({{"mesh", mesh.path}, {"sha256", mesh.sha256}});
+  return array;
+}
+
+// Hues by the golden angle: those of neighbours are far apart, and none returns.
+Json colour_of(std::size_t label) {
+  const double turns = static_cast<double>(label) * 0.6180339887498949;
+  const double sixths = 6 * (turns - std::floor(turns));
+  Json colour = Json::array();
+  for (const double shift : {0.0, 4.0, 2.0}) {
+    const double hue = std::fmod(sixths + shift, 6.0);
+    const double share = std::clamp(std::abs(hue - 3) - 1, 0.0, 1.0);
+    colour.push_back(static_cast<int>(std::lround(40 + 200 * share)));
+  }
+  return colour;
+}
+
 Json names_of(const std::vector<Warning>& warnings) {
   Json names = Json::array();
   for (const Warning& warning : warnings) names.push_back(warning.name);
@@ -98,6 +138,7 @@ Json to_object(const MeshInfo& info) {
                 {"warnings", names_of(info.warnings)},
                 {"warning_lines", lines_of(info.warnings)}};
   if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
+  if (!info.unit.empty()) document["unit"] = info.unit;
   if (info.intersections) document["self_intersections"] = info.intersections->pairs.value_or(0);
   return document;
 }
@@ -132,6 +173,8 @@ std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string to_line(const Json& document) { return document.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
 
 std::string to_json(const RunReport& report) {
@@ -160,7 +203,12 @@ std::string to_json(const RunReport& report) {
                 {"warnings", names_of(report.warnings)},
                 {"warning_lines", lines_of(report.warnings)},
                 {"seconds", to_object(report.seconds)}};
+  if (!report.unit.empty()) document["unit"] = report.unit;
   if (report.lattice) document["lattice"] = to_object(*report.lattice);
+  if (!report.parts.empty()) {
+    document["meshes"] = to_array(report.meshes);
+    document["parts"] = to_array(report.parts);
+  }
   if (report.surface) document["surface"] = to_object(*report.surface);
   if (report.verification) {
     document["verify"] = to_object(*report.verification);
@@ -176,7 +224,22 @@ std::string provenance_json(const RunReport& report, const std::vector<std::stri
                 {"fields", fields},
                 {"transform", to_rows(report.transform)}};
   if (!rule.empty()) document["rule"] = rule;
-  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!report.parts.empty()) document["labels"] = names_of(report.parts);
+  if (report.meshes.size() > 1) {
+    for (const FileRead& mesh : report.meshes) document["sha256_of_meshes"].push_back(mesh.sha256);
+  }
+  return to_line(document);
+}
+
+std::string label_names_json(const RunReport& report) { return to_line(names_of(report.parts)); }
+
+std::string label_table_json(const RunReport& report) {
+  Json labels = Json::array();
+  for (const PartReport& part : report.parts) {
+    const std::size_t label = labels.size() + 1;
+    labels.push_back({{"label", label}, {"name", part.name}, {"color", colour_of(label)}});
+  }
+  return to_text({{"raycone_version", kVersion}, {"labels", labels}});
 }
 
 std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }

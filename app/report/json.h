@@ -18,6 +18,13 @@ namespace raycone {
 [[nodiscard]] std::string provenance_json(const RunReport& report, const std::vector<std::string>& fields,
                                           const std::string& rule);
 
+// The names of the labels 1, 2, ... of a run, as an array in one line.
+[[nodiscard]] std::string label_names_json(const RunReport& report);
+
+// The labels of a run for programs that show them: of each its number, name, and a colour that depends on the number
+// alone.
+[[nodiscard]] std::string label_table_json(const RunReport& report);
+
 // An object that names its mesh first, to be put into an array; no line feed at the end.
 [[nodiscard]] std::string to_json_item(const MeshInfo& info);
 

@@ -23,6 +23,10 @@ std::string verification_clause(const Verification& verification) {
   return clause;
 }
 
+std::string parts_clause(const std::vector<PartReport>& parts) {
+  return parts.empty() ? "" : ", " + counted(parts.size(), "part");
+}
+
 std::string surface_clause(const std::optional<SurfaceReport>& surface) {
   return surface ? ", surface of " + counted(surface->faces, "face") : "";
 }
@@ -36,9 +40,11 @@ std::string summary_line(const RunReport& report) {
                 s.prepare, s.evaluate, s.write);
   char verify[32] = "";
   if (report.verification) std::snprintf(verify, sizeof verify, ", verify %.2f", s.verify);
-  return report.mesh + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") +
-         ", " + counted(report.samples, "sample") + surface_clause(report.surface) + times + verify + ") -> " +
-         (report.output == "-" ? "standard output" : report.output) +
+  const std::size_t further = report.meshes.size() > 1 ? report.meshes.size() - 1 : 0;
+  const std::string meshes = report.mesh + (further > 0 ? " and " + std::to_string(further) + " more" : "");
+  return meshes + ": " + counted(report.faces, "face") + ", " + counted(report.exterior_edges, "exterior edge") + ", " +
+         counted(report.samples, "sample") + parts_clause(report.parts) + surface_clause(report.surface) + times +
+         verify + ") -> " + (report.output == "-" ? "standard output" : report.output) +
          (report.verification ? verification_clause(*report.verification) : "");
 }
 

@@ -45,11 +45,23 @@ struct SurfaceReport {
   double dropped_area = 0.0;
 };
 
+// A part that labels tell apart; the n-th one has the label n, from 1.
+struct PartReport {
+  std::string name;
+  std::string mesh;  // its file
+  std::uint64_t faces = 0;
+  std::uint64_t exterior_edges = 0;
+  std::uint64_t samples = 0;  // that have its label
+};
+
 struct RunReport {
   std::string mesh;                     // files as named on the command line
   std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
   std::vector<FileRead> companions;     // what the mesh refers to
   std::string sha256;
+  std::string unit;  // of the mesh file's coordinates, where its format has one
+  std::vector<FileRead> meshes;   // all of them, where there are labels
+  std::vector<PartReport> parts;  // likewise
   std::string output;
   std::vector<std::string> command;  // its words, as given; empty where a batch gave it
   std::vector<std::string> options;  // those of it that results depend on

@@ -33,6 +33,7 @@ double bytes_of_values(const OutputDescription& description, double of_real) {
         break;
       case FieldKind::kBound:
       case FieldKind::kCount:
+      case FieldKind::kLabel:
         bytes += sizeof(float);
         break;
       case FieldKind::kFlag:

@@ -37,7 +37,7 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
       draw_(field.verify),
       has_rule_(field.has(Field::kInside) || field.has(Field::kDistance)) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
-  run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+  if (!field.labels_only()) run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
 }
 
 void FieldRun::prepare_points() {
@@ -58,6 +58,13 @@ void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>
   draw_.offer(points, samples_.numbers());
 }
 
+void FieldRun::take_labels(const LabelVolume& volume, const LatticeBlock& block) {
+  volume.copy(block, samples_.labels());
+  if (!field_.labels_only()) return;
+  std::ranges::transform(samples_.labels(), samples_.winding_numbers().begin(),
+                         [](std::int32_t label) { return label != 0 ? 1.0 : 0.0; });
+}
+
 void FieldRun::look_for_largest_bound() {
   const Diagnostics* diagnostics = samples_.diagnostics();
   if (!diagnostics || diagnostics->error_bound.empty()) return;
@@ -71,9 +78,10 @@ void FieldRun::look_for_inside() {
 
 void FieldRun::finish(double band_width) {
   const WindingNumberEvaluator& evaluator = evaluator_.winding_number();
-  run_.report.terms = evaluator.terms();
+  run_.report.terms += evaluator.terms();
   const bool open = evaluator.exterior_edges() > 0;
-  run_.report.largest_error_bound = field_.diagnostics ? largest_bound_ : open ? evaluator.accuracy() : 0.0;
+  const double bound = field_.diagnostics ? largest_bound_ : open ? evaluator.accuracy() : 0.0;
+  run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
   run_.report.verification = timed(run_.report.seconds.verify, [&] {
     return raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
@@ -95,8 +103,8 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   description.options = report.options;
   std::vector<std::string> names;
   for (const FieldDescription& described : description.fields) names.push_back(described.name);
-  const bool has_rule = field.has(Field::kInside) || field.has(Field::kDistance);
-  description.metadata = provenance_json(report, names, has_rule ? name_of(field.rule) : "");
+  description.metadata = provenance_json(report, names, field.has_rule() ? name_of(field.rule) : "");
+  if (field.has(Field::kLabel)) description.label_names = label_names_json(report);
   return description;
 }
 

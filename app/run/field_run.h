@@ -9,6 +9,7 @@
 #include "app/options/output_options.h"
 #include "app/run/field_evaluator.h"
 #include "app/run/fields.h"
+#include "app/run/label_volume.h"
 #include "app/run/mesh_run.h"
 #include "app/run/verify.h"
 #include "core/data/lattice.h"
@@ -30,6 +31,11 @@ class FieldRun {
   void evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
   void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
+  // To be set, where they are wanted.
+  [[nodiscard]] std::span<std::int32_t> labels() { return samples_.labels(); }
+  // Sets them for the block that was evaluated last. Where nothing else is asked for, winding_numbers() are 1 where
+  // there is a label, else 0.
+  void take_labels(const LabelVolume& volume, const LatticeBlock& block);
   [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
 
   // Whether a rule was asked for, and held for no sample.

@@ -27,6 +27,9 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
     case Field::kGradient:
       description = {"gradient", "gradient_x,gradient_y,gradient_z", "gradient", FieldKind::kVector, 0.0, ""};
       break;
+    case Field::kLabel:
+      description = {"label", "label", "label", FieldKind::kLabel, 0.0, name_of(rule)};
+      break;
   }
   description.threshold = rule.threshold;
   description.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
@@ -64,6 +67,7 @@ std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
     if (field == Field::kInside) bytes += sizeof(std::uint8_t);
     if (field == Field::kDensity || field == Field::kDistance) bytes += sizeof(double);
     if (field == Field::kGradient) bytes += sizeof(Vec3);
+    if (field == Field::kLabel) bytes += sizeof(std::int32_t);
   }
   if (options.diagnostics) bytes += 2 * sizeof(std::int64_t) + sizeof(std::uint8_t) + sizeof(double);
   return bytes;
@@ -81,6 +85,8 @@ FieldValues FieldSamples::values_of(Field field) const {
       return std::span(distances_);
     case Field::kGradient:
       return std::span<const Vec3>(gradients_);
+    case Field::kLabel:
+      return std::span<const std::int32_t>(labels_);
   }
   return std::span(winding_numbers_);
 }
@@ -91,6 +97,7 @@ void FieldSamples::resize(std::size_t count) {
   if (options_.has(Field::kDensity)) density_.resize(count);
   if (options_.has(Field::kDistance)) distances_.resize(count);
   if (options_.has(Field::kGradient)) gradients_.resize(count);
+  if (options_.has(Field::kLabel)) labels_.resize(count);
   fields_.clear();
   for (const Field field : options_.fields) fields_.push_back(values_of(field));
   if (!diagnostics_) return;

@@ -24,6 +24,7 @@ struct SampleNumbers {
   std::span<const double> density{};
   std::span<const double> distance{};  // signed
   std::span<const Vec3> gradient{};
+  std::span<const std::int32_t> label{};
 };
 
 // Room for all numbers of a slab or batch of samples.
@@ -44,6 +45,8 @@ class FieldSamples {
   [[nodiscard]] std::span<double> distances() { return distances_; }
   // Empty where they are not wanted.
   [[nodiscard]] std::span<Vec3> gradients() { return gradients_; }
+  // Likewise. Nothing here sets them: they are about other meshes, the parts.
+  [[nodiscard]] std::span<std::int32_t> labels() { return labels_; }
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
@@ -68,6 +71,7 @@ class FieldSamples {
   std::vector<double> density_;
   std::vector<double> distances_;
   std::vector<Vec3> gradients_;
+  std::vector<std::int32_t> labels_;
   std::vector<std::int64_t> crossings_;
   std::vector<std::int64_t> degenerate_;
   std::vector<std::uint8_t> on_surface_;

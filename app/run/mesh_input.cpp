@@ -19,8 +19,16 @@
 namespace raycone {
 namespace {
 
+std::uint64_t cut_polygons(TriangleMesh& mesh, const std::vector<PolygonFan>& polygons, FaceGroups& groups) {
+  std::vector<std::uint64_t> firsts;
+  for (const GroupRun& run : groups.runs) firsts.push_back(run.first);
+  const std::uint64_t bad = cut_concave_polygons(mesh, polygons, firsts);
+  for (std::size_t n = 0; n < firsts.size(); ++n) groups.runs[n].first = firsts[n];
+  return bad;
+}
+
 // Moves and scales the mesh, where that is asked for.
-Normalization normalize_mesh(TriangleMesh& mesh, const MeshOptions& options) {
+Normalization normalized(TriangleMesh& mesh, const MeshOptions& options) {
   if (!options.normalize) return {};
   const Normalization normalization = normalization_of(mesh, *options.normalize);
   const Box box = bounding_box(mesh);
@@ -58,29 +66,43 @@ TransformedMesh read_mesh_file(const MeshOptions& options, const RunLimits& limi
   if (!error && options.path != "-") check_memory(options.path, static_cast<double>(size), limits.memory());
   MeshFile file = read_mesh(options.path, options.reading);
   const std::vector<PolygonFan> polygons = std::move(file.parsed.polygons);
-  if (const std::uint64_t bad = cut_concave_polygons(file.parsed.mesh, polygons)) {
+  if (const std::uint64_t bad = cut_polygons(file.parsed.mesh, polygons, file.parsed.groups)) {
     const std::string what = bad == 1 ? " polygon that crosses itself" : " polygons that cross themselves";
     file.parsed.warnings.push_back(
         {"bad-polygons", std::to_string(bad) + what + ", seen along the area vector, fanned from the first corner"});
   }
-  const Normalization normalization = normalize_mesh(file.parsed.mesh, options);
-  return {std::move(file), transform_of(options.reading, normalization)};
+  const Matrix4 transform = normalize_mesh(file.parsed.mesh, options);
+  return {std::move(file), transform};
 }
 
-MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
+Matrix4 normalize_mesh(TriangleMesh& mesh, const MeshOptions& options) {
+  const Normalization normalization = normalized(mesh, options);
+  return transform_of(options.reading, normalization);
+}
+
+TriangleMesh welded_mesh(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
   const bool may_collapse = options.weld.mode == WeldMode::kDistance;
   const std::uint64_t before = may_collapse ? triangles_with_corners(as_read) : 0;
   TriangleMesh mesh = weld(std::move(as_read), options.weld);
   const std::uint64_t after = may_collapse ? triangles_with_corners(mesh) : 0;
   if (after < before) warnings.push_back(weld_collapsed(before - after, options.weld.distance));
-  OrientedMesh oriented = orient(std::move(mesh), options.orient);
-  if (const std::uint64_t cut = oriented.counts.cut_edges) warnings.push_back(unorientable(cut));
+  return mesh;
+}
+
+MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options) {
+  OrientedMesh oriented = orient(std::move(welded), options.orient);
   MeshToEvaluate result{std::move(oriented.mesh), oriented.counts, {}, {}, std::move(oriented.places)};
   VertexLinks links(result.mesh.vertices.size());
   result.edges = exterior_edges(result.mesh, &links);
   result.defects = mesh_defects(result.mesh, result.edges, links);
   // What faces inward then is a cavity of an open body.
   if (options.orient == Orient::kAuto) result.defects.reversed_components = 0;
+  return result;
+}
+
+MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
+  MeshToEvaluate result = oriented_mesh(welded_mesh(std::move(as_read), options, warnings), options);
+  if (const std::uint64_t cut = result.orientation.cut_edges) warnings.push_back(unorientable(cut));
   std::ranges::move(warnings_about(result.defects), std::back_inserter(warnings));
   return result;
 }

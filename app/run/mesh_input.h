@@ -24,6 +24,10 @@ struct TransformedMesh {
   Matrix4 transform{};  // from the file's coordinates to the mesh's
 };
 
+// Moves and scales `mesh`, which is scaled and turned already, where `options` say so. Returns the matrix of all that
+// is done to a file's coordinates. Throws InputError, LimitError.
+[[nodiscard]] Matrix4 normalize_mesh(TriangleMesh& mesh, const MeshOptions& options);
+
 // The mesh as it is in the file, its concave polygons cut, scaled, turned and normalized as `options` say. Throws
 // InputError, LimitError where the file alone is too large for the memory.
 [[nodiscard]] TransformedMesh read_mesh_file(const MeshOptions& options, const RunLimits& limits);
@@ -41,6 +45,11 @@ struct MeshToEvaluate {
 // `warnings`, in a fixed order.
 [[nodiscard]] MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
                                               std::vector<Warning>& warnings);
+
+// The steps of it, without the warnings but for the first one's: `weld-collapsed`.
+[[nodiscard]] TriangleMesh welded_mesh(TriangleMesh as_read, const MeshOptions& options,
+                                       std::vector<Warning>& warnings);
+[[nodiscard]] MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options);
 
 // Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);

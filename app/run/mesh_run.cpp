@@ -1,5 +1,6 @@
 #include "app/run/mesh_run.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "app/process/limits.h"
@@ -27,6 +28,7 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   MeshFile& file = transformed.file;
   report.transform = transformed.transform;
   report.sha256 = file.sha256;
+  report.unit = file.parsed.unit;
   report.companions = file.companions;
   report.files_read.push_back(report.mesh);
   for (const FileRead& companion : file.companions) report.files_read.push_back(companion.path);
@@ -34,19 +36,35 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.faces = file.parsed.mesh.triangles.size();
   report.warnings = std::move(file.parsed.warnings);
   refuse_to_replace_input(written, report.files_read);
-  MeshToEvaluate input = timed(report.seconds.prepare,
-                               [&] { return mesh_to_evaluate(std::move(file.parsed.mesh), mesh_, report.warnings); });
+  return prepare(std::move(file.parsed.mesh));
+}
+
+TriangleMesh MeshRun::prepare(TriangleMesh as_read) {
+  MeshToEvaluate input =
+      timed(report.seconds.prepare, [&] { return mesh_to_evaluate(std::move(as_read), mesh_, report.warnings); });
   report.orientation = input.orientation;
   edges_ = std::move(input.edges);
   places_ = std::move(input.places);
   return std::move(input.mesh);
 }
 
-void MeshRun::print_warnings() const { raycone::print_warnings(report.warnings, options_, report.mesh); }
+void MeshRun::print_warnings() {
+  const auto first = report.warnings.begin() + static_cast<std::ptrdiff_t>(printed_);
+  raycone::print_warnings({first, report.warnings.end()}, options_, report.mesh);
+  printed_ = report.warnings.size();
+}
 
 void MeshRun::warn(const Warning& warning) {
   report.warnings.push_back(warning);
-  raycone::print_warnings({warning}, options_, report.mesh);
+  print_warnings();
+}
+
+void MeshRun::warn_about(const std::string& mesh, const std::vector<Warning>& warnings) {
+  raycone::print_warnings(warnings, options_, mesh);
+  for (const Warning& warning : warnings) {
+    report.warnings.push_back({warning.name, (report.meshes.size() > 1 ? mesh + ": " : "") + warning.text});
+  }
+  printed_ = report.warnings.size();
 }
 
 std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {

@@ -39,17 +39,22 @@ class MeshRun {
   // LimitError, and UsageError where one of `written` would replace a file that the mesh refers to.
   [[nodiscard]] TriangleMesh load_mesh(const std::vector<WrittenFile>& written);
 
+  // The same of a mesh that has been read already.
+  [[nodiscard]] TriangleMesh prepare(TriangleMesh as_read);
+
   // exterior_edges() of that mesh, once.
   [[nodiscard]] std::vector<ExteriorEdge> take_edges() { return std::move(edges_); }
 
   // The place among the faces of the file of a face of that mesh.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t face) const { return places_.empty() ? face : places_[face]; }
 
-  // Prints what the report has by now; throws InputError with --strict.
-  void print_warnings() const;
+  // Prints what the report has by now and was not printed yet; throws InputError with --strict.
+  void print_warnings();
 
   // A warning after that: printed at once; throws InputError with --strict.
   void warn(const Warning& warning);
+  // Likewise, about a mesh that need not be the only one.
+  void warn_about(const std::string& mesh, const std::vector<Warning>& warnings);
 
   // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
   // to be increased by the work.
@@ -70,6 +75,7 @@ class MeshRun {
   const RunLimits& limits_;
   std::vector<ExteriorEdge> edges_;
   std::vector<std::uint32_t> places_;
+  std::size_t printed_ = 0;  // warnings of the report
   std::optional<Stopwatch> total_;
   std::optional<Progress> progress_;
 };

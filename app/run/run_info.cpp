@@ -63,6 +63,7 @@ class InfoRun {
     info.faces = file.parsed.mesh.triangles.size();
     info.vertices = file.parsed.mesh.vertices.size();
     info.skipped_faces = file.parsed.skipped_faces;
+    info.unit = file.parsed.unit;
     info.warnings = std::move(file.parsed.warnings);
     const MeshToEvaluate input = mesh_to_evaluate(std::move(file.parsed.mesh), options, info.warnings);
     const TriangleMesh& mesh = input.mesh;

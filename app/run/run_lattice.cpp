@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -14,9 +15,11 @@
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
+#include "app/report/json.h"
 #include "app/run/disk_space.h"
 #include "app/run/field_run.h"
 #include "app/run/grid_reader.h"
+#include "app/run/labels.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
 #include "app/run/mesh_warnings.h"
@@ -47,11 +50,10 @@ Lattice lattice_of_grid(const GridReference& grid) {
   return is_npz(grid.path) ? read_npz_lattice(grid.path) : read_grid_lattice(grid.path, grid.name);
 }
 
-Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
+Lattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
-  const Lattice lattice = grid
-                              ? lattice_of_grid(*grid)
-                              : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
+  const Lattice lattice =
+      grid ? lattice_of_grid(*grid) : choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings);
   if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
   return lattice;
 }
@@ -131,15 +133,35 @@ Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const
   return {*report.lattice, writer, slab_samples(command.field, report.exterior_edges > 0, left)};
 }
 
-void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& writer, const SlabObserver& observe,
-                      MeshRun& run) {
+void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* labels, LatticeWriter& writer,
+                      const SlabObserver& observe, MeshRun& run) {
   const Lattice& lattice = *run.report.lattice;
   std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
     fields.evaluate(lattice, slab, done);
+    if (labels) fields.take_labels(*labels, slab);
     if (observe) observe(lattice, slab, fields.winding_numbers());
     timed(run.report.seconds.write, [&] { writer.write(slab, fields.values()); });
   }
+}
+
+// The mesh as a whole; where nothing is asked about it, one without triangles.
+struct LoadedMesh {
+  std::optional<LabelledParts> parts;  // where they are asked for
+  TriangleMesh mesh;
+  Box box;
+};
+
+void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
+  const FieldOptions& field = command.field;
+  if (!field.has(Field::kLabel)) {
+    loaded.mesh = run.load_mesh(files_written(command));
+    loaded.box = bounding_box(loaded.mesh);
+    return;
+  }
+  loaded.parts.emplace(run, command.mesh, field, files_written(command), !field.labels_only());
+  if (!field.labels_only()) loaded.mesh = run.prepare(loaded.parts->whole());
+  loaded.box = loaded.parts->box();
 }
 
 }  // namespace
@@ -147,21 +169,28 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& write
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
   LatticeCommand command = asked;
   MeshRun run(command.mesh, command.output, command.run, limits);
+  const std::unique_ptr<OutputFile> names = open_label_names(command);
   RunReport& report = run.report;
-  TriangleMesh mesh = run.load_mesh(files_written(command));
-  report.lattice = lattice_for(command, mesh, report.warnings);
+  LoadedMesh loaded;
+  load(command, run, loaded);
+  report.lattice = lattice_for(command, loaded.box, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(*report.lattice);
-  if (std::isinf(command.field.band)) command.field.band = band_of_all(bounding_box(mesh), *report.lattice);
+  if (std::isinf(command.field.band)) command.field.band = band_of_all(loaded.box, *report.lattice);
   run.print_warnings();
 
-  const bool may_be_empty = !should_have_inside(bounding_box(mesh), *report.lattice);
-  FieldRun fields(run, std::move(mesh), command.field, static_cast<double>(report.samples));
+  std::optional<LabelVolume> labels;
+  if (loaded.parts) labels = label_lattice(*loaded.parts, *report.lattice, command.field, run);
+  if (command.field.labels_only()) command.field.verify = 0;  // done
+  const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
+  FieldRun fields(run, std::move(loaded.mesh), command.field, static_cast<double>(report.samples));
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
-  evaluate_lattice(fields, slabs_of(command, *writer, report, limits), *writer, observe, run);
+  evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
+                   run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
   fields.finish(command.field.band * report.lattice->spacing.x);
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
+  if (names) write_all(*names, label_table_json(report));
   return run.finish();
 }
 

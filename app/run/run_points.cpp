@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "app/process/usage_error.h"
 #include "app/run/disk_space.h"
 #include "app/run/field_run.h"
+#include "app/run/labels.h"
 #include "app/run/mesh_run.h"
 #include "app/run/sampled_points.h"
 #include "app/run/written_files.h"
@@ -26,13 +28,14 @@ namespace {
 constexpr std::size_t kPointBatch = std::size_t{1} << 16;
 
 // Answers are handed on whenever the next question would have to be waited for.
-void evaluate_points(FieldRun& fields, PointReader& reader, PointWriter& writer, MeshRun& run) {
+void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, PointWriter& writer, MeshRun& run) {
   std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
   std::vector<Vec3> points;
   for (;;) {
     if (reader.would_block()) writer.flush();
     if (!timed(run.report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
     fields.evaluate(points, done);
+    if (labels) timed(run.report.seconds.evaluate, [&] { labels->evaluate(points, fields.labels()); });
     const SurfacePlaces places = reader.places();
     timed(run.report.seconds.write, [&] {
       writer.write(points, fields.values());
@@ -43,10 +46,10 @@ void evaluate_points(FieldRun& fields, PointReader& reader, PointWriter& writer,
 }
 
 // Refuses meshes that cannot fit, before any work on them.
-void check_points_memory(const PointsCommand& command, const TriangleMesh& mesh, const RunLimits& limits) {
+void check_points_memory(const PointsCommand& command, std::uint64_t triangles, const RunLimits& limits) {
   constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
   if (command.field.engine != RayEngine::kScan) return;
-  check_memory(command.mesh.path, kPerTriangle * static_cast<double>(mesh.triangles.size()), limits.memory());
+  check_memory(command.mesh.path, kPerTriangle * static_cast<double>(triangles), limits.memory());
 }
 
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
@@ -64,13 +67,23 @@ std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
   return reader;
 }
 
+// The mesh as a whole, where something is asked about it or points are to be drawn from it; else one without triangles.
+TriangleMesh load(const PointsCommand& command, MeshRun& run, std::optional<LabelledParts>& parts) {
+  if (!command.field.has(Field::kLabel)) return run.load_mesh(files_written(command));
+  const bool whole = !command.field.labels_only() || command.sample;
+  parts.emplace(run, command.mesh, command.field, files_written(command), whole);
+  return whole ? run.prepare(parts->whole()) : TriangleMesh{};
+}
+
 }  // namespace
 
-RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
+RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
+  PointsCommand command = asked;
   MeshRun run(command.mesh, command.output, command.run, limits);
   RunReport& report = run.report;
   std::unique_ptr<PointReader> reader = timed(report.seconds.read, [&] { return open_given_points(command); });
-  TriangleMesh mesh = run.load_mesh(files_written(command));
+  std::optional<LabelledParts> parts;
+  TriangleMesh mesh = load(command, run, parts);
   if (!command.sample) report.files_read.push_back(command.points);
   run.print_warnings();
   if (command.sample) {
@@ -78,10 +91,17 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
                    [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
   }
 
-  check_points_memory(command, mesh, limits);
+  check_points_memory(command, report.faces, limits);
   constexpr double kUnknown = 1e6;  // samples of a stream
-  const std::optional<std::uint64_t> points = reader->size();
-  FieldRun fields(run, std::move(mesh), command.field, points ? static_cast<double>(*points) : kUnknown);
+  const auto points = static_cast<double>(reader->size().value_or(kUnknown));
+  std::optional<PointLabels> labels;
+  if (parts) labels.emplace(*parts, asked.field, points, run);
+  if (command.field.labels_only()) {
+    command.field.verify = 0;  // labels do so
+    mesh = {};
+    static_cast<void>(run.take_edges());
+  }
+  FieldRun fields(run, std::move(mesh), command.field, points);
   fields.prepare_points();
   OutputDescription description = description_of(report, command.field, command.encoding);
   description.single_points = draws_single(command);
@@ -89,8 +109,9 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   run.output.reserve(least_point_file(command.encoding.format, description, reader->size().value_or(0)));
   const std::unique_ptr<PointWriter> writer =
       make_point_writer(command.encoding.format, run.output, reader->size(), description);
-  evaluate_points(fields, *reader, *writer, run);
+  evaluate_points(fields, labels ? &*labels : nullptr, *reader, *writer, run);
   fields.finish(std::numeric_limits<double>::infinity());
+  if (labels) labels->finish();
   timed(report.seconds.write, [&] { writer->finish(); });
   return run.finish();
 }

@@ -41,6 +41,8 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
       return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kCount:
       return sizeof(float) * blocks_in_the_making;
+    case FieldKind::kLabel:
+      return sizeof(std::int32_t) * (at_surface + blocks_in_the_making);
     case FieldKind::kFlag:
       return sizeof(std::uint8_t) * blocks_in_the_making;
   }

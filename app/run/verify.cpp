@@ -34,6 +34,7 @@ DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, c
   if (!numbers.density.empty()) sample.density = numbers.density[n];
   if (!numbers.distance.empty()) sample.distance = numbers.distance[n];
   if (!numbers.gradient.empty()) sample.gradient = numbers.gradient[n];
+  if (!numbers.label.empty()) sample.label = numbers.label[n];
   return sample;
 }
 
@@ -41,11 +42,6 @@ DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, c
 std::string text(double number) {
   std::array<char, 32> characters;
   return {characters.data(), std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr};
-}
-
-std::string position_text(const DrawnSample& sample) {
-  return "sample " + std::to_string(sample.number) + " at (" + text(sample.point.x) + ", " + text(sample.point.y) +
-         ", " + text(sample.point.z) + ")";
 }
 
 constexpr std::array kGradientNames{"gradient_x", "gradient_y", "gradient_z"};
@@ -245,6 +241,17 @@ double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& 
 }
 
 }  // namespace
+
+std::string position_text(const DrawnSample& sample) {
+  return "sample " + std::to_string(sample.number) + " at (" + text(sample.point.x) + ", " + text(sample.point.y) +
+         ", " + text(sample.point.z) + ")";
+}
+
+std::optional<bool> inside_by_definition(const TriangleMesh& mesh, const Vec3& point, const Rule& rule) {
+  constexpr double kAccuracy = 1e-10;
+  const QuadWithin w = perturbed_direct_sum(mesh, point);
+  return w.error < kResolved * kAccuracy ? rule_by_definition(rule, w) : std::nullopt;
+}
 
 bool SampleDraw::takes(std::uint64_t rank) const {
   return samples_.size() < count_ || (count_ > 0 && rank < samples_.front().rank);

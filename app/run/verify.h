@@ -31,6 +31,7 @@ struct DrawnSample {
   std::optional<double> density{};
   std::optional<double> distance{};
   std::optional<Vec3> gradient{};
+  std::optional<std::int32_t> label{};
 };
 
 // Draws samples from a run of unknown length: those of the lowest ranks. The choice depends on their numbers alone, not
@@ -61,6 +62,13 @@ class VerificationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// "sample 7 at (0, 0.5, 1)"
+[[nodiscard]] std::string position_text(const DrawnSample& sample);
+
+// Whether the rule holds for `mesh` at `point`, by its winding number as the direct sum; nothing where that is not
+// known well enough to tell.
+[[nodiscard]] std::optional<bool> inside_by_definition(const TriangleMesh& mesh, const Vec3& point, const Rule& rule);
 
 // What the numbers of a run have to keep to.
 struct Expectations {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 #include <variant>
 
 #include "app/process/messages.h"
@@ -25,9 +27,15 @@ std::vector<WrittenFile> files_written(const OutputFiles& output, bool text) {
   return written;
 }
 
+std::vector<std::string> paths_of(const MeshOptions& mesh) {
+  std::vector<std::string> paths{mesh.path};
+  paths.insert(paths.end(), mesh.further.begin(), mesh.further.end());
+  return paths;
+}
+
 std::vector<std::string> inputs_of(const MeshOptions& mesh,
                                    const std::variant<LatticeRequest, GridReference>& lattice) {
-  std::vector<std::string> inputs{mesh.path};
+  std::vector<std::string> inputs = paths_of(mesh);
   if (const auto* const grid = std::get_if<GridReference>(&lattice)) inputs.push_back(grid->path);
   return inputs;
 }
@@ -35,7 +43,9 @@ std::vector<std::string> inputs_of(const MeshOptions& mesh,
 }  // namespace
 
 std::vector<WrittenFile> files_written(const LatticeCommand& command) {
-  return files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+  std::vector<WrittenFile> written = files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+  if (const std::optional<std::string> names = label_names_path(command)) written.push_back({*names, "label names"});
+  return written;
 }
 
 std::vector<WrittenFile> files_written(const PointsCommand& command) {
@@ -61,7 +71,7 @@ std::vector<WrittenFile> files_written(const InfoCommand& command) {
 std::vector<std::string> inputs_of(const LatticeCommand& command) { return inputs_of(command.mesh, command.lattice); }
 
 std::vector<std::string> inputs_of(const PointsCommand& command) {
-  std::vector<std::string> inputs{command.mesh.path};
+  std::vector<std::string> inputs = paths_of(command.mesh);
   if (!command.sample) inputs.push_back(command.points);
   return inputs;
 }
@@ -69,6 +79,34 @@ std::vector<std::string> inputs_of(const PointsCommand& command) {
 std::vector<std::string> inputs_of(const SliceCommand& command) { return {command.mesh.path}; }
 
 std::vector<std::string> inputs_of(const SurfaceCommand& command) { return inputs_of(command.mesh, command.lattice); }
+
+// What is no regular file has no neighbours.
+std::optional<std::string> label_names_path(const LatticeCommand& command) {
+  const FieldFormat format = command.encoding.format;
+  const bool nifti = format == FieldFormat::kNifti || format == FieldFormat::kNiftiGz;
+  std::string path = command.output.path;
+  std::error_code error;
+  const auto type = std::filesystem::status(path, error).type();
+  const bool regular = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found;
+  if (!nifti || !command.field.has(Field::kLabel) || path == "-" || !regular) return std::nullopt;
+  for (const std::string end : {".nii", ".nii.gz"}) {
+    std::string last = path.substr(path.size() - std::min(end.size(), path.size()));
+    std::ranges::transform(last, last.begin(),
+                           [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (last == end) return path.substr(0, path.size() - end.size()) + ".json";
+  }
+  return path + ".json";
+}
+
+std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command) {
+  const std::optional<std::string> path = label_names_path(command);
+  return path ? std::make_unique<OutputFile>(*path, command.output.no_clobber) : nullptr;
+}
+
+void write_all(OutputFile& file, const std::string& text) {
+  file.write(text.data(), text.size());
+  file.commit();
+}
 
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {
   std::vector<std::optional<FileIdentity>> read;
@@ -104,12 +142,8 @@ SideFiles open_side_files(const OutputFiles& output) {
 }
 
 void publish(const RunReport& report, const RunOptions& options, const SideFiles& files) {
-  const auto write = [](OutputFile& file, const std::string& text) {
-    file.write(text.data(), text.size());
-    file.commit();
-  };
-  if (files.report) write(*files.report, to_json(report));
-  if (files.depfile) write(*files.depfile, depfile_text(report.output, report.files_read));
+  if (files.report) write_all(*files.report, to_json(report));
+  if (files.depfile) write_all(*files.depfile, depfile_text(report.output, report.files_read));
   if (!options.quiet) print_message(summary_line(report));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,14 @@ struct WrittenFile {
 [[nodiscard]] std::vector<std::string> inputs_of(const PointsCommand& command);
 [[nodiscard]] std::vector<std::string> inputs_of(const SliceCommand& command);
 [[nodiscard]] std::vector<std::string> inputs_of(const SurfaceCommand& command);
+
+// Where the names of labels go, beside a NIfTI image of them: its name with .json in place of .nii or .nii.gz. Nothing
+// where no such file is written.
+[[nodiscard]] std::optional<std::string> label_names_path(const LatticeCommand& command);
+// Null where there is none. Throws OutputError.
+[[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command);
+// Writes and completes it.
+void write_all(OutputFile& file, const std::string& text);
 
 // Throws UsageError where one of `written` would replace or grow one of `inputs` ("-": standard input) or another of
 // `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,

@@ -154,13 +154,17 @@ std::vector<std::optional<std::vector<Triangle>>> cut(const TriangleMesh& mesh, 
 
 }  // namespace
 
-std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans) {
+std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans,
+                                   std::span<std::uint64_t> places) {
   const DefaultFloatingPoint default_environment;
   std::uint64_t bad = 0;
   std::vector<Triangle> result;
   std::uint64_t taken = 0;  // of the mesh's triangles, into the result
   const auto take_until = [&](std::uint64_t end) {
     const auto first = mesh.triangles.begin();
+    std::size_t moved = 0;
+    for (; moved < places.size() && places[moved] <= end; ++moved) places[moved] += result.size() - taken;
+    places = places.subspan(moved);
     result.insert(result.end(), first + static_cast<std::ptrdiff_t>(taken), first + static_cast<std::ptrdiff_t>(end));
   };
   const std::vector<std::size_t> concave = find_concave(mesh, fans);

@@ -17,9 +17,11 @@ namespace raycone {
 //   leads to a hole.
 //   Triangles of zero area join corners that lie on other edges to them, so that the boundary stays what it was.
 // - All others keep their fans.
-// Returns the number of the last kind. The `fans` are in increasing order and disjoint; all their vertices finite. The
-// result does not depend on the number of threads. Time as of cut_polygon(). Throws
-// ThreadsUnavailable.
-std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans);
+// A polygon may become fewer triangles than it had: `places`, indices of triangles in increasing order with which no
+// fan but a whole one begins, are moved to where these are then. Returns the number of the last kind. The `fans` are in
+// increasing order and disjoint; all their vertices finite. The result does not depend on the number of threads. Time
+// as of cut_polygon(). Throws ThreadsUnavailable.
+std::uint64_t cut_concave_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans,
+                                   std::span<std::uint64_t> places = {});
 
 }  // namespace raycone

@@ -36,6 +36,13 @@ struct IntegerElement {
   Element operator()(Number count) const { return count; }
 };
 
+struct LabelElement {
+  using Number = std::int32_t;
+  using Element = std::int32_t;
+  static constexpr const char* kDescriptor = "<i4";
+  Element operator()(Number label) const { return label; }
+};
+
 // Adding 0 turns -0 into 0, here and below.
 struct DoubleElement {
   using Number = double;
@@ -171,6 +178,9 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
   if (field.kind == FieldKind::kFlag) return std::make_unique<TypedElements<ByteElement>>(ByteElement{}, kAny, output);
   if (field.kind == FieldKind::kCount) {
     return std::make_unique<TypedElements<IntegerElement>>(IntegerElement{}, kAny, output);
+  }
+  if (field.kind == FieldKind::kLabel) {
+    return std::make_unique<TypedElements<LabelElement>>(LabelElement{}, kAny, output);
   }
   if (field.kind == FieldKind::kVector) return make_vector_elements(field, precision, output);
   if (field.kind == FieldKind::kBound || precision == Precision::kDouble) {

@@ -44,6 +44,7 @@ enum class FieldKind {
   kBound,     // doubles, rounded up where 32 bits are stored
   kCount,     // 64-bit integers
   kFlag,      // 0 or 1
+  kLabel,     // which part a sample is in, from 1; 0: none
 };
 
 // One number or vector per sample, and its names.
@@ -79,6 +80,7 @@ struct OutputDescription {
   bool single_points = false;                     // NPZ: points and normals as 32 bits
   std::array<double, 16> transform = kIdentity4;  // from the mesh's file to the world, row by row
   std::string metadata;                           // how this was made, as JSON
+  std::string label_names;                        // of 1, 2, ..., as a JSON array; empty where there are no labels
   std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
 
   [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }
@@ -90,9 +92,9 @@ struct OutputDescription {
   }
 };
 
-// Of one field: integers for kCount, bytes for kFlag, vectors for kVector, else doubles.
+// Of one field: integers for kCount and kLabel, bytes for kFlag, vectors for kVector, else doubles.
 using FieldValues = std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>,
-                                 std::span<const Vec3>>;
+                                 std::span<const Vec3>, std::span<const std::int32_t>>;
 
 // Known only when all values are.
 struct FieldTotals {

@@ -68,6 +68,8 @@ char* print(char* at, std::span<const FieldValues> fields, std::size_t n) {
       at = print(at, (*vectors)[n]);
     } else if (const auto* const counts = std::get_if<std::span<const std::int64_t>>(&field)) {
       at = print(at, (*counts)[n]);
+    } else if (const auto* const labels = std::get_if<std::span<const std::int32_t>>(&field)) {
+      at = print(at, (*labels)[n]);
     } else {
       at = print(at, std::int64_t{std::get<std::span<const std::uint8_t>>(field)[n]});
     }

@@ -27,10 +27,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
 
-enum class Element { kByte, kFloat, kDouble };
+enum class Element { kByte, kFloat, kDouble, kInteger };
 
 Element element_of(const OutputDescription& description) {
   if (description.fields.front().kind == FieldKind::kFlag) return Element::kByte;
+  if (description.fields.front().kind == FieldKind::kLabel) return Element::kInteger;
   return description.is(Precision::kDouble) ? Element::kDouble : Element::kFloat;
 }
 
@@ -69,7 +70,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string nrrd_head(const Lattice& lattice, const OutputDescription& description) {
-  static constexpr std::array kTypes{"uint8", "float", "double"};
+  static constexpr std::array kTypes{"uint8", "float", "double", "int32"};
   const Vec3& s = lattice.spacing;
   const FieldDescription& field = description.fields.front();
   std::string head =
@@ -128,7 +129,7 @@ void check_nifti(const Lattice& lattice, const std::string& name) {
 
 std::string nifti_head(const Lattice& lattice, const OutputDescription& description) {
   // Offsets are those of nifti1.h.
-  static constexpr std::array<std::pair<int, int>, 3> kTypes{{{2, 8}, {16, 32}, {64, 64}}};  // code, bits
+  static constexpr std::array<std::pair<int, int>, 4> kTypes{{{2, 8}, {16, 32}, {64, 64}, {8, 32}}};  // code, bits
   constexpr std::int16_t kScannerSpace = 1;
   const auto [code, bits] = kTypes[static_cast<std::size_t>(element_of(description))];
   const Vec3 first = first_sample(lattice);

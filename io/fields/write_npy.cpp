@@ -61,8 +61,10 @@ class NpyPointWriter final : public PointWriter {
         shape_end_(description.components() > 1 ? ", " + std::to_string(description.components()) + ")" : ",)"),
         precision_(description.precision.value_or(Precision::kDouble)) {
     for (FieldDescription field : description.fields) {
-      // Columns are of one type, whatever they hold.
-      if (field.kind != FieldKind::kDistance && field.kind != FieldKind::kVector) field.kind = FieldKind::kReal;
+      // Columns are of one type, whatever they hold; labels alone are integers.
+      const bool has_own_type = field.kind == FieldKind::kDistance || field.kind == FieldKind::kVector ||
+                                (field.kind == FieldKind::kLabel && description.fields.size() == 1);
+      if (!has_own_type) field.kind = FieldKind::kReal;
       columns_.push_back(make_array_elements(field, precision_, output.name()));
     }
     if (announced_ || output_.seekable()) {
@@ -98,8 +100,11 @@ class NpyPointWriter final : public PointWriter {
   }
 
  private:
-  static FieldValues as_reals(const FieldValues& values, std::vector<double>& numbers) {
-    if (const auto* const counts = std::get_if<std::span<const std::int64_t>>(&values)) {
+  [[nodiscard]] FieldValues as_reals(const FieldValues& values, std::vector<double>& numbers) const {
+    if (const auto* const labels = std::get_if<std::span<const std::int32_t>>(&values)) {
+      if (columns_.size() == 1) return values;
+      numbers.assign(labels->begin(), labels->end());
+    } else if (const auto* const counts = std::get_if<std::span<const std::int64_t>>(&values)) {
       for (const std::int64_t count : *counts) numbers.push_back(static_cast<double>(count));
     } else if (const auto* const flags = std::get_if<std::span<const std::uint8_t>>(&values)) {
       numbers.assign(flags->begin(), flags->end());

@@ -56,6 +56,8 @@ ElementType element_type(FieldKind kind, bool double_precision) {
       return {"UInt8", 1};
     case FieldKind::kCount:
       return {"Int64", 8};
+    case FieldKind::kLabel:
+      return {"Int32", 4};
     case FieldKind::kBound:
       return {"Float64", 8};
     case FieldKind::kReal:
@@ -139,6 +141,9 @@ class VtiWriter final : public LatticeWriter {
   }
 
   void append_numbers(Array& array, std::span<const std::int64_t> numbers) {
+    append(array, numbers.data(), numbers.size_bytes());
+  }
+  void append_numbers(Array& array, std::span<const std::int32_t> numbers) {
     append(array, numbers.data(), numbers.size_bytes());
   }
   void append_numbers(Array& array, std::span<const std::uint8_t> numbers) {

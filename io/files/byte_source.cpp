@@ -99,6 +99,25 @@ class FilePart final : public ByteSource {
   std::uint64_t offset_, size_, done_ = 0;
 };
 
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(std::string_view bytes) : bytes_(bytes), rest_(bytes) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    const std::size_t count = rest_.copy(bytes, size);
+    rest_.remove_prefix(count);
+    return count;
+  }
+  std::optional<std::uint64_t> size() const override { return bytes_.size(); }
+  bool is_seekable() const override { return true; }
+  void read_at(std::uint64_t offset, char* bytes, std::size_t size) const override {
+    bytes_.substr(static_cast<std::size_t>(offset), size).copy(bytes, size);
+  }
+
+ private:
+  std::string_view bytes_, rest_;
+};
+
 }  // namespace
 
 void ByteSource::read_at(std::uint64_t, char*, std::size_t) const { throw std::logic_error("a source without places"); }
@@ -108,5 +127,7 @@ std::unique_ptr<ByteSource> open_source(const std::string& path) { return std::m
 std::unique_ptr<ByteSource> open_part(const std::string& path, std::uint64_t offset, std::uint64_t size) {
   return std::make_unique<FilePart>(path, offset, size);
 }
+
+std::unique_ptr<ByteSource> open_bytes(std::string_view bytes) { return std::make_unique<MemorySource>(bytes); }
 
 }  // namespace raycone

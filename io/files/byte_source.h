@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace raycone {
 
@@ -31,5 +32,8 @@ class ByteSource {
 
 // `size` bytes of a regular file, from `offset` on. Throws InputError.
 [[nodiscard]] std::unique_ptr<ByteSource> open_part(const std::string& path, std::uint64_t offset, std::uint64_t size);
+
+// Bytes in memory, which must outlive it. Precondition of its read_at(): all that is asked for is there.
+[[nodiscard]] std::unique_ptr<ByteSource> open_bytes(std::string_view bytes);
 
 }  // namespace raycone

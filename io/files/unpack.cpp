@@ -210,19 +210,6 @@ class UnpackingSource final : public ByteSource {
   bool at_end_ = false;
 };
 
-class MemorySource final : public ByteSource {
- public:
-  explicit MemorySource(std::string_view bytes) : rest_(bytes) {}
-  std::size_t read(char* bytes, std::size_t size) override {
-    const std::size_t count = rest_.copy(bytes, size);
-    rest_.remove_prefix(count);
-    return count;
-  }
-
- private:
-  std::string_view rest_;
-};
-
 }  // namespace
 
 bool is_packed(std::string_view bytes) { return bytes.starts_with(kGzip) || bytes.starts_with(kZstandard); }
@@ -232,7 +219,7 @@ std::unique_ptr<ByteSource> unpacked(std::unique_ptr<ByteSource> packed, const s
 }
 
 std::string unpacked(std::string_view packed, const std::string& name) {
-  const std::unique_ptr<ByteSource> source = unpacked(std::make_unique<MemorySource>(packed), name);
+  const std::unique_ptr<ByteSource> source = unpacked(open_bytes(packed), name);
   std::string bytes(std::max(kBlock, 4 * packed.size()), '\0');  // most meshes need no more room
   std::size_t size = 0;
   while (const std::size_t count = source->read(bytes.data() + size, bytes.size() - size)) {

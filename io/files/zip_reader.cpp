@@ -111,8 +111,9 @@ ZipReader::Member read_entry(Fields& fields, const std::string& path) {
   if (fields.number(4) != 0x02014b50) fail(path, "its directory is damaged");
   (void)fields.number(4);  // versions
   const std::uint64_t flags = fields.number(2), method = fields.number(2);
-  (void)fields.text(8);  // time, date, checksum
+  (void)fields.text(4);  // time, date
   ZipReader::Member member;
+  member.checksum = static_cast<std::uint32_t>(fields.number(4));
   member.packed_size = fields.number(4);
   member.size = fields.number(4);
   const std::uint64_t name = fields.number(2), extra = fields.number(2), comment = fields.number(2);
@@ -135,12 +136,20 @@ ZipReader::Member read_entry(Fields& fields, const std::string& path) {
 ZipReader::ZipReader(const std::string& path) : path_(path) {
   const std::unique_ptr<ByteSource> file = open_source(path);
   if (!file->size()) throw InputError(path + ": is a ZIP archive on a pipe, expected a regular file");
-  file_size_ = *file->size();
-  const Directory directory = find_directory(*file, path);
-  const std::string bytes = bytes_at(*file, path, directory.offset, directory.size);
-  Fields fields(bytes, path);
-  while (fields.left() > 0 && members_.size() < directory.entries) members_.push_back(read_entry(fields, path));
-  if (members_.size() != directory.entries) fail(path, "its directory is damaged");
+  read_directory(*file);
+}
+
+ZipReader::ZipReader(std::string_view bytes, const std::string& name) : path_(name), in_memory_(bytes) {
+  read_directory(*open_bytes(bytes));
+}
+
+void ZipReader::read_directory(const ByteSource& file) {
+  file_size_ = *file.size();
+  const Directory directory = find_directory(file, path_);
+  const std::string bytes = bytes_at(file, path_, directory.offset, directory.size);
+  Fields fields(bytes, path_);
+  while (fields.left() > 0 && members_.size() < directory.entries) members_.push_back(read_entry(fields, path_));
+  if (members_.size() != directory.entries) fail(path_, "its directory is damaged");
 }
 
 const ZipReader::Member* ZipReader::find(const std::string& name) const {
@@ -151,7 +160,7 @@ const ZipReader::Member* ZipReader::find(const std::string& name) const {
 // 4.3.7: name and extra field of the local header may differ from the directory's in length.
 std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
   constexpr std::uint64_t kHeader = 30;
-  const std::unique_ptr<ByteSource> file = open_source(path_);
+  const std::unique_ptr<ByteSource> file = in_memory_ ? open_bytes(*in_memory_) : open_source(path_);
   const std::string header = bytes_at(*file, path_, member.header, kHeader);
   Fields fields(header, path_);
   if (fields.number(4) != 0x04034b50) fail(path_, member.name + " is not where the directory says");
@@ -159,7 +168,9 @@ std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
   const std::uint64_t name = fields.number(2), extra = fields.number(2);
   const std::uint64_t data = member.header + kHeader + name + extra;
   if (data > file_size_ || member.packed_size > file_size_ - data) fail(path_, member.name + " lies beyond its end");
-  std::unique_ptr<ByteSource> part = open_part(path_, data, member.packed_size);
+  const auto offset = static_cast<std::size_t>(data), size = static_cast<std::size_t>(member.packed_size);
+  std::unique_ptr<ByteSource> part =
+      in_memory_ ? open_bytes(in_memory_->substr(offset, size)) : open_part(path_, data, member.packed_size);
   return member.deflated ? inflated(std::move(part), member.size, name_of(member)) : std::move(part);
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/files/byte_source.h"
@@ -18,12 +20,15 @@ class ZipReader {
     std::string name;
     std::uint64_t size = 0;  // unpacked, as announced
     std::uint64_t packed_size = 0;
-    std::uint64_t header = 0;  // offset of its local header
+    std::uint64_t header = 0;    // offset of its local header
+    std::uint32_t checksum = 0;  // CRC-32 of the unpacked bytes, which open() does not compare
     bool deflated = false;
   };
 
   // Reads the directory of the regular file at `path`.
   explicit ZipReader(const std::string& path);
+  // Of an archive in memory, which must outlive this; messages call it `name`.
+  ZipReader(std::string_view bytes, const std::string& name);
 
   [[nodiscard]] const std::vector<Member>& members() const { return members_; }
   // Null where there is none.
@@ -34,7 +39,10 @@ class ZipReader {
   [[nodiscard]] std::string name_of(const Member& member) const { return path_ + '(' + member.name + ')'; }
 
  private:
+  void read_directory(const ByteSource& file);
+
   std::string path_;
+  std::optional<std::string_view> in_memory_;
   std::uint64_t file_size_ = 0;
   std::vector<Member> members_;
 };

@@ -33,6 +33,7 @@ enum Kind {
   kIndex,     // an index into the root's array of things called `name`
   kNumber,    // any; an array holds `limit` of them where one is set
   kText,      // a string
+  kName,      // likewise; anything else is no name
   kFlag,      // true or false
   kPresence,  // anything
 };
@@ -81,6 +82,7 @@ constexpr Row kRows[]{
     {"accessors[].sparse.values.bufferView", kIndex, "bufferView", kRequired},
     {"accessors[].sparse.values.byteOffset", kCount},
     {"meshes[]", kObject, "mesh"},
+    {"meshes[].name", kName},
     {"meshes[].weights[]", kNumber},
     {"meshes[].primitives[]", kObject, "primitive"},
     {"meshes[].primitives[].attributes", kObject, "", kRequired},
@@ -202,6 +204,7 @@ class Checker {
     if (kind == kNumber && !value.is_number()) fail(place, member, std::string(is_not) + "a number");
     if (kind == kText && !value.is_string()) fail(place, member, std::string(is_not) + "a string");
     if (kind == kFlag && !value.is_boolean()) fail(place, member, std::string(is_not) + "true or false");
+    if (kind == kName && !value.is_string()) value = "";
     if (kind == kPresence) value = 0;
   }
 

@@ -43,6 +43,7 @@ class MeshBuilder {
   void reserve_triangles(std::size_t count) { parsed_.mesh.triangles.reserve(count); }
 
   [[nodiscard]] std::size_t vertex_count() const { return parsed_.mesh.vertices.size(); }
+  [[nodiscard]] std::size_t triangle_count() const { return parsed_.mesh.triangles.size(); }
 
   // `offset` is where the file has it: kept for vertices that are not finite, an error only once a face uses them.
   void add_vertex(const Vec3& vertex, std::size_t offset) {

@@ -26,6 +26,7 @@ bool has_exact_stl_size(std::string_view bytes) {
 
 std::optional<MeshFormat> recognise_mesh(std::string_view bytes) {
   if (bytes.starts_with("glTF")) return MeshFormat::kGlb;
+  if (bytes.starts_with("PK\x03\x04")) return MeshFormat::k3mf;  // a ZIP archive
   const std::string_view text = without_byte_order_mark(bytes);
   if (is_ply(text)) return MeshFormat::kPly;
   // Before the other text formats: a header of binary STL may say anything, but no text has this size by chance, for

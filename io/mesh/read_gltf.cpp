@@ -360,13 +360,16 @@ ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions
   MeshAssembler assembler(source.name, data, omissions);
 
   ParsedMesh parsed;
+  GroupCollector groups;
   const std::vector<Instance> instances = instances_of(data.model(), source.name, omissions);
   for (auto group = instances.begin(); group != instances.end();) {
     const auto end = std::find_if(group, instances.end(), [&](const Instance& i) { return i.mesh != group->mesh; });
     const TriangleMesh mesh = assembler.assemble(group->mesh);
+    groups.start_group(data.model().meshes[group->mesh].name, parsed.mesh.triangles.size());
     data.spend(mesh.vertices.size() + mesh.triangles.size(), static_cast<std::uint64_t>(end - group));
     for (; group != end; ++group) append(mesh, *group, source.name, parsed.mesh);
   }
+  parsed.groups = groups.finish(parsed.mesh.triangles.size());
   parsed.skipped_faces = omissions.incomplete_faces;
   parsed.warnings = warnings_of(omissions);
   return parsed;

@@ -14,12 +14,13 @@
 namespace raycone {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, MeshFormat>, 6> kFormatNames = {{{"obj", MeshFormat::kObj},
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 7> kFormatNames = {{{"obj", MeshFormat::kObj},
                                                                                   {"ply", MeshFormat::kPly},
                                                                                   {"stl", MeshFormat::kStl},
                                                                                   {"off", MeshFormat::kOff},
                                                                                   {"gltf", MeshFormat::kGltf},
-                                                                                  {"glb", MeshFormat::kGlb}}};
+                                                                                  {"glb", MeshFormat::kGlb},
+                                                                                  {"3mf", MeshFormat::k3mf}}};
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -33,20 +34,11 @@ std::optional<MeshFormat> format_from_extension(const std::string& path) {
   return extension.empty() ? std::nullopt : mesh_format_from_name(std::string_view(extension).substr(1));
 }
 
-// 3MF is an archive.
-bool is_archive(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
-
-bool has_later_extension(const std::string& path) {
-  return lower_case(std::filesystem::path(without_packing_extension(path)).extension().string()) == ".3mf";
-}
-
 MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = recognise_mesh(source.bytes)) return *format;
-  if (is_archive(source.bytes)) throw NotAvailable(source.name);
   if (options.format) return *options.format;
   if (const auto format = format_from_extension(source.name)) return *format;
-  if (has_later_extension(source.name)) throw NotAvailable(source.name);
-  throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB" +
+  throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF, GLB or 3MF" +
                    "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
 }
 
@@ -67,6 +59,8 @@ ParsedMesh parse(const NamedBytes& source, MeshFormat format, std::vector<FileRe
       return read_stl(source);
     case MeshFormat::kOff:
       return read_off(source);
+    case MeshFormat::k3mf:
+      return read_3mf(source);
     case MeshFormat::kGltf:
     case MeshFormat::kGlb:
       break;

@@ -11,12 +11,13 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "io/files/named_bytes.h"
+#include "io/mesh/face_groups.h"
 
 namespace raycone {
 
-enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb };
+enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb, k3mf };
 
-// "obj", "ply", "stl", "off", "gltf" or "glb", in any case; nothing else.
+// "obj", "ply", "stl", "off", "gltf", "glb" or "3mf", in any case; nothing else.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
 
 struct ReadMeshOptions {
@@ -31,6 +32,8 @@ struct ParsedMesh {
   std::vector<PolygonFan> polygons;  // those of more than three corners, which may leave the polygon if it is concave
   std::uint64_t skipped_faces = 0;   // faces of one or two corners
   std::vector<Warning> warnings;     // one per kind, with its count
+  FaceGroups groups;
+  std::string unit;  // of length, as the file names it; empty where its format has none
 };
 
 struct FileRead {
@@ -55,5 +58,7 @@ struct MeshFile {
 [[nodiscard]] ParsedMesh read_off(const NamedBytes& source);
 // glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
 [[nodiscard]] ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions);
+// The items of the build, components resolved, in the file's unit. Groups are objects with triangles.
+[[nodiscard]] ParsedMesh read_3mf(const NamedBytes& source);
 
 }  // namespace raycone

@@ -1,5 +1,7 @@
 // Wavefront OBJ: the polygons of a file; what concerns their looks, and curves, lines and points, is passed over.
 // Format: Wavefront "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "io/files/counted.h"
@@ -16,16 +18,21 @@ class ObjReader {
   explicit ObjReader(const NamedBytes& source) : text_(source), builder_(source) {}
 
   ParsedMesh read() {
+    groups_.continue_group(kDefaultGroup, 0);
     while (!text_.at_end()) {
       text_.skip_blanks();
       read_statement();
     }
     check_forward_references();
     if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
-    return builder_.finish();
+    ParsedMesh parsed = builder_.finish();
+    parsed.groups = groups_.finish(parsed.mesh.triangles.size());
+    return parsed;
   }
 
  private:
+  static constexpr const char* kDefaultGroup = "default";
+
   // A positive index that was beyond the vertices read so far.
   struct ForwardReference {
     std::int64_t index;
@@ -38,12 +45,42 @@ class ObjReader {
       read_vertex();
     } else if (keyword == "f") {
       read_face();
+    } else if (keyword == "g") {
+      group_ = read_name();
+      continue_group();
+    } else if (keyword == "o") {
+      object_ = read_name();
+      group_.clear();
+      continue_group();
     }
     // A comment does not continue: its last backslash may end the name of a directory.
     if (text_.peek() == '#')
       text_.skip_line();
     else
       text_.skip_continued_line();
+  }
+
+  // What follows the keyword, with single blanks.
+  std::string read_name() {
+    text_.advance(1);
+    std::string name;
+    for (text_.skip_blanks(); !text_.at_line_end(); text_.skip_blanks()) {
+      const std::string_view rest = text_.rest();
+      const std::size_t start = text_.offset();
+      text_.skip_token();
+      // A backslash glued to a word may join the next line to it.
+      if (text_.offset() - start > 1 && rest[text_.offset() - start - 1] == '\\') text_.seek(text_.offset() - 1);
+      const std::size_t length = std::min(text_.offset() - start, kMostOfName);
+      if (name.size() < kMostOfName) name += (name.empty() ? "" : " ") + std::string(rest.substr(0, length));
+    }
+    return name.substr(0, kMostOfName);
+  }
+
+  // A group belongs to its object, and many exporters give both the same name.
+  void continue_group() {
+    const bool both = !object_.empty() && !group_.empty() && object_ != group_;
+    const std::string name = both ? object_ + '/' + group_ : object_.empty() ? group_ : object_;
+    groups_.continue_group(name.empty() ? kDefaultGroup : name, builder_.triangle_count());
   }
 
   // Weights and colours may follow.
@@ -115,6 +152,8 @@ class ObjReader {
 
   TextScanner text_;
   MeshBuilder builder_;
+  GroupCollector groups_;
+  std::string object_, group_;  // of the faces that follow; empty: none
   std::vector<ForwardReference> forward_references_;
 };
 

@@ -19,31 +19,45 @@ class AsciiStlReader {
 
   // Solids follow each other; a missing last "endsolid" does no harm.
   ParsedMesh read() {
+    groups_.start_group("", 0);
     for (text_.skip_whitespace(); !text_.at_end(); text_.skip_whitespace()) {
       if (text_.skip_word("facet")) {
         read_facet();
-      } else if (text_.skip_word("solid") || text_.skip_word("endsolid")) {
-        skip_name();
+      } else if (text_.skip_word("solid")) {
+        groups_.start_group(read_name(), builder_.triangle_count());
+      } else if (text_.skip_word("endsolid")) {
+        static_cast<void>(read_name());
       } else {
         text_.fail("expected 'facet' or 'endsolid', found " + text_.found());
       }
     }
     if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
-    return builder_.finish();
+    ParsedMesh parsed = builder_.finish();
+    parsed.groups = groups_.finish(parsed.mesh.triangles.size());
+    return parsed;
   }
 
  private:
-  // Moves behind a name of any bytes: to the end of the line, or to a facet that begins in it.
-  void skip_name() {
+  // A name of any bytes: up to the end of the line, or to a facet that begins in it.
+  std::string read_name() {
+    const std::string_view rest = text_.rest();
     const std::size_t start = text_.offset();
     text_.skip_line();
     const std::size_t next_line = text_.offset();
     text_.seek(start);
+    std::size_t end = start;
     for (text_.skip_whitespace(); text_.offset() < next_line; text_.skip_whitespace()) {
-      if (begins_facet()) return;
+      if (begins_facet()) return trimmed(rest.substr(0, end - start));
       text_.skip_token();
+      end = text_.offset();
     }
     text_.seek(next_line);
+    return trimmed(rest.substr(0, end - start));
+  }
+
+  static std::string trimmed(std::string_view name) {
+    while (!name.empty() && is_space(name.front())) name.remove_prefix(1);
+    return std::string(name.substr(0, kMostOfName));
   }
 
   // Names may hold the word "facet", so it takes more than that.
@@ -108,6 +122,7 @@ class AsciiStlReader {
 
   TextScanner text_;
   MeshBuilder builder_;
+  GroupCollector groups_;
 };
 
 Vec3 load_vertex(const char* bytes) {
@@ -151,6 +166,7 @@ ParsedMesh read_binary_stl(const NamedBytes& source) {
     }
     parsed.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
+  if (count > 0) parsed.groups = {{""}, {{0, 0}}};
   const std::uint64_t surplus = source.bytes.size() - kStlHeaderSize - kStlTriangleSize * count;
   if (surplus > 0) {
     parsed.warnings.push_back({"trailing-data", "bytes after the announced number of triangles (" +

@@ -31,6 +31,12 @@ struct StoreFlag {
   Stored operator()(Number flag) const { return flag; }
 };
 
+struct StoreLabel {
+  using Number = std::int32_t;
+  using Stored = std::int32_t;
+  Stored operator()(Number label) const { return label; }
+};
+
 // Floats: pyopenvdb reads no file that holds a grid of integers.
 struct StoreCount {
   using Number = std::int64_t;

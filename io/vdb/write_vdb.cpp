@@ -99,6 +99,7 @@ void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescri
   insert(grid, "raycone_index_min", to_coord(lattice.index_min[0], lattice.index_min[1], lattice.index_min[2]));
   insert(grid, "raycone_index_max", to_coord(lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)));
   if (!description.options.empty()) insert(grid, "raycone_options", joined_by_blanks(description.options));
+  if (field.kind == FieldKind::kLabel) insert(grid, "raycone_labels", description.label_names);
   insert(grid, "raycone_transform", description.transform);
   insert(grid, "raycone_faces", description.faces);
   insert(grid, "raycone_exterior_edges", description.exterior_edges);
@@ -268,6 +269,8 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
   switch (plan.field.kind) {
     case FieldKind::kFlag:
       return make_builder<BoolGrid>(plan, vdb::StoreFlag{}, background != 0.0);
+    case FieldKind::kLabel:
+      return make_builder<openvdb::Int32Grid>(plan, vdb::StoreLabel{}, static_cast<std::int32_t>(background));
     case FieldKind::kCount:
       return make_builder<FloatGrid>(plan, vdb::StoreCount{}, narrow_background);
     case FieldKind::kBound:

@@ -84,6 +84,19 @@ TABLE = [
     *(Row(words + " --field sdf", "--band 2", REFUSED)
       for words in (POINTS, SAMPLE, "batch good --out-dir out/batch --sample uniform=3")),
     Row(SLICE + " --field sdf", "--band 2", CHANGES),
+    *(Row(words, "--field label", CHANGES) for words in (LATTICE, POINTS, SAMPLE, FILE + "nii.gz")),
+    Row(BATCH + " --parts group", "--field label", CHANGES),
+    Row(BATCH, "--field label", REFUSED),
+    *(Row(words + " --field label --parts group", "--rule abs=2", CHANGES)
+      for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    *(Row(words + " --field label", "--parts component", CHANGES) for words in (LATTICE, POINTS, SAMPLE)),
+    Row(BATCH + " --field label --parts group", "--parts component", CHANGES),
+    *(Row(words + " --field label --parts component", "--priority", CHANGES)
+      for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    *(Row(words, option, REFUSED)
+      for words in (LATTICE, POINTS, SAMPLE, BATCH) for option in ("--parts component", "--priority")),
+    *(Row(words + " --field label --parts component", "--diagnostics", REFUSED)
+      for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     *(Row(words, "--diagnostics", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     Row(FILE + "npy", "--diagnostics", REFUSED),
     *(Row(words, "--verify 5", CHANGES) for words in (LATTICE, POINTS, SAMPLE)),

@@ -252,6 +252,21 @@ TEST(Polygons, ConcaveOnesAreCut) {
   expect_cut({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 5}, {6, 5}, {6, 4}, {0, 4}});  // a slit
 }
 
+TEST(Polygons, PlacesBehindThoseThatBecomeFewerTrianglesMove) {
+  // A square with a spike, 6 corners: 2 triangles. It is there twice, with single triangles around each.
+  const std::vector<Vec3> vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 1, 0}};
+  const std::vector<Triangle> single{{0, 1, 4}}, spike{{0, 1, 2}, {0, 2, 3}, {0, 3, 2}, {0, 2, 4}};
+  TriangleMesh mesh{vertices, {}};
+  for (const auto* const faces : {&single, &spike, &single, &spike, &spike, &single}) {
+    mesh.triangles.insert(mesh.triangles.end(), faces->begin(), faces->end());
+  }
+  const std::vector<PolygonFan> fans{{1, 4}, {6, 4}, {10, 4}};
+  std::vector<std::uint64_t> places{0, 1, 5, 6, 10, 14, 15};
+  EXPECT_EQ(cut_concave_polygons(mesh, fans, places), 0U);
+  EXPECT_EQ(mesh.triangles.size(), 9U);
+  EXPECT_EQ(places, (std::vector<std::uint64_t>{0, 1, 3, 4, 6, 8, 9}));
+}
+
 TEST(Polygons, ConvexOnesKeepTheirFan) {
   for (const Corners& corners : {Corners{{0, 0}, {2, 0}, {2, 2}, {0, 2}},
                                  Corners{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},

@@ -38,6 +38,22 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
+// Each group has a name that is not too long, and triangles.
+void check(const FaceGroups& groups, std::size_t triangles) {
+  if (groups.runs.empty()) return;
+  if (groups.runs.front().first != 0 || groups.runs.back().first >= triangles) std::abort();
+  std::uint32_t known = 0;
+  for (std::size_t n = 0; n < groups.runs.size(); ++n) {
+    if (n > 0 && groups.runs[n - 1].first >= groups.runs[n].first) std::abort();
+    if (groups.runs[n].group > known) std::abort();
+    known += groups.runs[n].group == known;
+  }
+  if (known != groups.names.size()) std::abort();
+  for (const std::string& name : groups.names) {
+    if (name.size() > kMostOfName) std::abort();
+  }
+}
+
 using Position = std::array<double, 3>;
 
 // How often each edge is run along from its smaller end to the larger, less the other way.
@@ -71,6 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     raycone::ParsedMesh parsed = raycone::read(raycone::RAYCONE_READER, {"fuzz", "", bytes});
     raycone::check(parsed.mesh);
+    raycone::check(parsed.groups, parsed.mesh.triangles.size());
     raycone::check_polygons(std::move(parsed));
   } catch (const raycone::InputError&) {
   } catch (const raycone::LimitError&) {

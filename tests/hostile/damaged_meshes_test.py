@@ -35,7 +35,7 @@ def meshes():
     paths = [os.path.join(MESHES, name) for name in os.listdir(MESHES)]
     for directory, _, names in os.walk(options.shared):
         paths += [os.path.join(directory, name) for name in names]
-    formats = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb")
+    formats = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3mf")
     return sorted(path for path in paths if path.lower().endswith(formats) and os.path.getsize(path) <= LARGEST)
 
 

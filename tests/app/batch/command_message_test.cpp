@@ -29,6 +29,11 @@ std::vector<std::function<void(Command&)>> common_changes() {
           [](Command& c) { c.mesh.weld.mode = WeldMode::kDistance; },
           [](Command& c) { c.mesh.weld.distance = 1e-300; },
           [](Command& c) { c.mesh.orient = Orient::kAuto; },
+          [](Command& c) {
+            c.mesh.further = {"b.stl", "c.stl"};
+          },
+          [](Command& c) { c.mesh.parts.by = PartsBy::kComponent; },
+          [](Command& c) { c.mesh.parts.first_wins = true; },
           [](Command& c) { c.run.threads = 3; },
           [](Command& c) { c.run.memory_limit = 1'000'000'000'000; },
           [](Command& c) { c.run.timeout = 0.5; },

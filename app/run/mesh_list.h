@@ -1,9 +1,11 @@
-// Lists of meshes: @LIST on the command line of `raycone batch`.
+// Lists of meshes: @LIST on the command line.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "app/options/mesh_options.h"
 
 namespace raycone {
 
@@ -13,5 +15,10 @@ namespace raycone {
 // the line, for a line that holds a NUL: no path does.
 [[nodiscard]] std::vector<std::string> paths_in_list(std::string_view text, const std::string& list,
                                                      bool nul_separated);
+
+// The meshes of a job with labels, with those of the lists among them (@LIST) in their place. `points`: what else is
+// read, for "-". Throws InputError for a list that cannot be read or names none; UsageError where there are several
+// meshes and parts are no files, or two of all are standard input.
+[[nodiscard]] MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& points = {});
 
 }  // namespace raycone

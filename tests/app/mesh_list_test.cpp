@@ -1,4 +1,4 @@
-#include "app/batch/mesh_list.h"
+#include "app/run/mesh_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,307 @@
+#include "app/run/labels.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "app/process/limits.h"
+#include "app/process/stopwatch.h"
+#include "app/run/mesh_warnings.h"
+#include "app/run/slabs.h"
+#include "core/data/interval.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// The slabs of a block, each of about `samples`.
+template <typename Visit>
+void for_slabs(const LatticeBlock& block, std::int64_t samples, const Visit& visit) {
+  const std::int64_t layers = std::max<std::int64_t>(samples / (block.counts[0] * block.counts[1]), 1);
+  const std::int64_t end = block.first[2] + block.counts[2];
+  LatticeBlock slab = block;
+  for (; slab.first[2] < end; slab.first[2] += layers) {
+    slab.counts[2] = std::min(layers, end - slab.first[2]);
+    visit(slab);
+  }
+}
+
+bool any_inside(std::span<const std::uint8_t> inside) {
+  return std::ranges::any_of(inside, [](std::uint8_t flag) { return flag != 0; });
+}
+
+std::span<const std::uint8_t> flags_of(const FieldSamples& samples) { return samples.numbers().inside; }
+
+// Gives the samples inside of `part` their label. Returns whether there are any.
+bool add_part(MeshToEvaluate part, std::int32_t label, LabelledParts& parts, LabelVolume& volume,
+              const Lattice& lattice, const FieldOptions& field, MeshRun& run, std::atomic<std::uint64_t>* done) {
+  const LatticeBlock reach = PartEvaluator::reach(lattice, part, field.rule);
+  if (done) *done += static_cast<std::uint64_t>(whole(lattice).size() - reach.size());
+  if (reach.size() == 0) return false;
+  const FieldOptions options = PartEvaluator::options_of(field);
+  const bool open = !part.edges.empty();
+  const PartEvaluator evaluator = timed(run.report.seconds.prepare, [&] {
+    return PartEvaluator(std::move(part), field, static_cast<double>(reach.size()));
+  });
+  const double left = static_cast<double>(run.limits().memory()) - memory_in_use();
+  FieldSamples samples(options);
+  bool found = false;
+  timed(run.report.seconds.evaluate, [&] {
+    for_slabs(reach, slab_samples(options, open, left), [&](const LatticeBlock& slab) {
+      run.report.tally += evaluator.evaluator().evaluate(lattice, slab, samples, done);
+      if (!any_inside(flags_of(samples))) return;
+      found = true;
+      volume.add(slab, flags_of(samples), label, parts.first_wins());
+    });
+  });
+  parts.spent(evaluator.evaluator());
+  return found;
+}
+
+// Of many small parts, each reaches few of the points.
+class PointsByX {
+ public:
+  PointsByX(std::span<const Vec3> points, bool sorted) : points_(points), sorted_(sorted), order_(points.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (sorted) std::ranges::stable_sort(order_, {}, [this](std::uint32_t n) { return points_[n].x; });
+  }
+
+  // At least the points whose x lies in `interval`.
+  [[nodiscard]] std::span<const std::uint32_t> between(const Interval& interval) const {
+    if (!sorted_) return order_;
+    const auto x = [this](std::uint32_t n) { return points_[n].x; };
+    const auto begin = std::ranges::lower_bound(order_, interval.lower, {}, x);
+    const auto end = std::ranges::upper_bound(order_, interval.upper, {}, x);
+    return {begin, end};
+  }
+
+ private:
+  std::span<const Vec3> points_;
+  bool sorted_;
+  std::vector<std::uint32_t> order_;
+};
+
+std::string quoted_names(const std::vector<std::size_t>& empty, const MeshParts& parts) {
+  constexpr std::size_t kMost = 3;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(empty.size(), kMost); ++n) text += (n > 0 ? ", " : "") + parts.name(empty[n]);
+  return text + (empty.size() > kMost ? ", ..." : "");
+}
+
+}  // namespace
+
+// --- Parts ----------------------------------------------------------------------------------------------------------
+
+LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
+                             const std::vector<WrittenFile>& written, bool whole)
+    : run_(run),
+      mesh_(mesh),
+      field_(field),
+      whole_(whole),
+      parts_(timed(run.report.seconds.read, [&] { return MeshParts(mesh, run.limits(), whole); })) {
+  RunReport& report = run.report;
+  report.transform = parts_.transform();
+  for (const MeshParts::File& file : parts_.files()) {
+    report.meshes.push_back(file.read);
+    report.files_read.push_back(file.read.path);
+    for (const FileRead& companion : file.companions) report.files_read.push_back(companion.path);
+    report.companions.insert(report.companions.end(), file.companions.begin(), file.companions.end());
+    report.vertices += file.vertices;
+    report.faces += file.faces;
+  }
+  report.sha256 = report.meshes.front().sha256;
+  report.unit = parts_.files().front().unit;
+  refuse_to_replace_input(written, report.files_read);
+  for (const MeshParts::File& file : parts_.files()) run.warn_about(file.read.path, file.warnings);
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    report.parts.push_back({parts_.name(n), parts_.files()[parts_.file_of(n)].read.path});
+  }
+}
+
+MeshToEvaluate LabelledParts::next() {
+  TriangleMesh welded = timed(run_.report.seconds.read, [&] { return parts_.part(next_, warnings_); });
+  MeshToEvaluate part = timed(run_.report.seconds.prepare, [&] { return oriented_mesh(std::move(welded), mesh_); });
+  note(part);
+  ++next_;
+  if (next_ == size() || parts_.file_of(next_) != parts_.file_of(next_ - 1)) warn_about_file();
+  return part;
+}
+
+void LabelledParts::note(const MeshToEvaluate& part) {
+  PartReport& report = run_.report.parts[next_];
+  report.faces = part.mesh.triangles.size();
+  report.exterior_edges = part.edges.size();
+  defects_.inconsistent_edges += part.defects.inconsistent_edges;
+  defects_.cancelling_pairs += part.defects.cancelling_pairs;
+  defects_.reversed_components += part.defects.reversed_components;
+  // Of several parts, each is a component more.
+  if (part.defects.negative_volume && part.defects.reversed_components == 0) ++defects_.reversed_components;
+  cut_edges_ += part.orientation.cut_edges;
+  if (whole_) return;
+  OrientationCounts& counts = run_.report.orientation;
+  counts.flipped_faces += part.orientation.flipped_faces;
+  counts.dropped_duplicates += part.orientation.dropped_duplicates;
+  counts.patches += part.orientation.patches;
+}
+
+// Where the meshes are one mesh, too, the warnings are about that.
+void LabelledParts::warn_about_file() {
+  if (cut_edges_ > 0) warnings_.push_back(unorientable(cut_edges_));
+  for (const Warning& warning : warnings_about(defects_)) warnings_.push_back(warning);
+  if (!whole_) run_.warn_about(parts_.files()[parts_.file_of(next_ - 1)].read.path, warnings_);
+  warnings_.clear();
+  defects_ = {};
+  cut_edges_ = 0;
+}
+
+void LabelledParts::found(bool inside, bool expected) {
+  if (!inside && expected) empty_.push_back(next_ - 1);
+}
+
+void LabelledParts::spent(const FieldEvaluator& evaluator) {
+  const WindingNumberEvaluator& winding_number = evaluator.winding_number();
+  terms_ += winding_number.terms();
+  if (winding_number.exterior_edges() > 0) {
+    largest_error_bound_ = std::max(largest_error_bound_, winding_number.accuracy());
+  }
+}
+
+void LabelledParts::finish(std::span<const std::uint64_t> samples) {
+  RunReport& report = run_.report;
+  for (std::size_t n = 0; n < size(); ++n) report.parts[n].samples = samples[n + 1];
+  if (!empty_.empty()) {
+    const std::string parts = empty_.size() == 1 ? "1 part has" : std::to_string(empty_.size()) + " parts have";
+    run_.warn({"empty", parts + " no sample inside by the rule " + name_of(field_.rule) + " (" +
+                            quoted_names(empty_, parts_) +
+                            "); --orient auto helps where faces are reversed, a finer "
+                            "lattice where parts are thin"});
+  }
+  report.terms += terms_;
+  report.largest_error_bound = std::max(report.largest_error_bound, largest_error_bound_);
+  if (!field_.labels_only()) return;
+  report.exterior_edges = 0;
+  for (const PartReport& part : report.parts) report.exterior_edges += part.exterior_edges;
+}
+
+// --- Verification ---------------------------------------------------------------------------------------------------
+
+LabelCheck::LabelCheck(std::vector<DrawnSample> samples, const Rule& rule, bool first_wins)
+    : samples_(std::move(samples)),
+      rule_(rule),
+      first_wins_(first_wins),
+      labels_(samples_.size()),
+      unresolved_(samples_.size()) {}
+
+void LabelCheck::add(const TriangleMesh& part) {
+  ++parts_;
+  parallel_for(samples_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::optional<bool> inside = inside_by_definition(part, samples_[n].point, rule_);
+      if (!inside) unresolved_[n] = 1;
+      if (inside.value_or(false) && !(first_wins_ && labels_[n] != 0)) labels_[n] = parts_;
+    }
+  });
+}
+
+Verification LabelCheck::compare(const std::string& mesh, std::span<const std::int32_t> labels) const {
+  Verification verification;
+  for (std::size_t n = 0; n < samples_.size(); ++n) {
+    if (unresolved_[n] != 0) {
+      ++verification.unresolved;
+      continue;
+    }
+    ++verification.samples;
+    if (labels[n] == labels_[n]) continue;
+    throw VerificationError(mesh + ": " + position_text(samples_[n]) + " has the label " + std::to_string(labels[n]) +
+                            ", expected " + std::to_string(labels_[n]) + " by definition and " + name_of(rule_));
+  }
+  return verification;
+}
+
+// --- Lattices -------------------------------------------------------------------------------------------------------
+
+LabelVolume label_lattice(LabelledParts& parts, const Lattice& lattice, const FieldOptions& field, MeshRun& run) {
+  RunReport& report = run.report;
+  check_memory(report.mesh, LabelVolume::bytes(lattice, parts.size()), run.limits().memory());
+  LabelVolume volume(lattice, parts.size());
+  SampleDraw draw(field.verify);
+  draw.offer(lattice, whole(lattice), {});
+  LabelCheck check(draw.samples(), field.rule, parts.first_wins());
+  std::atomic<std::uint64_t>* const done = run.start_progress(report.samples * parts.size());
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    MeshToEvaluate part = parts.next();
+    if (field.verify > 0) timed(report.seconds.verify, [&] { check.add(part.mesh); });
+    const bool expected = should_have_inside(bounding_box(part.mesh), lattice);
+    parts.found(add_part(std::move(part), static_cast<std::int32_t>(n + 1), parts, volume, lattice, field, run, done),
+                expected);
+  }
+  parts.finish(volume.counts());
+  if (field.verify == 0) return volume;
+  std::vector<std::int32_t> labels;
+  for (const DrawnSample& sample : check.samples()) labels.push_back(volume.at(sample.number));
+  report.verification = check.compare(report.mesh, labels);
+  return volume;
+}
+
+// --- Points ---------------------------------------------------------------------------------------------------------
+
+PointLabels::PointLabels(LabelledParts& parts, const FieldOptions& field, double samples, MeshRun& run)
+    : parts_(parts),
+      field_(field),
+      run_(run),
+      inside_(PartEvaluator::options_of(field)),
+      counts_(parts.size() + 1),
+      draw_(field.verify) {
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    MeshToEvaluate part = parts.next();
+    if (field.verify > 0) meshes_.push_back(part.mesh);
+    timed(run.report.seconds.prepare, [&] {
+      evaluators_.push_back(std::make_unique<PartEvaluator>(std::move(part), field, samples));
+      evaluators_.back()->evaluator().prepare_points();
+    });
+  }
+}
+
+void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t> labels) {
+  std::ranges::fill(labels, 0);
+  constexpr std::size_t kWorthSorting = 16;  // parts
+  const PointsByX by_x(points, evaluators_.size() > kWorthSorting);
+  std::vector<Vec3> reached;
+  std::vector<std::size_t> numbers;  // of these among the points
+  for (std::size_t part = 0; part < evaluators_.size(); ++part) {
+    const PartEvaluator& evaluator = *evaluators_[part];
+    reached.clear();
+    numbers.clear();
+    for (const std::uint32_t n : by_x.between(evaluator.reach_along_x())) {
+      if (!evaluator.reaches(points[n]) || (parts_.first_wins() && labels[n] != 0)) continue;
+      reached.push_back(points[n]);
+      numbers.push_back(n);
+    }
+    if (reached.empty()) continue;
+    run_.report.tally += evaluator.evaluator().evaluate(reached, inside_, nullptr);
+    const std::span<const std::uint8_t> inside = flags_of(inside_);
+    for (std::size_t n = 0; n < reached.size(); ++n) {
+      if (inside[n] != 0) labels[numbers[n]] = static_cast<std::int32_t>(part + 1);
+    }
+  }
+  for (const std::int32_t label : labels) ++counts_[static_cast<std::size_t>(label)];
+  SampleNumbers numbers_of_points;
+  numbers_of_points.label = labels;
+  draw_.offer(points, numbers_of_points);
+}
+
+void PointLabels::finish() {
+  for (const std::unique_ptr<PartEvaluator>& evaluator : evaluators_) parts_.spent(evaluator->evaluator());
+  parts_.finish(counts_);
+  if (field_.verify == 0) return;
+  timed(run_.report.seconds.verify, [&] {
+    LabelCheck check(draw_.samples(), field_.rule, parts_.first_wins());
+    for (const TriangleMesh& mesh : meshes_) check.add(mesh);
+    std::vector<std::int32_t> labels;
+    for (const DrawnSample& sample : check.samples()) labels.push_back(*sample.label);
+    run_.report.verification = check.compare(run_.report.mesh, labels);
+  });
+}
+
+}  // namespace raycone

@@ -1,0 +1,67 @@
+#include "app/run/mesh_list.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "app/process/usage_error.h"
+#include "io/files/file_error.h"
+#include "io/files/read_file.h"
+
+namespace raycone {
+namespace {
+
+// What editors of Windows put first.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+bool is_blank_or_comment(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == std::string_view::npos || line[first] == '#';
+}
+
+}  // namespace
+
+std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated) {
+  if (!nul_separated && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<std::string> paths;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find(nul_separated ? '\0' : '\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (!nul_separated && line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty() || (!nul_separated && is_blank_or_comment(line))) continue;
+    if (line.find('\0') != std::string_view::npos) {
+      throw InputError(list + ':' + std::to_string(number) +
+                       ": holds a NUL, expected a path of text; -0 reads lists whose paths end with NUL");
+    }
+    paths.emplace_back(line);
+  }
+  return paths;
+}
+
+MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& points) {
+  std::vector<std::string> operands{mesh.path}, paths;
+  operands.insert(operands.end(), mesh.further.begin(), mesh.further.end());
+  const auto is_standard_input = [](const std::string& operand) { return operand == "-" || operand == "@-"; };
+  if (std::ranges::count_if(operands, is_standard_input) + (points == "-" ? 1 : 0) > 1) {
+    throw UsageError("standard input cannot be two of the inputs");
+  }
+  for (const std::string& operand : operands) {
+    if (!operand.starts_with('@')) {
+      paths.push_back(operand);
+      continue;
+    }
+    const std::string list = operand.substr(1);
+    const std::vector<std::string> listed = paths_in_list(read_file(list), list, false);
+    if (listed.empty()) throw InputError(list + ": names no mesh, expected one a line");
+    paths.insert(paths.end(), listed.begin(), listed.end());
+  }
+  if (paths.size() > 1 && mesh.parts.by != PartsBy::kFile) {
+    throw UsageError(std::string("--parts ") + (mesh.parts.by == PartsBy::kGroup ? "group" : "component") +
+                     ": has no effect on several meshes, expected one, or --parts file");
+  }
+  MeshOptions expanded = mesh;
+  expanded.path = paths.front();
+  expanded.further.assign(paths.begin() + 1, paths.end());
+  return expanded;
+}
+
+}  // namespace raycone

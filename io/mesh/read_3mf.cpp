@@ -1,0 +1,143 @@
+// 3MF: the triangles of what is to be built.
+// Format: 3MF Core Specification 1.3; io/mesh/three_mf_model.cpp reads the parts of a package.
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/data/warning.h"
+#include "io/files/counted.h"
+#include "io/files/file_error.h"
+#include "io/files/zip_reader.h"
+#include "io/mesh/face_groups.h"
+#include "io/mesh/mesh_builder.h"
+#include "io/mesh/mesh_error.h"
+#include "io/mesh/read_mesh.h"
+#include "io/mesh/three_mf_model.h"
+
+namespace raycone {
+namespace {
+
+// An object with triangles, and where it stands.
+struct Instance {
+  const ThreeMfObject* object = nullptr;
+  AffineMap placement;
+};
+
+class ThreeMfPackage {
+ public:
+  explicit ThreeMfPackage(const NamedBytes& source)
+      : file_(source.name), archive_(source.bytes, source.name), root_(three_mf_root(archive_, file_)) {}
+
+  ParsedMesh build() {
+    const ThreeMfModel& root = model(root_);
+    for (const ThreeMfUse& item : root.items) place(item, {});
+    std::ranges::stable_sort(instances_, {}, [&](const Instance& i) { return first_use_.at(i.object); });
+    for (auto it = instances_.begin(); it != instances_.end(); ++it) {
+      if (it == instances_.begin() || it->object != std::prev(it)->object) {
+        groups_.start_group(it->object->name, parsed_.mesh.triangles.size());
+      }
+      append(*it);
+    }
+    parsed_.groups = groups_.finish(parsed_.mesh.triangles.size());
+    parsed_.unit = root.unit;
+    if (lattices_ > 0) {
+      parsed_.warnings.push_back({"beam-lattices", counted(lattices_, "beam lattice") + " without triangles ignored"});
+    }
+    return std::move(parsed_);
+  }
+
+ private:
+  const ThreeMfModel& model(const std::string& part) {
+    const auto known = models_.find(part);
+    if (known != models_.end()) return known->second;
+    return models_[part] = read_three_mf_model(archive_, part, file_);
+  }
+
+  const ThreeMfObject& object(const ThreeMfUse& use) {
+    const ThreeMfModel& from = model(use.part);
+    const auto found = from.objects.find(use.object);
+    if (found != from.objects.end()) return found->second;
+    throw InputError(file_ + '(' + use.part.substr(0, kMaxQuoted) + "): no object " + std::to_string(use.object) +
+                     ", which a component or an item of the build names");
+  }
+
+  // Notes the object and its components. Deeper than any assembly there may only be a cycle.
+  void place(const ThreeMfUse& use, const AffineMap& outer) {
+    constexpr std::size_t kDeepest = 256;
+    constexpr std::size_t kMostUses = std::size_t{1} << 20;  // components of components may multiply without bound
+    if (++uses_ > kMostUses) throw LimitError(file_ + ": components make more than 1048576 copies of objects");
+    if (depth_ == kDeepest) throw InputError(file_ + ": components within components, more than 256 deep");
+    const ThreeMfObject& placed = object(use);
+    const AffineMap placement = composed(outer, use.placement);
+    if (!placed.mesh.triangles.empty()) {
+      instances_.push_back({&placed, placement});
+      first_use_.try_emplace(&placed, first_use_.size());
+    } else if (placed.is_sliced && placed.components.empty()) {
+      throw InputError(file_ + ": object " + std::to_string(use.object) + " has slices only, expected triangles");
+    }
+    lattices_ += placed.lattices;
+    ++depth_;
+    for (const ThreeMfUse& component : placed.components) place(component, placement);
+    --depth_;
+  }
+
+  void append(const Instance& instance) {
+    const TriangleMesh& mesh = instance.object->mesh;
+    spend(mesh.vertices.size() + mesh.triangles.size());
+    const std::size_t first = parsed_.mesh.vertices.size();
+    if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max() - first) {
+      throw LimitError(file_ + ": more than 4294967295 vertices, which 32-bit indices cannot address");
+    }
+    for (const Vec3& vertex : mesh.vertices) {
+      parsed_.mesh.vertices.push_back(transformed(instance.placement, vertex));
+      if (!is_finite(parsed_.mesh.vertices.back())) {
+        throw InputError(file_ + ": a vertex is not finite once its transform is applied, expected finite coordinates");
+      }
+    }
+    for (Triangle triangle : mesh.triangles) {
+      for (std::uint32_t& corner : triangle) corner += static_cast<std::uint32_t>(first);
+      if (instance.placement.mirrored) std::swap(triangle[1], triangle[2]);
+      parsed_.mesh.triangles.push_back(triangle);
+    }
+  }
+
+  // Bounds what a small file may ask for by naming an object many times.
+  void spend(std::uint64_t elements) {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 26;
+    spent_ += elements;
+    if (spent_ > kMost && spent_ > 16 * stored()) {
+      throw LimitError(file_ + ": copies of objects have more than " + std::to_string(kMost) +
+                       " vertices and triangles");
+    }
+  }
+  [[nodiscard]] std::uint64_t stored() const {
+    std::uint64_t elements = 0;
+    for (const auto& [part, model] : models_) {
+      for (const auto& [id, object] : model.objects) {
+        elements += object.mesh.vertices.size() + object.mesh.triangles.size();
+      }
+    }
+    return elements;
+  }
+
+  const std::string& file_;
+  ZipReader archive_;
+  std::string root_;
+  std::map<std::string, ThreeMfModel> models_;  // of the parts read so far
+  std::vector<Instance> instances_;
+  std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
+  std::size_t uses_ = 0, depth_ = 0;
+  std::uint64_t lattices_ = 0, spent_ = 0;
+  GroupCollector groups_;
+  ParsedMesh parsed_;
+};
+
+}  // namespace
+
+ParsedMesh read_3mf(const NamedBytes& source) { return ThreeMfPackage(source).build(); }
+
+}  // namespace raycone

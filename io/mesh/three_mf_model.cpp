@@ -1,0 +1,276 @@
+// Format: 3MF Core Specification 1.3, Production Extension 1.1.2. Package: ECMA-376 part 2 (Open Packaging
+// Conventions).
+#include "io/mesh/three_mf_model.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "io/files/file_error.h"
+#include "io/mesh/face_groups.h"
+#include "io/mesh/mesh_error.h"
+#include "io/mesh/xml_reader.h"
+
+namespace raycone {
+namespace {
+
+#define RAYCONE_3MF "http://schemas.microsoft.com/3dmanufacturing/"
+constexpr std::string_view kCore = RAYCONE_3MF "core/2015/02|";
+constexpr std::string_view kProductionPath = RAYCONE_3MF "production/2015/06|path";
+constexpr std::string_view kBeamLattice = RAYCONE_3MF "beamlattice/2017/02|beamlattice";
+constexpr std::string_view kSliceStack = RAYCONE_3MF "slice/2015/07|slicestackid";
+constexpr std::string_view kModelRelation = RAYCONE_3MF "2013/01/3dmodel";
+constexpr std::string_view kEncrypted = "/encryptedfile", kKeys = "/keystore";  // ends of relations' types
+// Required extensions that leave triangles as they are, or that are read.
+constexpr std::array<std::string_view, 5> kHarmless{RAYCONE_3MF "material/2015/02", RAYCONE_3MF "production/2015/06",
+                                                    RAYCONE_3MF "slice/2015/07", RAYCONE_3MF "trianglesets/2021/07",
+                                                    RAYCONE_3MF "core/2015/02"};
+#undef RAYCONE_3MF
+
+std::string without_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::string without_slash(std::string_view name) { return std::string(name.starts_with('/') ? name.substr(1) : name); }
+
+// Reads through another source, and compares what came with the archive's checksum at the end.
+class CheckedSource final : public ByteSource {
+ public:
+  CheckedSource(std::unique_ptr<ByteSource> source, std::uint32_t expected, std::string name)
+      : source_(std::move(source)), expected_(expected), name_(std::move(name)) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    const std::size_t count = source_->read(bytes, size);
+    checksum_ = crc32_z(checksum_, reinterpret_cast<const Bytef*>(bytes), count);
+    if (count == 0 && checksum_ != expected_) throw InputError(name_ + ": its bytes do not match their checksum");
+    return count;
+  }
+
+ private:
+  std::unique_ptr<ByteSource> source_;
+  uLong checksum_ = 0, expected_;
+  std::string name_;
+};
+
+// Names of parts do not depend on the case of letters.
+const ZipReader::Member& find_part(const ZipReader& archive, const std::string& part, const std::string& file) {
+  if (const auto* exact = archive.find(part)) return *exact;
+  for (const ZipReader::Member& member : archive.members()) {
+    if (without_case(member.name) == without_case(part)) return member;
+  }
+  throw InputError(file + ": no part " + part.substr(0, kMaxQuoted) + ", expected a 3MF package");
+}
+
+void read_part(const ZipReader& archive, const ZipReader::Member& member, const XmlHandler& handler) {
+  CheckedSource source(archive.open(member), member.checksum, archive.name_of(member));
+  read_xml(source, archive.name_of(member), handler);
+}
+
+// "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.
+AffineMap placement_of(const XmlAttributes& attributes) {
+  const auto text = attributes.find("transform");
+  if (!text) return {};
+  std::array<double, 16> matrix{};
+  matrix[15] = 1.0;
+  std::string_view rest = *text;
+  for (std::size_t i = 0; i < 12; ++i) {
+    while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
+    std::size_t length = 0;
+    while (length < rest.size() && !is_space(rest[length])) ++length;
+    const auto number = number_of(rest.substr(0, length));
+    if (!number || !std::isfinite(*number)) attributes.fail("transform: expected 12 finite numbers");
+    matrix[i / 3 * 4 + i % 3] = *number;
+    rest.remove_prefix(length);
+  }
+  if (!rest.empty()) attributes.fail("transform: more than 12 numbers");
+  return affine_map_of_matrix(matrix);
+}
+
+// The elements of a model part that matter; others are passed over with all that is in them.
+class ModelReader {
+ public:
+  ModelReader(std::string part, const std::string& name) : part_(std::move(part)), name_(name) {}
+
+  ThreeMfModel read(const ZipReader& archive, const ZipReader::Member& member) {
+    read_part(archive, member,
+              {[&](std::string_view name, const XmlAttributes& attributes) { start(name, attributes); },
+               [&](std::string_view) { end(); },
+               [&](std::string_view prefix, std::string_view uri) { prefixes_[std::string(prefix)] = uri; }});
+    return std::move(model_);
+  }
+
+ private:
+  enum class Element {
+    kOutside,
+    kModel,
+    kResources,
+    kObject,
+    kMesh,
+    kVertices,
+    kTriangles,
+    kComponents,
+    kBuild,
+    kLeaf
+  };
+
+  void start(std::string_view name, const XmlAttributes& attributes) {
+    if (passed_over_ > 0) {
+      ++passed_over_;
+    } else if (const auto element = known(name)) {
+      open_.push_back(*element);
+      enter(name, attributes);
+    } else {
+      if (name == kBeamLattice && object_ != nullptr) ++object_->lattices;
+      ++passed_over_;
+    }
+  }
+
+  void end() {
+    if (passed_over_ > 0) {
+      --passed_over_;
+      return;
+    }
+    if (open_.back() == Element::kMesh) check_indices();
+    if (open_.back() == Element::kObject) object_ = nullptr;
+    open_.pop_back();
+  }
+
+  // What an element of this name is inside of the one that is open.
+  [[nodiscard]] std::optional<Element> known(std::string_view name) const {
+    struct Row {
+      Element parent;
+      std::string_view name;
+      Element element;
+    };
+    static constexpr Row kRows[]{{Element::kOutside, "model", Element::kModel},
+                                 {Element::kModel, "resources", Element::kResources},
+                                 {Element::kResources, "object", Element::kObject},
+                                 {Element::kObject, "mesh", Element::kMesh},
+                                 {Element::kMesh, "vertices", Element::kVertices},
+                                 {Element::kVertices, "vertex", Element::kLeaf},
+                                 {Element::kMesh, "triangles", Element::kTriangles},
+                                 {Element::kTriangles, "triangle", Element::kLeaf},
+                                 {Element::kObject, "components", Element::kComponents},
+                                 {Element::kComponents, "component", Element::kLeaf},
+                                 {Element::kModel, "build", Element::kBuild},
+                                 {Element::kBuild, "item", Element::kLeaf}};
+    if (!name.starts_with(kCore)) return std::nullopt;
+    name.remove_prefix(kCore.size());
+    const Element parent = open_.empty() ? Element::kOutside : open_.back();
+    for (const Row& row : kRows) {
+      if (row.parent == parent && row.name == name) return row.element;
+    }
+    return std::nullopt;
+  }
+
+  void enter(std::string_view name, const XmlAttributes& attributes) {
+    if (name.ends_with("|vertex")) {
+      add_vertex(attributes);
+    } else if (name.ends_with("|triangle")) {
+      add_triangle(attributes);
+    } else if (name.ends_with("|component")) {
+      object_->components.push_back(use_of(attributes));
+    } else if (name.ends_with("|item")) {
+      model_.items.push_back(use_of(attributes));
+    } else if (open_.back() == Element::kObject) {
+      start_object(attributes);
+    } else if (open_.back() == Element::kModel) {
+      check_extensions(attributes);
+      model_.unit = attributes.find("unit").value_or("millimeter").substr(0, kMostOfName);
+    }
+  }
+
+  // Extensions are named by prefixes.
+  void check_extensions(const XmlAttributes& attributes) const {
+    std::string_view rest = attributes.find("requiredextensions").value_or("");
+    while (!rest.empty()) {
+      const std::size_t length = std::min(rest.find(' '), rest.size());
+      const std::string prefix(rest.substr(0, length));
+      rest.remove_prefix(std::min(length + 1, rest.size()));
+      if (prefix.empty()) continue;
+      const auto uri = prefixes_.find(prefix);
+      const std::string& meant = uri == prefixes_.end() ? prefix : uri->second;
+      if (std::ranges::count(kHarmless, meant) == 0) {
+        attributes.fail("requires the extension " + meant.substr(0, kMaxQuoted) + ", which is not supported");
+      }
+    }
+  }
+
+  void start_object(const XmlAttributes& attributes) {
+    const std::uint32_t id = attributes.index("id");
+    const auto [object, is_new] = model_.objects.try_emplace(id);
+    if (!is_new) attributes.fail("a second object " + std::to_string(id));
+    object_ = &object->second;
+    object_->name = attributes.find("name").value_or("").substr(0, kMostOfName);
+    object_->is_sliced = attributes.find(kSliceStack).has_value();
+  }
+
+  void add_vertex(const XmlAttributes& attributes) {
+    if (object_->mesh.vertices.size() == std::numeric_limits<std::uint32_t>::max()) {
+      throw LimitError(name_ + ": more than 4294967295 vertices, which 32-bit indices cannot address");
+    }
+    object_->mesh.vertices.push_back({attributes.number("x"), attributes.number("y"), attributes.number("z")});
+  }
+
+  void add_triangle(const XmlAttributes& attributes) {
+    object_->mesh.triangles.push_back({attributes.index("v1"), attributes.index("v2"), attributes.index("v3")});
+  }
+
+  // At the end of a mesh: vertices may stand behind triangles.
+  void check_indices() const {
+    const std::size_t count = object_->mesh.vertices.size();
+    for (const Triangle& triangle : object_->mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        if (corner >= count) throw InputError(name_ + ": " + index_out_of_range(corner, count));
+      }
+    }
+  }
+
+  [[nodiscard]] ThreeMfUse use_of(const XmlAttributes& attributes) const {
+    const auto path = attributes.find(kProductionPath);
+    return {path ? without_slash(*path) : part_, attributes.index("objectid"), placement_of(attributes)};
+  }
+
+  std::string part_;
+  const std::string& name_;  // "FILE(PART)"
+  std::map<std::string, std::string> prefixes_;
+  std::vector<Element> open_;
+  std::size_t passed_over_ = 0;  // open elements that are not known
+  ThreeMfModel model_;
+  ThreeMfObject* object_ = nullptr;
+};
+
+}  // namespace
+
+std::string three_mf_root(const ZipReader& archive, const std::string& file) {
+  std::string root;
+  const auto note = [&](std::string_view name, const XmlAttributes& attributes) {
+    if (!name.ends_with("|Relationship")) return;
+    const std::string_view type = attributes.text("Type");
+    if (type.ends_with(kEncrypted) || type.ends_with(kKeys))
+      throw InputError(file + ": is encrypted, expected a 3MF that can be read");
+    if (type == kModelRelation && root.empty()) root = without_slash(attributes.text("Target"));
+  };
+  read_part(archive, find_part(archive, "_rels/.rels", file), {note, [](std::string_view) {}, {}});
+  if (root.empty()) throw InputError(file + ": no 3D model in its relationships, expected a 3MF package");
+  return root;
+}
+
+ThreeMfModel read_three_mf_model(const ZipReader& archive, const std::string& part, const std::string& file) {
+  const ZipReader::Member& member = find_part(archive, part, file);
+  const std::string name = archive.name_of(member);
+  return ModelReader(part, name).read(archive, member);
+}
+
+}  // namespace raycone

@@ -23,11 +23,17 @@ Json to_rows(const std::array<double, 16>& matrix) {
   return rows;
 }
 
-Json to_object(const Lattice& lattice) {
-  return {{"origin", to_array(lattice.origin)},
-          {"spacing", to_array(lattice.spacing)},
-          {"index_min", lattice.index_min},
-          {"index_max", Json::array({lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)})}};
+// Only a lattice that is not along the axes has a direction.
+Json to_object(const PlacedLattice& placed) {
+  const Lattice& lattice = placed.grid;
+  Json object{{"origin", to_array(placed.origin)},
+              {"spacing", to_array(lattice.spacing)},
+              {"index_min", lattice.index_min},
+              {"index_max", Json::array({lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)})}};
+  if (placed.along_axes()) return object;
+  const std::array<double, 9> d = placed.direction();
+  object["direction"] = Json::array({{d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}});
+  return object;
 }
 
 Json to_object(const Seconds& seconds) {

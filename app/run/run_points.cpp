@@ -42,13 +42,6 @@ void evaluate_points(FieldRun& fields, PointReader& reader, PointWriter& writer,
   }
 }
 
-// Refuses meshes that cannot fit, before any work on them.
-void check_points_memory(const PointsCommand& command, const TriangleMesh& mesh, const RunLimits& limits) {
-  constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
-  if (command.field.engine != RayEngine::kScan) return;
-  check_memory(command.mesh.path, kPerTriangle * static_cast<double>(mesh.triangles.size()), limits.memory());
-}
-
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
 bool draws_single(const PointsCommand& command) {
   return command.sample && command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
@@ -78,7 +71,7 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
                    [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
   }
 
-  check_points_memory(command, mesh, limits);
+  check_points_memory(command.mesh, mesh, command.field, limits);
   constexpr double kUnknown = 1e6;  // samples of a stream
   const std::optional<std::uint64_t> points = reader->size();
   FieldRun fields(run, std::move(mesh), command.field, points ? static_cast<double>(*points) : kUnknown);

@@ -1,6 +1,7 @@
 // By nlohmann-json: it escapes names correctly and prints doubles shortest-round-trip.
 #include "app/report/json.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -133,6 +134,31 @@ std::vector<Cell> cells_of(const Json& document) {
   return cells;
 }
 
+// How a file was made, whoever wrote it: what is no object, and what is nested deeply, is left out.
+Json made_object(const VolumeFacts& facts) {
+  constexpr int kDeepest = 8;
+  const auto parsed = [](const std::string& text) {
+    const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; };
+    return Json::parse(text, shallow, /*allow_exceptions=*/false);
+  };
+  Json object = facts.made_json.empty() ? Json::object() : parsed(facts.made_json);
+  if (!object.is_object()) object = Json::object();
+  for (const MadeFact& fact : facts.made) object[fact.key] = fact.is_json ? parsed(fact.value) : Json(fact.value);
+  return object;
+}
+
+Json to_object(const VolumeFacts& facts) {
+  Json arrays = Json::array();
+  for (const ArrayFacts& array : facts.arrays) {
+    Json entry{{"name", array.name}, {"type", array.type}};
+    if (facts.format != "OpenVDB") entry["shape"] = array.shape;
+    arrays.push_back(entry);
+  }
+  Json document{{"format", facts.format}, {"arrays", arrays}, {"lattice", nullptr}, {"made", made_object(facts)}};
+  if (facts.lattice) document["lattice"] = to_object(*facts.lattice);
+  return document;
+}
+
 // File names may hold any bytes; JSON is UTF-8.
 std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -183,6 +209,33 @@ std::string provenance_json(const RunReport& report, const std::vector<std::stri
                 {"transform", to_rows(report.transform)}};
   if (!rule.empty()) document["rule"] = rule;
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const VolumeInfo& info) { return to_text(to_object(info.facts)); }
+
+std::string to_json_item(const VolumeInfo& info) {
+  Json document{{"file", info.file}};
+  document.update(to_object(info.facts));
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<std::pair<std::string, std::string>> made_lines(const VolumeFacts& facts) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const Json made = made_object(facts);
+  const auto text = [](const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  for (const auto& [key, value] : made.items()) {
+    if (!value.is_array() || !std::ranges::all_of(value, is_text)) {
+      lines.emplace_back(key, text(value));
+      continue;
+    }
+    std::string joined;
+    for (const Json& item : value) joined += (joined.empty() ? "" : " ") + text(item);
+    lines.emplace_back(key, joined);
+  }
+  return lines;
 }
 
 std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }

@@ -48,6 +48,7 @@ VolumeFacts npz_facts(const std::string& path) {
     while (input.pending().size() < kMostText && input.fill()) continue;
     facts.made_json = input.pending().substr(0, kMostText);
   }
+  if (facts.arrays.empty()) throw InputError(path + ": has no arrays, expected an NPZ archive");
   if (archive.find("origin.npy") != nullptr) add_lattice(facts, path, [&] { return read_npz_lattice(path); });
   return facts;
 }

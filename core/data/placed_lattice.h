@@ -17,7 +17,7 @@ namespace raycone {
 struct PlacedLattice {
   PlacedLattice() = default;
   // That lattice.
-  PlacedLattice(const Lattice& lattice);  // NOLINT(google-explicit-constructor): a Lattice is one of these
+  PlacedLattice(const Lattice& lattice);
   PlacedLattice(const Vec3& at, const std::array<Vec3, 3>& index_steps, const std::array<std::int64_t, 3>& first,
                 const std::array<std::int64_t, 3>& count);
 

@@ -39,7 +39,7 @@ std::string without_escapes(std::string_view text) {
 
 // --- Fields ---------------------------------------------------------------------------------------------------------
 
-// Words of numbers, whatever blanks and commas stand between; a vector is the word before its numbers, or none.
+// What a field holds, one number, vector or word after the other; blanks and commas may stand between.
 class Numbers {
  public:
   Numbers(const std::string& path, const NrrdHead& head, const std::string& key) : path_(path), key_(key) {

@@ -164,12 +164,13 @@ class Values(Like):
     def test_verification_and_slabs(self):
         for steps in (TURNED[1][1] / 4, SIGNED_PERMUTATIONS[13] / 24):
             self.lattice_around(steps, (41, 37, 43))
-            self.works("lattice %s --like g.nrrd --field winding,inside,sdf --verify 50 -o a.vdb --report r.json" % OPEN_BOX)
+            words = "lattice %s --like g.nrrd --field winding,inside,sdf " % OPEN_BOX
+            self.works(words + "--verify 50 -o a.vdb --report r.json")
             with open("r.json") as file:
                 report = json.load(file)
             self.assertEqual(report["verify"]["samples"], 50)
             self.assertLess(report["verify"]["largest_difference"], 1e-10)
-            words = "lattice %s --like g.nrrd --field winding,inside,sdf -o b.npz " % OPEN_BOX
+            words += "-o b.npz "
             self.works(words + "--threads 1 --memory-limit 160M")
             with open("b.npz", "rb") as file:
                 first = file.read()
@@ -215,7 +216,7 @@ class Files(Like):
             with open("a.nrrd", "rb") as file:
                 head = dict(line.split(": ", 1) for line in file.read().split(b"\n\n")[0].decode().split("\n")
                             if ": " in line and not line.startswith("raycone"))
-            numbers = lambda key: [float(n) for n in head[key].replace("(", " ").replace(")", " ").replace(",", " ").split()]
+            numbers = lambda key: [float(n) for n in head[key].translate(str.maketrans("(),", "   ")).split()]
             self.assertEqual(numbers("space directions"), (steps + 0.0).ravel().tolist())
             self.assertEqual(numbers("space origin"), points[0].tolist())
             self.assertTrue((self.like("a.nrrd") == points).all())

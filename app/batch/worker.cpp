@@ -171,10 +171,10 @@ JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
   Thumbnail thumbnail;
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const std::string grid_before = grid ? hash_of_grid(grid->path) : "";
-  const RunReport report = run_lattice(
-      command, limits, [&thumbnail](const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
-        thumbnail.add(lattice, block, values);
-      });
+  const RunReport report =
+      run_lattice(command, limits,
+                  [&thumbnail](const PlacedLattice& lattice, const LatticeBlock& block,
+                               std::span<const double> values) { thumbnail.add(lattice.grid, block, values); });
   JobResult result = result_of(report, thumbnail.bmp());
   if (!grid) return result;
   // Unknown where it changed meanwhile.

@@ -55,18 +55,18 @@ void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
   if (output.path == "-") refuse_option(values, "--depfile", "on standard output, expected -o FILE");
 }
 
-void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding) {
+// `stores_numbers`: besides those of fields, as points are.
+void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
+                          bool stores_numbers) {
   const std::string on_csv = "on CSV, which holds all digits, expected another format";
   if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", on_csv);
-  if (!has_numbers(field)) {
-    refuse_option(values, "--dtype", kNoDigits);
-  }
+  if (!has_numbers(field) && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
 }
 
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {
-  refuse_idle_encoding(values, command.field, command.encoding);
+  refuse_idle_encoding(values, command.field, command.encoding, false);
   refuse_idle_rule(values, command.field);
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
@@ -79,7 +79,7 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
 }
 
 void refuse_idle_options(const Values& values, const PointsCommand& command) {
-  refuse_idle_encoding(values, command.field, command.encoding);
+  refuse_idle_encoding(values, command.field, command.encoding, command.sample.has_value());
   refuse_idle_rule(values, command.field);
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);

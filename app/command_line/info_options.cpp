@@ -43,13 +43,25 @@ InfoFormat parse_info_format(const Values& values) {
   return values.given("--json") ? InfoFormat::kJson : values.given("--csv") ? InfoFormat::kCsv : InfoFormat::kText;
 }
 
+// The first of them that was given.
+std::string option_for_meshes(const Values& values) {
+  const OptionGroup group = mesh_group();
+  for (const OptionSpec& option : group.options) {
+    if (values.given(option.names)) return option.names;
+  }
+  for (const char* name : {"--csv", "--intersections", "--require", "--mark"}) {
+    if (values.given(name)) return name;
+  }
+  return "";
+}
+
 }  // namespace
 
 CommandSpec info_spec() {
   OperandSpec meshes = mesh_operand();
   meshes.count = OperandCount::kMany;
   return {.name = "info",
-          .description = "Describe meshes, check them, and estimate the cost of evaluating them",
+          .description = "Describe meshes, check them, estimate the cost of evaluating them; describe files of values",
           .operands = {meshes},
           .groups = {mesh_group(),
                      {"Output",
@@ -62,7 +74,7 @@ CommandSpec info_spec() {
                        {"--no-clobber", "", "Never replace an existing file (--mark)"}}},
                      run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",
-                       "raycone info *.stl --csv > meshes.csv",
+                       "raycone info *.stl --csv > meshes.csv", "raycone info bunny.vdb",
                        "raycone info part.stl --require closed,outward,embedded --mark flaws.ply"}};
 }
 
@@ -70,6 +82,7 @@ Command parse_info(const Values& values) {
   InfoCommand command;
   command.meshes = parse_meshes(values);
   command.run = parse_run(values);
+  command.for_meshes = option_for_meshes(values);
   command.format = parse_info_format(values);
   if (values.given("--require")) command.required = parse_requirements(values.text("--require"));
   command.intersections = values.given("--intersections");

@@ -16,7 +16,8 @@ enum class InfoFormat { kText, kJson, kCsv };
 enum class Requirement { kClosed, kOriented, kOutward, kManifold, kEmbedded, kNoDuplicates };
 
 struct InfoCommand {
-  std::vector<MeshOptions> meshes;  // at least one; they differ in their paths only
+  std::vector<MeshOptions> meshes;  // or files of values; at least one; they differ in their paths only
+  std::string for_meshes;           // one of the options that were given and concern meshes only; empty: none
   RunOptions run;
   InfoFormat format = InfoFormat::kText;
   std::vector<Requirement> required;  // each at most once

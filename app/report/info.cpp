@@ -48,25 +48,18 @@ std::string cost_of(const Lattice& lattice, const MeshInfo& info, int threads) {
          std::to_string(nz) + " samples";
 }
 
-class Table {
- public:
-  void row(const std::string& name, const std::string& value) {
-    char line[48];
-    std::snprintf(line, sizeof line, "  %-20s ", name.c_str());
-    text_ += line + value + "\n";
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
 std::string intersections_of(const IntersectionInfo& found) {
   if (found.pairs) return readable(*found.pairs) + (*found.pairs == 1 ? " pair of faces" : " pairs of faces");
   return "some; --intersections counts them";
 }
 
 }  // namespace
+
+void InfoTable::row(const std::string& name, const std::string& value) {
+  char line[48];
+  std::snprintf(line, sizeof line, "  %-20s ", name.c_str());
+  text_ += line + value + "\n";
+}
 
 std::string printed_number(double number) {
   char text[32];
@@ -80,7 +73,7 @@ std::string printed_point(const Vec3& point) {
 
 std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const MeshStatistics& s = info.statistics;
-  Table table;
+  InfoTable table;
   table.row("faces", readable(info.faces));
   if (info.skipped_faces > 0) table.row("skipped faces", readable(info.skipped_faces) + " of fewer than three corners");
   table.row("vertices", readable(info.vertices) + ", after welding " + readable(info.welded_vertices));

@@ -38,6 +38,16 @@ struct CostedLattices {
   std::optional<std::string> no_more;  // why there are no others
 };
 
+// Rows of a name and a value.
+class InfoTable {
+ public:
+  void row(const std::string& name, const std::string& value);
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
 // "0.1", "(0, 1, 0.5)": nine digits.
 [[nodiscard]] std::string printed_number(double number);
 [[nodiscard]] std::string printed_point(const Vec3& point);

@@ -25,11 +25,17 @@ Json to_rows(const std::array<double, 16>& matrix) {
   return rows;
 }
 
-Json to_object(const Lattice& lattice) {
-  return {{"origin", to_array(lattice.origin)},
-          {"spacing", to_array(lattice.spacing)},
-          {"index_min", lattice.index_min},
-          {"index_max", Json::array({lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)})}};
+// Only a lattice that is not along the axes has a direction.
+Json to_object(const PlacedLattice& placed) {
+  const Lattice& lattice = placed.grid;
+  Json object{{"origin", to_array(placed.origin)},
+              {"spacing", to_array(lattice.spacing)},
+              {"index_min", lattice.index_min},
+              {"index_max", Json::array({lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)})}};
+  if (placed.along_axes()) return object;
+  const std::array<double, 9> d = placed.direction();
+  object["direction"] = Json::array({{d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}});
+  return object;
 }
 
 Json to_object(const Seconds& seconds) {
@@ -168,6 +174,31 @@ std::vector<Cell> cells_of(const Json& document) {
   return cells;
 }
 
+// How a file was made, whoever wrote it: what is no object, and what is nested deeply, is left out.
+Json made_object(const VolumeFacts& facts) {
+  constexpr int kDeepest = 8;
+  const auto parsed = [](const std::string& text) {
+    const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; };
+    return Json::parse(text, shallow, /*allow_exceptions=*/false);
+  };
+  Json object = facts.made_json.empty() ? Json::object() : parsed(facts.made_json);
+  if (!object.is_object()) object = Json::object();
+  for (const MadeFact& fact : facts.made) object[fact.key] = fact.is_json ? parsed(fact.value) : Json(fact.value);
+  return object;
+}
+
+Json to_object(const VolumeFacts& facts) {
+  Json arrays = Json::array();
+  for (const ArrayFacts& array : facts.arrays) {
+    Json entry{{"name", array.name}, {"type", array.type}};
+    if (facts.format != "OpenVDB") entry["shape"] = array.shape;
+    arrays.push_back(entry);
+  }
+  Json document{{"format", facts.format}, {"arrays", arrays}, {"lattice", nullptr}, {"made", made_object(facts)}};
+  if (facts.lattice) document["lattice"] = to_object(*facts.lattice);
+  return document;
+}
+
 // File names may hold any bytes; JSON is UTF-8.
 std::string to_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -240,6 +271,33 @@ std::string label_table_json(const RunReport& report) {
     labels.push_back({{"label", label}, {"name", part.name}, {"color", colour_of(label)}});
   }
   return to_text({{"raycone_version", kVersion}, {"labels", labels}});
+}
+
+std::string to_json(const VolumeInfo& info) { return to_text(to_object(info.facts)); }
+
+std::string to_json_item(const VolumeInfo& info) {
+  Json document{{"file", info.file}};
+  document.update(to_object(info.facts));
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<std::pair<std::string, std::string>> made_lines(const VolumeFacts& facts) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const Json made = made_object(facts);
+  const auto text = [](const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  for (const auto& [key, value] : made.items()) {
+    if (!value.is_array() || !std::ranges::all_of(value, is_text)) {
+      lines.emplace_back(key, text(value));
+      continue;
+    }
+    std::string joined;
+    for (const Json& item : value) joined += (joined.empty() ? "" : " ") + text(item);
+    lines.emplace_back(key, joined);
+  }
+  return lines;
 }
 
 std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }

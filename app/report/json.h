@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/report/info.h"
 #include "app/report/run_report.h"
+#include "app/report/volume_info.h"
 #include "app/text/csv.h"
 
 namespace raycone {
@@ -27,6 +29,13 @@ namespace raycone {
 
 // An object that names its mesh first, to be put into an array; no line feed at the end.
 [[nodiscard]] std::string to_json_item(const MeshInfo& info);
+
+// What a file of values says about itself; as an item of an array it names its file first.
+[[nodiscard]] std::string to_json(const VolumeInfo& info);
+[[nodiscard]] std::string to_json_item(const VolumeInfo& info);
+
+// How it was made, as lines of text.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> made_lines(const VolumeFacts& facts);
 
 // The same facts as a row of a table behind the mesh's name: the keys of the JSON, `bounds` as x0 to z1, null as
 // nothing, lists joined by semicolons.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "core/orientation/orient.h"
@@ -71,7 +71,7 @@ struct RunReport {
   std::uint64_t exterior_edges = 0;
   std::array<double, 16> transform{};  // from the file's coordinates to the world's, row by row
   std::uint64_t samples = 0;
-  std::optional<Lattice> lattice;  // absent for points
+  std::optional<PlacedLattice> lattice;  // absent for points
   int threads = 0;
   Tally tally;
   Terms terms;

@@ -63,30 +63,55 @@ void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
   });
 }
 
-Tally FieldEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, FieldSamples& samples,
-                               std::atomic<std::uint64_t>* done) const {
+Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeBlock& block, double band_width,
+                                          FieldSamples& samples, std::atomic<std::uint64_t>* done) const {
   samples.resize(static_cast<std::size_t>(block.size()));
   const std::span<double> values = samples.winding_numbers();
   std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
   const Tally tally = rule_ ? winding_number_.evaluate_for(*rule_, lattice, block, values, done)
                             : winding_number_.evaluate(lattice, block, values, done, samples.diagnostics());
   settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
-  if (distance_) distance_->evaluate(lattice, block, band_ * lattice.spacing.x, samples.distances());
+  if (distance_) distance_->evaluate(lattice, block, band_width, samples.distances());
   if (gradient_) gradient_->evaluate(lattice, block, samples.gradients(), last);
+  samples.derive();
+  return tally;
+}
+
+Tally FieldEvaluator::evaluate_points(std::span<const Vec3> points, double band_width, FieldSamples& samples,
+                                      std::atomic<std::uint64_t>* done) const {
+  samples.resize(points.size());
+  std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
+  const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
+  settle([&](std::size_t n) { return points[n]; }, samples);
+  if (distance_) distance_->evaluate(points, samples.distances());
+  if (std::isfinite(band_width)) {
+    for (double& distance : samples.distances()) distance = std::min(distance, band_width);
+  }
+  if (gradient_) gradient_->evaluate(points, samples.gradients(), last);
   samples.derive();
   return tally;
 }
 
 Tally FieldEvaluator::evaluate(std::span<const Vec3> points, FieldSamples& samples,
                                std::atomic<std::uint64_t>* done) const {
-  samples.resize(points.size());
-  std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
-  const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
-  settle([&](std::size_t n) { return points[n]; }, samples);
-  if (distance_) distance_->evaluate(points, samples.distances());
-  if (gradient_) gradient_->evaluate(points, samples.gradients(), last);
-  samples.derive();
-  return tally;
+  return evaluate_points(points, std::numeric_limits<double>::infinity(), samples, done);
+}
+
+Tally FieldEvaluator::evaluate(const PlacedLattice& lattice, const LatticeBlock& block, FieldSamples& samples,
+                               std::atomic<std::uint64_t>* done) const {
+  const double band_width = band_ * lattice.grid.spacing.x;
+  if (lattice.along_axes()) return evaluate_along_axes(lattice.grid, block, band_width, samples, done);
+  if (const std::optional<WorldOrder> order = world_order(lattice)) {
+    const Tally tally = evaluate_along_axes(order->lattice, order->block_of(block), band_width, samples, done);
+    samples.to_index_order(*order, block);
+    return tally;
+  }
+  std::vector<Vec3> points(static_cast<std::size_t>(block.size()));
+  constexpr std::size_t kGrain = std::size_t{1} << 14;
+  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) points[n] = lattice.position(block, n);
+  });
+  return evaluate_points(points, band_width, samples, done);
 }
 
 }  // namespace raycone

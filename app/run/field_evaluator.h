@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/run/fields.h"
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/gradient.h"
@@ -30,12 +30,19 @@ class FieldEvaluator {
 
   // Fills `samples`, made for the options of this, with all fields of a block or of finite points. On lattices, which
   // have cubic voxels then, distances are cut off at the band. `done`, where given, grows by one per sample while the
-  // call runs.
-  Tally evaluate(const Lattice& lattice, const LatticeBlock& block, FieldSamples& samples,
+  // call runs. A lattice whose axes are the world's, in any order and direction, is evaluated as one along them;
+  // others at the positions of their samples, which takes what points need.
+  Tally evaluate(const PlacedLattice& lattice, const LatticeBlock& block, FieldSamples& samples,
                  std::atomic<std::uint64_t>* done) const;
   Tally evaluate(std::span<const Vec3> points, FieldSamples& samples, std::atomic<std::uint64_t>* done) const;
 
  private:
+  // `band_width`: where distances are cut off, world units.
+  Tally evaluate_along_axes(const Lattice& lattice, const LatticeBlock& block, double band_width, FieldSamples& samples,
+                            std::atomic<std::uint64_t>* done) const;
+  Tally evaluate_points(std::span<const Vec3> points, double band_width, FieldSamples& samples,
+                        std::atomic<std::uint64_t>* done) const;
+
   // Where a rule is asked for: winding numbers on the side of its threshold on which the true ones are. `point` gives
   // that of a sample's number.
   template <class Point>

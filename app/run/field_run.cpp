@@ -44,7 +44,7 @@ void FieldRun::prepare_points() {
   timed(run_.report.seconds.prepare, [&] { evaluator_.prepare_points(); });
 }
 
-void FieldRun::evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done) {
+void FieldRun::evaluate(const PlacedLattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done) {
   run_.report.tally +=
       timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(lattice, block, samples_, done); });
   look_for_inside();
@@ -88,9 +88,16 @@ void FieldRun::finish(double band_width) {
   });
 }
 
+void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,
+                         const RunLimits& limits) {
+  constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
+  if (field.engine != RayEngine::kScan) return;
+  check_memory(options.path, kPerTriangle * static_cast<double>(triangles), limits.memory());
+}
+
 OutputDescription description_of(const RunReport& report, const FieldOptions& field, const FieldEncoding& encoding) {
   OutputDescription description;
-  description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->spacing.x : 0.0);
+  description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->grid.spacing.x : 0.0);
   if (encoding.grid_name) description.fields.front().grid = *encoding.grid_name;
   description.mesh = std::filesystem::path(report.mesh).filename().string();
   description.mesh_sha256 = report.sha256;

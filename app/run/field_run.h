@@ -6,13 +6,14 @@
 #include <span>
 
 #include "app/options/field_options.h"
+#include "app/options/mesh_options.h"
 #include "app/options/output_options.h"
 #include "app/run/field_evaluator.h"
 #include "app/run/fields.h"
 #include "app/run/label_volume.h"
 #include "app/run/mesh_run.h"
 #include "app/run/verify.h"
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "io/fields/field_writer.h"
 
@@ -28,7 +29,7 @@ class FieldRun {
   void prepare_points();
 
   // Evaluates a block or some finite points: values() are theirs then. Those that verification wants are kept.
-  void evaluate(const Lattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
+  void evaluate(const PlacedLattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
   void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
   // To be set, where they are wanted.
@@ -59,6 +60,10 @@ class FieldRun {
   bool found_inside_ = false;
   double largest_bound_ = 0.0;  // of diagnostics
 };
+
+// Refuses meshes that points cannot be evaluated of within `limits`, before any work on them. Throws LimitError.
+void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,
+                         const RunLimits& limits);
 
 // What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.
 [[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,

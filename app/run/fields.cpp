@@ -46,6 +46,26 @@ std::vector<FieldDescription> describe_diagnostics() {
   return descriptions;
 }
 
+// Empty numbers stay so.
+template <typename Number>
+void reorder(std::vector<Number>& numbers, const WorldOrder::Walk& walk, const LatticeBlock& indices) {
+  if (numbers.empty()) return;
+  std::vector<Number> result(numbers.size());
+  const auto [nx, ny, nz] = indices.counts;
+  const auto rows = static_cast<std::size_t>(ny * nz);
+  parallel_for(rows, kGrain / static_cast<std::size_t>(nx) + 1,
+               [&, nx = nx, ny = ny](std::size_t begin, std::size_t end) {
+                 for (auto row = static_cast<std::int64_t>(begin); row < static_cast<std::int64_t>(end); ++row) {
+                   const std::int64_t from = walk.start + row / ny * walk.strides[2] + row % ny * walk.strides[1];
+                   for (std::int64_t i = 0; i < nx; ++i) {
+                     result[static_cast<std::size_t>(row * nx + i)] =
+                         numbers[static_cast<std::size_t>(from + i * walk.strides[0])];
+                   }
+                 }
+               });
+  numbers.swap(result);
+}
+
 }  // namespace
 
 std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width) {
@@ -108,6 +128,20 @@ void FieldSamples::resize(std::size_t count) {
   *diagnostics_ = {crossings_, degenerate_, on_surface_, error_bound_};
   fields_.insert(fields_.end(), {std::span<const std::int64_t>(crossings_), std::span<const std::int64_t>(degenerate_),
                                  std::span<const std::uint8_t>(on_surface_), std::span<const double>(error_bound_)});
+}
+
+void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& indices) {
+  const WorldOrder::Walk walk = order.walk(indices);
+  reorder(winding_numbers_, walk, indices);
+  reorder(inside_, walk, indices);
+  reorder(density_, walk, indices);
+  reorder(distances_, walk, indices);
+  reorder(gradients_, walk, indices);
+  reorder(crossings_, walk, indices);
+  reorder(degenerate_, walk, indices);
+  reorder(on_surface_, walk, indices);
+  reorder(error_bound_, walk, indices);
+  resize(winding_numbers_.size());  // which finds the numbers where they are now
 }
 
 void FieldSamples::derive() {

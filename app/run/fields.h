@@ -9,6 +9,7 @@
 
 #include "app/options/field_options.h"
 #include "core/data/diagnostics.h"
+#include "core/data/placed_lattice.h"
 #include "io/fields/field_writer.h"
 
 namespace raycone {
@@ -52,6 +53,10 @@ class FieldSamples {
 
   // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
   void derive();
+
+  // From the order of the world's axes to that of the indices of a block. What was obtained from here before is no
+  // longer valid. Threaded.
+  void to_index_order(const WorldOrder& order, const LatticeBlock& indices);
 
   // After derive().
   [[nodiscard]] SampleNumbers numbers() const {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <optional>
@@ -22,14 +23,68 @@
 namespace raycone {
 namespace {
 
-// What the reader writes: one of these letters, and behind it the lattice or the message.
+// What the reader writes: one of these letters, and behind it what was read or the message.
 enum Outcome : char { kRead = 'r', kInvalid = 'i', kLimited = 'l', kOutOfMemory = 'm' };
 
-std::string outcome_of_reading(const std::string& path, const std::string& name) {
-  static_assert(std::is_trivially_copyable_v<Lattice>);
+constexpr const char* kLatticeWord = "lattice";
+constexpr const char* kFactsWord = "facts";
+
+std::string bytes_of(const PlacedLattice& lattice) {
+  static_assert(std::is_trivially_copyable_v<PlacedLattice>);
+  return {reinterpret_cast<const char*>(&lattice), sizeof lattice};
+}
+
+// Texts one after the other, each behind its size.
+class Texts {
+ public:
+  explicit Texts(std::string bytes = "") : bytes_(std::move(bytes)) {}
+
+  void put(const std::string& text) {
+    const std::uint64_t size = text.size();
+    bytes_.append(reinterpret_cast<const char*>(&size), sizeof size).append(text);
+  }
+  // Nothing where there is no other.
+  [[nodiscard]] std::optional<std::string> take() {
+    std::uint64_t size = 0;
+    if (bytes_.size() - at_ < sizeof size) return std::nullopt;
+    std::memcpy(&size, &bytes_[at_], sizeof size);
+    if (bytes_.size() - at_ - sizeof size < size) return std::nullopt;
+    at_ += sizeof size + size;
+    return bytes_.substr(at_ - size, size);
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+// Grids and facts come behind the rest, in groups of two and three.
+std::string bytes_of(const VolumeFacts& facts) {
+  Texts texts;
+  texts.put(facts.format);
+  texts.put(facts.lattice ? bytes_of(*facts.lattice) : "");
+  texts.put(facts.no_lattice);
+  texts.put(std::to_string(facts.arrays.size()));
+  for (const ArrayFacts& grid : facts.arrays) {
+    texts.put(grid.name);
+    texts.put(grid.type);
+  }
+  for (const MadeFact& fact : facts.made) {
+    texts.put(fact.key);
+    texts.put(fact.value);
+    texts.put(fact.is_json ? "1" : "");
+  }
+  return texts.bytes();
+}
+
+std::string read_as(const std::string& what, const std::string& path, const std::string& name) {
+  return what == kFactsWord ? bytes_of(read_vdb_facts(path)) : bytes_of(read_vdb_lattice(path, name));
+}
+
+std::string outcome_of_reading(const std::string& what, const std::string& path, const std::string& name) {
   try {
-    const Lattice lattice = read_vdb_lattice(path, name);
-    return std::string(1, kRead).append(reinterpret_cast<const char*>(&lattice), sizeof lattice);
+    return std::string(1, kRead) + read_as(what, path, name);
   } catch (const InputError& error) {
     return std::string(1, kInvalid) + error.what();
   } catch (const LimitError& error) {
@@ -39,15 +94,47 @@ std::string outcome_of_reading(const std::string& path, const std::string& name)
   }
 }
 
-Lattice lattice_from(const std::string& path, const std::string& outcome) {
+[[noreturn]] void fail_disturbed(const std::string& path) {
+  throw InputError(path + ": cannot read: the process that does it was disturbed");
+}
+
+// What was read.
+std::string content_of(const std::string& path, const std::string& outcome) {
   if (outcome[0] == kInvalid) throw InputError(outcome.substr(1));
   if (outcome[0] == kLimited) throw LimitError(outcome.substr(1));
   if (outcome[0] == kOutOfMemory) throw std::bad_alloc();
-  Lattice lattice;
-  if (outcome.size() != 1 + sizeof lattice)
-    throw InputError(path + ": cannot read: the process that does it was disturbed");
-  std::memcpy(&lattice, outcome.data() + 1, sizeof lattice);
+  if (outcome[0] != kRead) fail_disturbed(path);
+  return outcome.substr(1);
+}
+
+PlacedLattice lattice_from(const std::string& path, const std::string& bytes) {
+  PlacedLattice lattice;
+  if (bytes.size() != sizeof lattice) fail_disturbed(path);
+  std::memcpy(&lattice, bytes.data(), sizeof lattice);
   return lattice;
+}
+
+VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
+  Texts texts(bytes);
+  const auto next = [&] {
+    std::optional<std::string> text = texts.take();
+    if (!text) fail_disturbed(path);
+    return *text;
+  };
+  VolumeFacts facts;
+  facts.format = next();
+  if (const std::string lattice = next(); !lattice.empty()) facts.lattice = lattice_from(path, lattice);
+  facts.no_lattice = next();
+  const std::string grids = next();
+  while (std::to_string(facts.arrays.size()) != grids) {
+    const std::string name = next();
+    facts.arrays.push_back({name, next()});
+  }
+  while (std::optional<std::string> key = texts.take()) {
+    const std::string value = next();
+    facts.made.push_back({*key, value, !next().empty()});
+  }
+  return facts;
 }
 
 // Also the dynamic linker's, where memory is short.
@@ -92,18 +179,11 @@ std::string end_of(pid_t process) {
   return status == 0 ? "" : "exit status " + std::to_string(status);
 }
 
-}  // namespace
-
-ExitCode run_grid_reader(const std::vector<std::string>& words) {
-  const std::string outcome = outcome_of_reading(words.at(1), words.at(2));
-  const ssize_t written = write(std::stoi(words.at(0)), outcome.data(), outcome.size());
-  return written == static_cast<ssize_t>(outcome.size()) ? ExitCode::kDone : ExitCode::kOutput;
-}
-
-Lattice read_grid_lattice(const std::string& path, const std::string& name) {
+// What another process has read.
+std::string read_elsewhere(const std::string& what, const std::string& path, const std::string& name) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(path, "open a pipe");
-  std::vector<std::string> words{"raycone", kGridReaderCommand, std::to_string(ends[1]), path, name};
+  std::vector<std::string> words{"raycone", kGridReaderCommand, std::to_string(ends[1]), what, path, name};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -122,7 +202,21 @@ Lattice read_grid_lattice(const std::string& path, const std::string& name) {
   }
   const std::string end = end_of(process);
   if (!end.empty()) throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + end + ")");
-  return lattice_from(path, outcome);
+  return content_of(path, outcome);
 }
+
+}  // namespace
+
+ExitCode run_grid_reader(const std::vector<std::string>& words) {
+  const std::string outcome = outcome_of_reading(words.at(1), words.at(2), words.at(3));
+  const ssize_t written = write(std::stoi(words.at(0)), outcome.data(), outcome.size());
+  return written == static_cast<ssize_t>(outcome.size()) ? ExitCode::kDone : ExitCode::kOutput;
+}
+
+PlacedLattice read_grid_lattice(const std::string& path, const std::string& name) {
+  return lattice_from(path, read_elsewhere(kLatticeWord, path, name));
+}
+
+VolumeFacts read_grid_facts(const std::string& path) { return facts_from(path, read_elsewhere(kFactsWord, path, "")); }
 
 }  // namespace raycone

@@ -20,6 +20,12 @@ std::string InfoListing::entry(const MeshInfo& info, const CostedLattices& coste
   return "";
 }
 
+std::string InfoListing::entry(const VolumeInfo& info) {
+  const bool first = !std::exchange(begun_, true);
+  if (format_ == InfoFormat::kJson) return several_ ? (first ? "[\n" : ",\n") + to_json_item(info) : to_json(info);
+  return (first ? "" : "\n") + info_text(info);
+}
+
 std::string InfoListing::end() {
   if (format_ == InfoFormat::kText || !several_) return "";
   if (format_ == InfoFormat::kJson) return begun_ ? "\n]\n" : "[]\n";

@@ -1,10 +1,11 @@
-// What `raycone info` prints of one mesh or several.
+// What `raycone info` prints of one file or several.
 #pragma once
 
 #include <string>
 
 #include "app/options/info_command.h"
 #include "app/report/info.h"
+#include "app/report/volume_info.h"
 
 namespace raycone {
 
@@ -18,6 +19,8 @@ class InfoListing {
 
   // What is to be printed for the next mesh, and at the end.
   [[nodiscard]] std::string entry(const MeshInfo& info, const CostedLattices& costed, int threads);
+  // Of a file of values, which has no row in a table.
+  [[nodiscard]] std::string entry(const VolumeInfo& info);
   [[nodiscard]] std::string end();
 
  private:

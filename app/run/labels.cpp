@@ -35,20 +35,22 @@ std::span<const std::uint8_t> flags_of(const FieldSamples& samples) { return sam
 
 // Gives the samples inside of `part` their label. Returns whether there are any.
 bool add_part(MeshToEvaluate part, std::int32_t label, LabelledParts& parts, LabelVolume& volume,
-              const Lattice& lattice, const FieldOptions& field, MeshRun& run, std::atomic<std::uint64_t>* done) {
+              const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run, std::atomic<std::uint64_t>* done) {
   const LatticeBlock reach = PartEvaluator::reach(lattice, part, field.rule);
-  if (done) *done += static_cast<std::uint64_t>(whole(lattice).size() - reach.size());
+  if (done) *done += static_cast<std::uint64_t>(whole(lattice.grid).size() - reach.size());
   if (reach.size() == 0) return false;
   const FieldOptions options = PartEvaluator::options_of(field);
   const bool open = !part.edges.empty();
-  const PartEvaluator evaluator = timed(run.report.seconds.prepare, [&] {
+  const bool as_points = !world_order(lattice).has_value();
+  PartEvaluator evaluator = timed(run.report.seconds.prepare, [&] {
     return PartEvaluator(std::move(part), field, static_cast<double>(reach.size()));
   });
+  if (as_points) timed(run.report.seconds.prepare, [&] { evaluator.evaluator().prepare_points(); });
   const double left = static_cast<double>(run.limits().memory()) - memory_in_use();
   FieldSamples samples(options);
   bool found = false;
   timed(run.report.seconds.evaluate, [&] {
-    for_slabs(reach, slab_samples(options, open, left), [&](const LatticeBlock& slab) {
+    for_slabs(reach, slab_samples(options, {open, !lattice.along_axes()}, left), [&](const LatticeBlock& slab) {
       run.report.tally += evaluator.evaluator().evaluate(lattice, slab, samples, done);
       if (!any_inside(flags_of(samples))) return;
       found = true;
@@ -221,12 +223,12 @@ Verification LabelCheck::compare(const std::string& mesh, std::span<const std::i
 
 // --- Lattices -------------------------------------------------------------------------------------------------------
 
-LabelVolume label_lattice(LabelledParts& parts, const Lattice& lattice, const FieldOptions& field, MeshRun& run) {
+LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run) {
   RunReport& report = run.report;
-  check_memory(report.mesh, LabelVolume::bytes(lattice, parts.size()), run.limits().memory());
-  LabelVolume volume(lattice, parts.size());
+  check_memory(report.mesh, LabelVolume::bytes(lattice.grid, parts.size()), run.limits().memory());
+  LabelVolume volume(lattice.grid, parts.size());
   SampleDraw draw(field.verify);
-  draw.offer(lattice, whole(lattice), {});
+  draw.offer(lattice, whole(lattice.grid), {});
   LabelCheck check(draw.samples(), field.rule, parts.first_wins());
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples * parts.size());
   for (std::size_t n = 0; n < parts.size(); ++n) {

@@ -83,7 +83,7 @@ class LabelCheck {
 
 // The labels of all samples of `lattice`. Reports what they took, and verifies them where that is asked for. Throws
 // LimitError, VerificationError, and what reading throws.
-[[nodiscard]] LabelVolume label_lattice(LabelledParts& parts, const Lattice& lattice, const FieldOptions& field,
+[[nodiscard]] LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field,
                                         MeshRun& run);
 
 // The labels of points, batch by batch.

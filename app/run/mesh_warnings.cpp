@@ -61,13 +61,19 @@ Warning weld_collapsed(std::uint64_t faces, double distance) {
   return {"weld-collapsed", counted_as(faces, "face", "faces") + help};
 }
 
-bool should_have_inside(const Box& box, const Lattice& lattice) {
+bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
   for (int axis = 0; axis < 3; ++axis) {
-    const double step = lattice.spacing[axis];
-    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-    const double last = lattice.coordinate(axis, lattice.index_max(axis));
     if (box.lower[axis] == box.upper[axis]) return false;
-    if (first > box.lower[axis] + step || last < box.upper[axis] - step) return false;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 place;
+    for (int axis = 0; axis < 3; ++axis) place[axis] = (corner >> axis & 1) != 0 ? box.upper[axis] : box.lower[axis];
+    const Vec3 indices = indices_of(lattice, place);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto first = static_cast<double>(lattice.grid.index_min[static_cast<std::size_t>(axis)]);
+      const auto last = static_cast<double>(lattice.grid.index_max(axis));
+      if (!(indices[axis] >= first - 1 && indices[axis] <= last + 1)) return false;
+    }
   }
   return true;
 }

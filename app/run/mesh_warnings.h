@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
@@ -27,7 +27,7 @@ namespace raycone {
 
 // Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
 // own, is not flat), and the lattice reaches around it but for a voxel.
-[[nodiscard]] bool should_have_inside(const Box& box, const Lattice& lattice);
+[[nodiscard]] bool should_have_inside(const Box& box, const PlacedLattice& lattice);
 
 // `empty`
 [[nodiscard]] Warning nothing_inside(const Rule& rule);

@@ -47,11 +47,11 @@ PartEvaluator::PartEvaluator(MeshToEvaluate part, const FieldOptions& options, d
       bounded_(is_bounded(part, options.rule)),
       evaluator_(std::move(part.mesh), options_of(options), &part.edges, samples) {}
 
-LatticeBlock PartEvaluator::reach(const Lattice& lattice, const MeshToEvaluate& part, const Rule& rule) {
-  LatticeBlock block = whole(lattice);
-  if (!is_bounded(part, rule)) return block;
+LatticeBlock PartEvaluator::reach(const PlacedLattice& lattice, const MeshToEvaluate& part, const Rule& rule) {
+  LatticeBlock block = whole(lattice.grid);
+  if (!is_bounded(part, rule) || !lattice.along_axes()) return block;
   const Box box = bounding_box(part.mesh);
-  for (int axis = 0; axis < 3; ++axis) restrict(block, lattice, axis, box.lower[axis], box.upper[axis]);
+  for (int axis = 0; axis < 3; ++axis) restrict(block, lattice.grid, axis, box.lower[axis], box.upper[axis]);
   return block;
 }
 

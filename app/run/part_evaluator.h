@@ -10,7 +10,7 @@
 #include "app/run/field_evaluator.h"
 #include "app/run/mesh_input.h"
 #include "core/data/interval.h"
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 
 namespace raycone {
 
@@ -19,8 +19,9 @@ class PartEvaluator {
   // `samples`: about how many it is for.
   PartEvaluator(MeshToEvaluate part, const FieldOptions& options, double samples);
 
-  // The samples of `lattice` that may be inside: those of the part's box where it is closed, and outside is outside.
-  [[nodiscard]] static LatticeBlock reach(const Lattice& lattice, const MeshToEvaluate& part, const Rule& rule);
+  // The samples of `lattice` that may be inside: those of the part's box where it is closed, outside is outside, and the
+  // lattice lies along the axes.
+  [[nodiscard]] static LatticeBlock reach(const PlacedLattice& lattice, const MeshToEvaluate& part, const Rule& rule);
 
   // What is asked of the part: whether the rule holds.
   [[nodiscard]] static FieldOptions options_of(const FieldOptions& options);

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "app/process/messages.h"
+#include "app/process/usage_error.h"
 #include "app/report/info.h"
 #include "app/run/info_listing.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_input.h"
 #include "app/run/mesh_marks.h"
 #include "app/run/requirements.h"
+#include "app/run/volume_input.h"
 #include "app/run/written_files.h"
 #include "core/data/warning.h"
 #include "core/intersections/self_intersections.h"
@@ -42,6 +44,9 @@ CostedLattices costed_lattices(const Box& bounds) {
   return costed;
 }
 
+// Who names a mesh format means a mesh.
+bool is_values(const MeshOptions& options) { return !options.reading.format && holds_values(options.path); }
+
 // What is made of one mesh: printed, required, marked.
 class InfoRun {
  public:
@@ -53,8 +58,20 @@ class InfoRun {
     if (command.mark) mark_.emplace(*command.mark, command.no_clobber);
   }
 
-  // Prints the mesh. Returns whether it is what is required.
+  // Prints the mesh, or the file of values. Returns whether it is what is required.
   bool describe(const MeshOptions& options) {
+    if (!is_values(options)) return describe_mesh(options);
+    print(listing_.entry({options.path, facts_of_file(options.path)}));
+    return true;
+  }
+
+  void finish() {
+    print(listing_.end());
+    output_.commit();
+  }
+
+ private:
+  bool describe_mesh(const MeshOptions& options) {
     const std::vector<WrittenFile> written = files_written(command_);
     MeshFile file = read_mesh_file(options, limits_).file;
     for (const FileRead& companion : file.companions) refuse_to_replace_input(written, {companion.path});
@@ -79,12 +96,6 @@ class InfoRun {
                  unmet_requirements(command_.required, mesh, info.statistics, input.defects, intersections));
   }
 
-  void finish() {
-    print(listing_.end());
-    output_.commit();
-  }
-
- private:
   [[nodiscard]] bool requires_embedded() const {
     return std::ranges::count(command_.required, Requirement::kEmbedded) > 0;
   }
@@ -146,6 +157,10 @@ ExitCode run_info(const InfoCommand& command, const RunLimits& limits) {
   std::vector<std::string> paths;
   for (const MeshOptions& mesh : command.meshes) paths.push_back(mesh.path);
   refuse_to_replace_input(files_written(command), paths);
+  for (const MeshOptions& mesh : command.meshes) {
+    if (command.for_meshes.empty() || !is_values(mesh)) continue;
+    throw UsageError(command.for_meshes + ": has no effect on " + mesh.path + ", which is no mesh");
+  }
   InfoRun run(command, limits);
   ExitCode worst = ExitCode::kDone;
   for (const MeshOptions& mesh : command.meshes) worst = std::max(worst, status_of(run, mesh, limits));

@@ -18,7 +18,7 @@
 #include "app/report/json.h"
 #include "app/run/disk_space.h"
 #include "app/run/field_run.h"
-#include "app/run/grid_reader.h"
+#include "app/run/grid_lattice.h"
 #include "app/run/labels.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
@@ -26,50 +26,43 @@
 #include "app/run/slabs.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
-#include "io/fields/read_image_lattice.h"
-#include "io/fields/read_npz_lattice.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
 namespace {
 
 // A level set has one voxel size.
-void check_cubic(const Vec3& spacing) {
-  constexpr double kRounding = 1e-12;  // of sides divided by counts
-  const auto [least, most] = std::minmax({spacing.x, spacing.y, spacing.z});
-  if (most - least <= kRounding * most) return;
-  char message[160];
+void check_cubic(const PlacedLattice& lattice) {
+  const bool turned = !world_order(lattice).has_value();
+  if (lattice.is_cubic(turned ? 1e-5 : 1e-12)) return;  // of matrices in 32 bits; of sides divided by counts
+  const Vec3& spacing = lattice.grid.spacing;
+  char message[200];
   std::snprintf(message, sizeof message,
-                "--field sdf: voxels of %g x %g x %g, expected cubic ones (--resolution N, --voxel-size H)", spacing.x,
-                spacing.y, spacing.z);
+                "--field sdf: voxels of %g x %g x %g%s, expected cubic ones (--resolution N, --voxel-size H)",
+                spacing.x, spacing.y, spacing.z,
+                lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles");
   throw UsageError(message);
 }
 
-Lattice lattice_of_grid(const GridReference& grid) {
-  if (is_image(grid.path)) return read_image_lattice(grid.path);
-  return is_npz(grid.path) ? read_npz_lattice(grid.path) : read_grid_lattice(grid.path, grid.name);
-}
-
-Lattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
+PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
-  const Lattice lattice =
-      grid ? lattice_of_grid(*grid) : choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings);
-  if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
+  const auto chosen = [&] { return choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings); };
+  const PlacedLattice lattice = grid ? lattice_of_grid(*grid) : PlacedLattice(chosen());
+  if (command.field.has(Field::kDistance)) check_cubic(lattice);
   return lattice;
 }
 
 // A band in voxels that all samples are in: as wide as the box of mesh and lattice is long, from corner to corner.
-double band_of_all(const Box& mesh_box, const Lattice& lattice) {
+double band_of_all(const Box& mesh_box, const PlacedLattice& lattice) {
+  const Box box = box_of(lattice);
   Vec3 sides;
   for (int axis = 0; axis < 3; ++axis) {
-    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-    const double last = lattice.coordinate(axis, lattice.index_max(axis));
-    sides[axis] = std::max(mesh_box.upper[axis], last) - std::min(mesh_box.lower[axis], first);
+    sides[axis] = std::max(mesh_box.upper[axis], box.upper[axis]) - std::min(mesh_box.lower[axis], box.lower[axis]);
   }
   constexpr double kLargest = std::numeric_limits<double>::max();
   constexpr double kMore = 1 + 1e-9;  // so that rounding cuts nothing off
   const double width = std::min(std::hypot(sides.x, sides.y, sides.z), kLargest / 2) * kMore;
-  return std::min(width / lattice.spacing.x, kLargest);
+  return std::min(width / lattice.grid.spacing.x, kLargest);
 }
 
 // The slabs of a lattice, one after the other.
@@ -95,8 +88,9 @@ class Slabs {
 };
 
 // Loading the module for VDB maps stacks and other memory without touching it.
-std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, OutputFile& output, const Lattice& lattice,
-                                           const OutputDescription& description, const RunLimits& limits) {
+std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, OutputFile& output,
+                                           const PlacedLattice& lattice, const OutputDescription& description,
+                                           const RunLimits& limits) {
   constexpr double kMappedByModule = 160.0 * 1024 * 1024;
   constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
   const bool loads = command.encoding.format == FieldFormat::kVdb;
@@ -107,20 +101,21 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
   return writer;
 }
 
+SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
+
 // Refuses lattices that cannot fit, before any work on them.
 std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRun& run) {
   const RunReport& report = run.report;
   const RunLimits& limits = run.limits();
-  const Lattice& lattice = *report.lattice;
+  const PlacedLattice& lattice = *report.lattice;
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
-  const double of_writer = writer_memory(lattice, format, description);
+  const double of_writer = writer_memory(lattice.grid, format, description);
   check_memory(report.mesh, of_writer, limits.memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);
-  const LatticeBlock smallest = Slabs(lattice, *writer, 1).first();
-  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, report.exterior_edges > 0),
-               limits.memory());
+  const LatticeBlock smallest = Slabs(lattice.grid, *writer, 1).first();
+  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, slab_kind(report)), limits.memory());
   return writer;
 }
 
@@ -128,14 +123,14 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
 Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                const RunLimits& limits) {
   const OutputDescription description = description_of(report, command.field, command.encoding);
-  const double of_writer = writer_memory(*report.lattice, command.encoding.format, description);
+  const double of_writer = writer_memory(report.lattice->grid, command.encoding.format, description);
   const double left = static_cast<double>(limits.memory()) - memory_in_use() - of_writer;
-  return {*report.lattice, writer, slab_samples(command.field, report.exterior_edges > 0, left)};
+  return {report.lattice->grid, writer, slab_samples(command.field, slab_kind(report), left)};
 }
 
 void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* labels, LatticeWriter& writer,
                       const SlabObserver& observe, MeshRun& run) {
-  const Lattice& lattice = *run.report.lattice;
+  const PlacedLattice& lattice = *run.report.lattice;
   std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
     fields.evaluate(lattice, slab, done);
@@ -175,20 +170,23 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   load(command, run, loaded);
   report.lattice = lattice_for(command, loaded.box, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
-  report.samples = sample_count(*report.lattice);
+  report.samples = sample_count(report.lattice->grid);
   if (std::isinf(command.field.band)) command.field.band = band_of_all(loaded.box, *report.lattice);
   run.print_warnings();
 
+  const bool as_points = !world_order(*report.lattice).has_value();
+  if (as_points) check_points_memory(command.mesh, report.faces, command.field, limits);
   std::optional<LabelVolume> labels;
   if (loaded.parts) labels = label_lattice(*loaded.parts, *report.lattice, command.field, run);
   if (command.field.labels_only()) command.field.verify = 0;  // done
   const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
   FieldRun fields(run, std::move(loaded.mesh), command.field, static_cast<double>(report.samples));
+  if (as_points) fields.prepare_points();
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
                    run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
-  fields.finish(command.field.band * report.lattice->spacing.x);
+  fields.finish(command.field.band * report.lattice->grid.spacing.x);
   timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
   if (names) write_all(*names, label_table_json(report));
   return run.finish();

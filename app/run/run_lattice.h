@@ -7,12 +7,12 @@
 #include "app/options/lattice_command.h"
 #include "app/report/run_report.h"
 #include "app/run/run_limits.h"
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 
 namespace raycone {
 
 // Told of each slab, in turn, with the winding numbers of its samples: x fastest, then y, then z.
-using SlabObserver = std::function<void(const Lattice&, const LatticeBlock&, std::span<const double>)>;
+using SlabObserver = std::function<void(const PlacedLattice&, const LatticeBlock&, std::span<const double>)>;
 
 // Evaluates and writes the lattice within `limits`; the output is complete when this returns. Warnings about the mesh
 // are printed, the report is not. Throws UsageError, InputError, OutputError, LimitError, VerificationError.

@@ -45,13 +45,6 @@ void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader,
   }
 }
 
-// Refuses meshes that cannot fit, before any work on them.
-void check_points_memory(const PointsCommand& command, std::uint64_t triangles, const RunLimits& limits) {
-  constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
-  if (command.field.engine != RayEngine::kScan) return;
-  check_memory(command.mesh.path, kPerTriangle * static_cast<double>(triangles), limits.memory());
-}
-
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
 bool draws_single(const PointsCommand& command) {
   return command.sample && command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
@@ -91,7 +84,7 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
                    [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
   }
 
-  check_points_memory(command, report.faces, limits);
+  check_points_memory(command.mesh, report.faces, command.field, limits);
   constexpr double kUnknown = 1e6;  // samples of a stream
   const auto points = static_cast<double>(reader->size().value_or(kUnknown));
   std::optional<PointLabels> labels;

@@ -12,7 +12,7 @@
 #include "app/options/field_options.h"
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
-#include "app/run/grid_reader.h"
+#include "app/run/grid_lattice.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
 #include "app/run/written_files.h"
@@ -43,8 +43,7 @@ Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh,
     const std::int64_t around = std::holds_alternative<VoxelPadding>(request->padding) ? 0 : 1;
     return with_layers(lattice, around + layers_of(command, lattice.spacing));
   }
-  const GridReference& grid = std::get<GridReference>(command.lattice);
-  const Lattice lattice = read_grid_lattice(grid.path, grid.name);
+  const Lattice lattice = world_lattice_of_grid(std::get<GridReference>(command.lattice), "surface");
   return with_layers(lattice, 1 + layers_of(command, lattice.spacing));
 }
 
@@ -87,12 +86,13 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   MeshRun run(command.mesh, command.output, command.run, limits);
   RunReport& report = run.report;
   TriangleMesh mesh = run.load_mesh(files_written(command));
-  report.lattice = surface_lattice(command, mesh, report.warnings);
+  const Lattice lattice = surface_lattice(command, mesh, report.warnings);
+  report.lattice = lattice;
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
-  report.samples = sample_count(*report.lattice);
+  report.samples = sample_count(lattice);
   run.print_warnings();
 
-  check_memory(report.mesh, node_set_bytes(*report.lattice), limits.memory());
+  check_memory(report.mesh, node_set_bytes(lattice), limits.memory());
   const WindingNumberEvaluator evaluator = timed(report.seconds.prepare, [&] {
     const std::vector<ExteriorEdge> edges = run.take_edges();
     return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, &edges);
@@ -100,11 +100,11 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   report.exterior_edges = evaluator.exterior_edges();
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   SurfaceMesh surface = timed(report.seconds.evaluate, [&] {
-    NodeSet inside = nodes_inside(evaluator, command.rule, *report.lattice, done);
+    NodeSet inside = nodes_inside(evaluator, command.rule, lattice, done);
     if (command.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), command.thickness);
     check_inside(inside, command);
     SurfaceMesh made = surface_of(mesh, evaluator, inside, command);
-    report.surface = report_of(made, measure_surface(made, mesh, *report.lattice, command.thickness));
+    report.surface = report_of(made, measure_surface(made, mesh, lattice, command.thickness));
     return made;
   });
   for (std::int32_t& source : surface.sources) {

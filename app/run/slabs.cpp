@@ -49,10 +49,11 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
   return 0.0;
 }
 
-double bytes_per_sample(const FieldOptions& options, bool open) {
-  const bool caps = open && (options.rule_only() || options.tolerance > 0.0);
+double bytes_per_sample(const FieldOptions& options, SlabKind kind) {
+  const bool caps = kind.open && (options.rule_only() || options.tolerance > 0.0);
   const double of_caps = caps ? sizeof(double) : 0.0;  // their crossings
-  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps;
+  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps +
+         (kind.turned ? sizeof(Vec3) : 0.0);
 }
 
 }  // namespace
@@ -70,13 +71,13 @@ LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment,
   return slab;
 }
 
-std::int64_t slab_samples(const FieldOptions& options, bool open, double left) {
-  const double samples = left / 3 / bytes_per_sample(options, open);
+std::int64_t slab_samples(const FieldOptions& options, SlabKind kind, double left) {
+  const double samples = left / 3 / bytes_per_sample(options, kind);
   return static_cast<std::int64_t>(std::clamp(samples, 1.0, static_cast<double>(kSlabSamples)));
 }
 
-double slab_memory(const LatticeBlock& slab, const FieldOptions& options, bool open) {
-  return bytes_per_sample(options, open) * static_cast<double>(slab.size());
+double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKind kind) {
+  return bytes_per_sample(options, kind) * static_cast<double>(slab.size());
 }
 
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {

@@ -17,11 +17,17 @@ inline constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
 [[nodiscard]] LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
                                      std::int64_t samples = kSlabSamples);
 
-// Samples of slabs that take a third of `left` bytes, at most kSlabSamples. `open`: the mesh has boundary edges.
-[[nodiscard]] std::int64_t slab_samples(const FieldOptions& options, bool open, double left);
+// What the memory of a slab depends on, beside its samples and their fields.
+struct SlabKind {
+  bool open = false;    // the mesh has boundary edges
+  bool turned = false;  // the lattice is not along the axes: its numbers are sorted, or its samples' places kept
+};
+
+// Samples of slabs that take a third of `left` bytes, at most kSlabSamples.
+[[nodiscard]] std::int64_t slab_samples(const FieldOptions& options, SlabKind kind, double left);
 
 // Bytes that a slab takes: its numbers, and what is needed to find and to write them.
-[[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options, bool open);
+[[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKind kind);
 
 // Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding
 // numbers of an open mesh and their error bounds differ everywhere; all else only at a surface.

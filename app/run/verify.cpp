@@ -266,12 +266,13 @@ void SampleDraw::keep(const DrawnSample& sample) {
   std::ranges::push_heap(samples_, by_rank);
 }
 
-void SampleDraw::offer(const Lattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers) {
+void SampleDraw::offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers) {
   if (count_ == 0) return;
   const auto layer = [&](std::size_t axis, std::int64_t index) {
-    return static_cast<std::uint64_t>(index - lattice.index_min[axis]);
+    return static_cast<std::uint64_t>(index - lattice.grid.index_min[axis]);
   };
-  const auto nx = static_cast<std::uint64_t>(lattice.counts[0]), ny = static_cast<std::uint64_t>(lattice.counts[1]);
+  const auto nx = static_cast<std::uint64_t>(lattice.grid.counts[0]);
+  const auto ny = static_cast<std::uint64_t>(lattice.grid.counts[1]);
   std::size_t n = 0;
   for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
     for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
@@ -279,8 +280,7 @@ void SampleDraw::offer(const Lattice& lattice, const LatticeBlock& block, const 
         const std::uint64_t number = (layer(2, k) * ny + layer(1, j)) * nx + layer(0, i);
         const std::uint64_t rank = rank_of(number);
         if (!takes(rank)) continue;
-        keep(drawn(number, rank, {lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)},
-                   numbers, n));
+        keep(drawn(number, rank, lattice.position(i, j, k), numbers, n));
       }
     }
   }

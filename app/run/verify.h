@@ -14,7 +14,7 @@
 #include "app/report/run_report.h"
 #include "app/run/field_evaluator.h"
 #include "app/run/fields.h"
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
@@ -41,7 +41,7 @@ class SampleDraw {
   // At most `count` of them; 0 draws none.
   explicit SampleDraw(std::uint64_t count) : count_(count) {}
 
-  void offer(const Lattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers);
+  void offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers);
   // The points behind those offered before.
   void offer(std::span<const Vec3> points, const SampleNumbers& numbers);
 

@@ -42,7 +42,7 @@ std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const PlacedLattice& lattice,
                                                    const OutputDescription& description) {
   switch (format) {
     case FieldFormat::kVdb:

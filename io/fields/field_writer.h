@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 #include "core/data/vec3.h"
 #include "io/files/output_file.h"
 
@@ -121,7 +122,7 @@ class LatticeWriter {
 // below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY, NRRD
 // and NIfTI hold one field; the last two no vectors, and like VTI no halves.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
-                                                                 const Lattice& lattice,
+                                                                 const PlacedLattice& lattice,
                                                                  const OutputDescription& description);
 
 // Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/data/lattice.h"
+#include "core/data/placed_lattice.h"
 
 namespace raycone {
 
@@ -11,8 +11,11 @@ namespace raycone {
 // read.
 [[nodiscard]] bool is_image(const std::string& path);
 
+// Which of the two such a file is. Throws InputError where it cannot be read.
+[[nodiscard]] bool is_nrrd(const std::string& path);
+
 // Its voxels' middles, in right, anterior, superior; index 0 is the first one. Throws InputError where the head cannot
-// be read, NotAvailable where the volume's axes are not those of the world.
-[[nodiscard]] Lattice read_image_lattice(const std::string& path);
+// be read, or does not say where the voxels lie.
+[[nodiscard]] PlacedLattice read_image_lattice(const std::string& path);
 
 }  // namespace raycone

@@ -83,27 +83,33 @@ bool is_npz(const std::string& path) {
   return file && std::string_view(first.data(), first.size()) == "PK\x03\x04";
 }
 
-Lattice read_npz_lattice(const std::string& path) {
+bool holds_arrays(const std::string& path) {
+  try {
+    const ZipReader archive(path);
+    return std::ranges::any_of(archive.members(), [](const auto& member) { return member.name.ends_with(".npy"); });
+  } catch (const InputError&) {
+    return false;  // whoever reads it next says why
+  }
+}
+
+PlacedLattice read_npz_lattice(const std::string& path) {
   const ZipReader archive(path);
   const auto origin = read_numbers<double, 3>(archive, path, "origin", "<f8");
   const auto spacing = read_numbers<double, 3>(archive, path, "spacing", "<f8");
   const auto direction = read_numbers<double, 9>(archive, path, "direction", "<f8");
   const auto index_min = read_numbers<std::int64_t, 3>(archive, path, "index_min", "<i8");
-  if (direction != std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}) {
-    fail(path, "has a lattice that is not along the axes, expected one of direction 1");
-  }
-  Lattice lattice;
-  lattice.counts = read_counts(archive, path);
-  lattice.index_min = index_min;
+  std::array<Vec3, 3> steps;
   for (std::size_t a = 0; a < 3; ++a) {
-    const int axis = static_cast<int>(a);
-    lattice.origin[axis] = origin[a];
-    lattice.spacing[axis] = spacing[a];
-    const bool valid = std::isfinite(origin[a]) && std::isfinite(spacing[a]) && spacing[a] > 0.0 &&
-                       std::abs(static_cast<double>(index_min[a])) <= kMostIndex && lattice.counts[a] >= 1;
-    if (!valid || !std::isfinite(lattice.coordinate(axis, lattice.index_max(axis)))) {
-      fail(path, std::string("has no valid lattice along ") + "xyz"[axis]);
+    if (!(spacing[a] > 0.0) || std::abs(static_cast<double>(index_min[a])) > kMostIndex) {
+      fail(path, std::string("has no valid lattice along ") + "ijk"[a] + ", expected a positive spacing and an index");
     }
+    steps[a] = spacing[a] * Vec3{direction[a], direction[3 + a], direction[6 + a]};
+  }
+  const std::array<std::int64_t, 3> counts = read_counts(archive, path);
+  if (*std::ranges::min_element(counts) < 1) fail(path, "has a lattice without samples, expected at least one");
+  const PlacedLattice lattice({origin[0], origin[1], origin[2]}, steps, index_min, counts);
+  if (!lattice.is_finite() || !lattice.spans_space()) {
+    fail(path, "has no valid lattice, expected finite places and axes in three directions");
   }
   return lattice;
 }

@@ -124,15 +124,18 @@ class RowWriter {
 
 class CsvLatticeWriter final : public LatticeWriter {
  public:
-  CsvLatticeWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description)
-      : output_(output), lattice_(lattice), rows_(output, 6 + description.components()) {
+  CsvLatticeWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description)
+      : output_(output),
+        lattice_(lattice),
+        turned_(!lattice.along_axes()),
+        rows_(output, 6 + description.components()) {
     const std::string header = "i,j,k,x,y,z," + columns_of(description);
     output_.write(header.data(), header.size());
     // The texts of one axis are the same in every row; printing them once makes rows three times as fast.
-    for (std::int64_t n = 0; n < lattice.counts[0]; ++n) {
-      const std::int64_t i = lattice.index_min[0] + n;
+    for (std::int64_t n = 0; n < lattice.grid.counts[0]; ++n) {
+      const std::int64_t i = lattice.grid.index_min[0] + n;
       i_texts_.push_back(joined(i));
-      x_texts_.push_back(joined(lattice.coordinate(0, i)));
+      if (!turned_) x_texts_.push_back(joined(lattice.grid.coordinate(0, i)));
     }
   }
 
@@ -157,19 +160,26 @@ class CsvLatticeWriter final : public LatticeWriter {
       const std::int64_t j = block.first[1] + line % block.counts[1];
       const std::int64_t k = block.first[2] + line / block.counts[1];
       const std::string jk = joined(j, k);
-      const std::string yz = joined(lattice_.coordinate(1, j), lattice_.coordinate(2, k));
+      const std::string yz = turned_ ? "" : joined(lattice_.grid.coordinate(1, j), lattice_.grid.coordinate(2, k));
       std::size_t i = begin % length;
       for (const std::size_t line_end = std::min(end, begin - i + length); begin < line_end; ++begin, ++i) {
         at = print(print(at, i_texts_[i]), jk);
-        at = print(print(at, x_texts_[i]), yz);
+        at = turned_ ? print_place(at, block, begin) : print(print(at, x_texts_[i]), yz);
         at = print(at, fields, begin);
       }
     }
     return at;
   }
 
+  char* print_place(char* at, const LatticeBlock& block, std::size_t n) const {
+    at = print(at, lattice_.position(block, n));
+    *at++ = ',';
+    return at;
+  }
+
   OutputFile& output_;
-  Lattice lattice_;
+  PlacedLattice lattice_;
+  bool turned_;                       // each coordinate may depend on all indices
   std::vector<std::string> i_texts_;  // of each sample along x, with the comma behind it
   std::vector<std::string> x_texts_;
   RowWriter rows_;
@@ -206,7 +216,7 @@ class CsvPointWriter final : public PointWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_csv_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_csv_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
   return std::make_unique<CsvLatticeWriter>(output, lattice, description);
 }

@@ -19,6 +19,7 @@
 
 #include "io/fields/array_elements.h"
 #include "io/fields/format_writers.h"
+#include "io/fields/quaternion.h"
 #include "io/files/file_error.h"
 #include "io/files/gzip_writer.h"
 
@@ -35,12 +36,9 @@ Element element_of(const OutputDescription& description) {
   return description.is(Precision::kDouble) ? Element::kDouble : Element::kFloat;
 }
 
-Vec3 first_sample(const Lattice& lattice) {
-  Vec3 place;
-  for (int axis = 0; axis < 3; ++axis) {
-    place[axis] = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-  }
-  return place;
+Vec3 first_sample(const PlacedLattice& lattice) {
+  const auto [i, j, k] = lattice.grid.index_min;
+  return lattice.position(i, j, k);
 }
 
 // --- NRRD -----------------------------------------------------------------------------------------------------------
@@ -69,17 +67,16 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-std::string nrrd_head(const Lattice& lattice, const OutputDescription& description) {
+std::string nrrd_head(const PlacedLattice& lattice, const OutputDescription& description) {
   static constexpr std::array kTypes{"uint8", "float", "double", "int32"};
-  const Vec3& s = lattice.spacing;
+  const auto& [i, j, k] = lattice.steps;
   const FieldDescription& field = description.fields.front();
   std::string head =
       "NRRD0005\n# Complete NRRD file format specification at: http://teem.sourceforge.net/nrrd/format.html\n";
   head += std::string("type: ") + kTypes[static_cast<std::size_t>(element_of(description))] + '\n';
   head += "dimension: 3\nspace: right-anterior-superior\nsizes:";
-  for (const std::int64_t count : lattice.counts) head += ' ' + std::to_string(count);
-  head += "\nspace directions: " + vector_text({s.x, 0, 0}) + ' ' + vector_text({0, s.y, 0}) + ' ' +
-          vector_text({0, 0, s.z}) + '\n';
+  for (const std::int64_t count : lattice.grid.counts) head += ' ' + std::to_string(count);
+  head += "\nspace directions: " + vector_text(i) + ' ' + vector_text(j) + ' ' + vector_text(k) + '\n';
   head += "kinds: domain domain domain\nendian: little\n";
   head += std::string("encoding: ") + (description.compress ? "gzip" : "raw") + '\n';
   head += "space origin: " + vector_text(first_sample(lattice)) + '\n';
@@ -90,6 +87,8 @@ std::string nrrd_head(const Lattice& lattice, const OutputDescription& descripti
 }
 
 // --- NIfTI-1 --------------------------------------------------------------------------------------------------------
+
+constexpr std::int16_t kScannerSpace = 1;
 
 // The 348 bytes of the head, and four that say that no extension follows.
 class NiftiHead {
@@ -109,51 +108,66 @@ class NiftiHead {
   std::string bytes_;
 };
 
-void check_nifti(const Lattice& lattice, const std::string& name) {
+// Whether it is finite in 32 bits.
+bool fits_float(const Vec3& v) {
+  const auto fits = [](double number) { return std::isfinite(static_cast<float>(number)); };
+  return fits(v.x) && fits(v.y) && fits(v.z);
+}
+
+void check_nifti(const PlacedLattice& lattice, const std::string& name) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int16_t>::max();
-  for (const std::int64_t count : lattice.counts) {
+  for (const std::int64_t count : lattice.grid.counts) {
     if (count <= kMost) continue;
     throw OutputError(name + ": " + std::to_string(count) +
                       " samples along an axis do not fit in the 16 bits of NIfTI-1");
   }
-  const Vec3 first = first_sample(lattice);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto spacing = static_cast<float>(lattice.spacing[axis]);
-    if (std::isfinite(spacing) && spacing >= std::numeric_limits<float>::min() &&
-        std::isfinite(static_cast<float>(first[axis]))) {
-      continue;
-    }
+  const Vec3& spacing = lattice.grid.spacing;
+  const auto least = static_cast<float>(std::min({spacing.x, spacing.y, spacing.z}));
+  if (!fits_float(spacing) || !fits_float(first_sample(lattice)) || least < std::numeric_limits<float>::min()) {
     throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
   }
 }
 
-std::string nifti_head(const Lattice& lattice, const OutputDescription& description) {
+// The place of the voxels as a rotation, which programs read that know no matrices; nothing where it is none.
+void put_rotation(NiftiHead& head, const PlacedLattice& lattice) {
+  constexpr double kRounding = 1e-5;  // of matrices in 32 bits, which some programs also compute in these
+  std::array<Vec3, 3> columns = lattice.units();
+  const bool mirrored = dot(columns[0], cross(columns[1], columns[2])) < 0.0;
+  head.put<float>(76, mirrored ? -1.0F : 1.0F);
+  if (!lattice.is_orthogonal(kRounding)) return;
+  if (mirrored) columns[2] = -1.0 * columns[2];
+  const std::array<float, 3> parts = stored_parts(quaternion_of(columns));
+  const Vec3 first = first_sample(lattice);
+  head.put(252, kScannerSpace);
+  for (std::size_t a = 0; a < 3; ++a) {
+    head.put(256 + 4 * a, parts[a]);
+    head.put(268 + 4 * a, static_cast<float>(first[static_cast<int>(a)]));
+  }
+}
+
+std::string nifti_head(const PlacedLattice& lattice, const OutputDescription& description) {
   // Offsets are those of nifti1.h.
   static constexpr std::array<std::pair<int, int>, 4> kTypes{{{2, 8}, {16, 32}, {64, 64}, {8, 32}}};  // code, bits
-  constexpr std::int16_t kScannerSpace = 1;
   const auto [code, bits] = kTypes[static_cast<std::size_t>(element_of(description))];
   const Vec3 first = first_sample(lattice);
   NiftiHead head;
   head.put<std::int32_t>(0, 348);
   head.put<std::int16_t>(40, 3);
   for (std::size_t n = 1; n < 8; ++n) {
-    head.put<std::int16_t>(40 + 2 * n, static_cast<std::int16_t>(n <= 3 ? lattice.counts[n - 1] : 1));
+    head.put<std::int16_t>(40 + 2 * n, static_cast<std::int16_t>(n <= 3 ? lattice.grid.counts[n - 1] : 1));
   }
   head.put<std::int16_t>(70, static_cast<std::int16_t>(code));
   head.put<std::int16_t>(72, static_cast<std::int16_t>(bits));
-  head.put<float>(76, 1.0F);  // qfac: not mirrored
   head.put<float>(108, 352.0F);
   head.put<float>(112, 1.0F);  // values are as stored
   head.put_text(148, 80, std::string("raycone ") + RAYCONE_VERSION + ' ' + description.fields.front().name);
-  head.put(252, kScannerSpace);  // the quaternion is that of no rotation
   head.put(254, kScannerSpace);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const auto spacing = static_cast<float>(lattice.spacing[axis]), place = static_cast<float>(first[axis]);
-    head.put(80 + 4 * a, spacing);
-    head.put(268 + 4 * a, place);
-    head.put(280 + 16 * a + 4 * a, spacing);
-    head.put(280 + 16 * a + 12, place);
+  put_rotation(head, lattice);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    head.put(80 + 4 * a, static_cast<float>(lattice.grid.spacing[axis]));
+    for (std::size_t n = 0; n < 3; ++n) head.put(280 + 16 * a + 4 * n, static_cast<float>(lattice.steps[n][axis]));
+    head.put(280 + 16 * a + 12, static_cast<float>(first[axis]));
   }
   head.put_text(344, 4, "n+1");
   return head.bytes();
@@ -200,13 +214,13 @@ void check_fields(const OutputDescription& description) {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_nrrd_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_nrrd_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                         const OutputDescription& description) {
   check_fields(description);
   return std::make_unique<ImageWriter>(output, description, nrrd_head(lattice, description), false);
 }
 
-std::unique_ptr<LatticeWriter> make_nifti_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_nifti_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                          const OutputDescription& description) {
   check_fields(description);
   check_nifti(lattice, output.name());

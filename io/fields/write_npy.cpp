@@ -154,10 +154,10 @@ class NpyPointWriter final : public PointWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
   if (description.fields.size() != 1) throw std::logic_error("NPY holds one field of a lattice");
-  return std::make_unique<NpyLatticeWriter>(output, lattice, description);
+  return std::make_unique<NpyLatticeWriter>(output, lattice.grid, description);
 }
 
 void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values) {

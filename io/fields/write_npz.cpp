@@ -90,35 +90,35 @@ void append(std::vector<NpzArray>& arrays, std::vector<NpzArray> more) {
 // --- Lattices -------------------------------------------------------------------------------------------------------
 
 // The lattice's arrays, behind those of the fields.
-std::vector<NpzArray> arrays_of(const Lattice& lattice, bool packed) {
+std::vector<NpzArray> arrays_of(const PlacedLattice& lattice, bool packed) {
   std::vector<NpzArray> arrays;
-  if (packed) arrays.push_back(small_array("inside_shape", "<i8", "(3,)", lattice.counts));
+  if (packed) arrays.push_back(small_array("inside_shape", "<i8", "(3,)", lattice.grid.counts));
   arrays.push_back(small_array("origin", lattice.origin));
-  arrays.push_back(small_array("spacing", lattice.spacing));
-  arrays.push_back(small_array("index_min", "<i8", "(3,)", lattice.index_min));
-  arrays.push_back(small_array("direction", "<f8", "(3, 3)", std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  arrays.push_back(small_array("spacing", lattice.grid.spacing));
+  arrays.push_back(small_array("index_min", "<i8", "(3,)", lattice.grid.index_min));
+  arrays.push_back(small_array("direction", "<f8", "(3, 3)", lattice.direction()));
   return arrays;
 }
 
 class NpzLatticeWriter final : public LatticeWriter {
  public:
-  NpzLatticeWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description)
-      : slab_axis_(array_slab_axis(lattice, output.seekable())) {
+  NpzLatticeWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description)
+      : slab_axis_(array_slab_axis(lattice.grid, output.seekable())) {
     const Precision precision = description.precision.value_or(Precision::kSingle);
-    const auto samples = static_cast<std::uint64_t>(whole(lattice).size());
+    const auto samples = static_cast<std::uint64_t>(whole(lattice.grid).size());
     bool packed = false;
     for (const FieldDescription& field : description.fields) {
       Column& column = columns_.emplace_back();
       if (is_packed(field, description)) {
         packed = true;
-        column.bits.emplace(lattice);
+        column.bits.emplace(lattice.grid);
         arrays_.push_back(packed_array(field, samples));
         continue;
       }
       auto elements = make_array_elements(field, precision, output.name());
-      const std::string header = npy_header(elements->descriptor(), shape_of(lattice, field.components()));
+      const std::string header = npy_header(elements->descriptor(), shape_of(lattice.grid, field.components()));
       arrays_.push_back({array_name(field), header, samples * elements->size()});
-      column.array.emplace(lattice, std::move(elements));
+      column.array.emplace(lattice.grid, std::move(elements));
     }
     append(arrays_, arrays_of(lattice, packed));
     append(arrays_, arrays_about(description));
@@ -272,7 +272,7 @@ class NpzPointWriter final : public PointWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_npz_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_npz_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
   return std::make_unique<NpzLatticeWriter>(output, lattice, description);
 }

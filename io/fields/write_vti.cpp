@@ -45,6 +45,14 @@ std::string extent_of(const Lattice& lattice) {
   return text;
 }
 
+// The attribute, which VTK 9 and later read; nothing where the axes are the world's.
+std::string direction_of(const PlacedLattice& lattice) {
+  if (lattice.along_axes()) return "";
+  std::string text;
+  for (const double entry : lattice.direction()) text += (text.empty() ? "" : " ") + text_of(entry);
+  return " Direction=\"" + text + '"';
+}
+
 struct ElementType {
   const char* name;
   std::size_t size;  // of a component
@@ -81,9 +89,9 @@ void check_indices(const Lattice& lattice, const std::string& name) {
 
 class VtiWriter final : public LatticeWriter {
  public:
-  VtiWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description) : output_(output) {
-    check_indices(lattice, output.name());
-    const auto samples = static_cast<std::uint64_t>(whole(lattice).size());
+  VtiWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description) : output_(output) {
+    check_indices(lattice.grid, output.name());
+    const auto samples = static_cast<std::uint64_t>(whole(lattice.grid).size());
     std::string declarations;
     std::uint64_t offset = 0;  // behind the head
     for (const FieldDescription& field : description.fields) {
@@ -94,13 +102,13 @@ class VtiWriter final : public LatticeWriter {
       arrays_.push_back({type.size, offset, samples * type.size * field.components(), Narrowing(field)});
       offset += sizeof(ArraySize) + arrays_.back().bytes;
     }
-    const std::string extent = extent_of(lattice);
+    const std::string extent = extent_of(lattice.grid);
     const std::string head =
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "  <ImageData WholeExtent=\"" +
-        extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.spacing) +
-        "\">\n    <Piece Extent=\"" + extent + "\">\n      <PointData " +
+        extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.grid.spacing) + '"' +
+        direction_of(lattice) + ">\n    <Piece Extent=\"" + extent + "\">\n      <PointData " +
         (description.fields.front().components() > 1 ? "Vectors" : "Scalars") + "=\"" +
         description.fields.front().name + "\">\n" + declarations +
         "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
@@ -180,7 +188,7 @@ class VtiWriter final : public LatticeWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
   return std::make_unique<VtiWriter>(output, lattice, description);
 }

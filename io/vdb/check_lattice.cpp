@@ -21,21 +21,17 @@ void check_indices(const Lattice& lattice, const std::string& name) {
   }
 }
 
-// The voxel that OpenVDB gives to copies of a grid, also while it writes one: the difference of two positions.
-Vec3 copied_spacing(const Lattice& lattice) {
-  Vec3 result{};
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = (lattice.origin[axis] + lattice.spacing[axis]) - lattice.origin[axis];
-  }
-  return result;
+// Of the voxel that OpenVDB gives to copies of a grid, also while it writes one: the difference of two positions.
+double copied_volume(PlacedLattice lattice) {
+  for (Vec3& step : lattice.steps) step = (lattice.origin + step) - lattice.origin;
+  return std::abs(lattice.signed_volume());
 }
 
 // OpenVDB takes a transform whose determinant is below 3e-15 for singular, however well scaled it is.
-void check_voxels(const Lattice& lattice, const std::string& name) {
+void check_voxels(const PlacedLattice& lattice, const std::string& name) {
   constexpr double kLeastVolume = 3e-15;
-  const auto volume_of = [](const Vec3& spacing) { return spacing.x * spacing.y * spacing.z; };
-  const Vec3& spacing = lattice.spacing;
-  const double volume = volume_of(spacing);
+  const Vec3& spacing = lattice.grid.spacing;
+  const double volume = std::abs(lattice.signed_volume());
   char message[200];
   if (volume < kLeastVolume) {
     const double mean_exponent = (std::log10(spacing.x) + std::log10(spacing.y) + std::log10(spacing.z)) / 3;
@@ -44,7 +40,7 @@ void check_voxels(const Lattice& lattice, const std::string& name) {
                   volume, -std::floor(mean_exponent));
     throw OutputError(name + message);
   }
-  if (!(volume_of(copied_spacing(lattice)) >= kLeastVolume)) {  // infinity times 0 is refused, too
+  if (!(copied_volume(lattice) >= kLeastVolume)) {  // infinity times 0 is refused, too
     std::snprintf(message, sizeof message,
                   ": voxels of %.2g x %.2g x %.2g at (%.2g, %.2g, %.2g) are too small beside their coordinates, which "
                   "OpenVDB cannot represent; expected larger ones, or bounds nearer to 0",
@@ -71,10 +67,10 @@ void check_half(const OutputDescription& description, const Lattice& lattice, co
 
 }  // namespace
 
-void check_lattice(const Lattice& lattice, const OutputDescription& description, const std::string& name) {
-  check_indices(lattice, name);
+void check_lattice(const PlacedLattice& lattice, const OutputDescription& description, const std::string& name) {
+  check_indices(lattice.grid, name);
   check_voxels(lattice, name);
-  check_half(description, lattice, name);
+  check_half(description, lattice.grid, name);
 }
 
 }  // namespace raycone::vdb

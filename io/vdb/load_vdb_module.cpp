@@ -77,13 +77,15 @@ const vdb::Module& vdb_module(const std::string& name) {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
   return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
 }
 
-Lattice read_vdb_lattice(const std::string& path, const std::string& name) {
+PlacedLattice read_vdb_lattice(const std::string& path, const std::string& name) {
   return vdb_module<InputError>(path).read(path, name);
 }
+
+VolumeFacts read_vdb_facts(const std::string& path) { return vdb_module<InputError>(path).facts(path); }
 
 }  // namespace raycone

@@ -1,10 +1,14 @@
-// The lattice of an OpenVDB grid: its transform, and the extent that raycone recorded or that its active voxels have.
+// The lattice of an OpenVDB grid: its transform, and the extent that raycone recorded or that its active voxels have;
+// and what its metadata say of how it was made.
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -67,6 +71,12 @@ class MemoryForFile {
   bool is_tightest_ = false;
 };
 
+// "float" of "Tree_float_5_4_3"
+std::string value_type(const std::string& grid_type) {
+  const std::size_t begin = grid_type.find('_') + 1;
+  return grid_type.substr(begin, grid_type.find('_', begin) - begin);
+}
+
 // Reads metadata and transform of a grid but not its tree. OpenVDB's File does that too, but returns a copy whose
 // transform has been recomputed, with rounding errors (see transform_of in write_vdb.cpp).
 class HeadReader : private openvdb::io::Archive {
@@ -83,8 +93,8 @@ class HeadReader : private openvdb::io::Archive {
   // Streams that were redirected into a file have no table of contents.
   [[nodiscard]] bool has_offsets() const { return inputHasGridOffsets(); }
 
-  // Precondition: has_offsets().
-  openvdb::GridBase::ConstPtr read(const std::string& wanted) {
+  // Precondition: has_offsets(). All heads are added to `all`, where given.
+  openvdb::GridBase::ConstPtr read(const std::string& wanted, openvdb::GridCPtrVec* all = nullptr) {
     std::vector<openvdb::io::GridDescriptor> descriptors;
     std::vector<std::string> names;
     for (openvdb::Int32 remaining = readGridCount(stream_); remaining > 0; --remaining) {
@@ -93,17 +103,22 @@ class HeadReader : private openvdb::io::Archive {
       descriptor.seekToEnd(stream_);
       names.push_back(openvdb::io::GridDescriptor::nameAsString(descriptor.uniqueName()));
     }
-    const openvdb::io::GridDescriptor& chosen = descriptors[choose_grid(path_, names, wanted)];
-    chosen.seekToGrid(stream_);
-    readGridCompression(stream_);
-    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(chosen.gridType());
-    grid->readMeta(stream_);
-    grid->readTransform(stream_);
-    grid->setName(chosen.gridName());
-    return grid;
+    const std::size_t chosen = choose_grid(path_, names, wanted);
+    for (std::size_t n = 0; all && n < descriptors.size(); ++n) all->push_back(head_of(descriptors[n]));
+    return head_of(descriptors[chosen]);
   }
 
  private:
+  openvdb::GridBase::ConstPtr head_of(const openvdb::io::GridDescriptor& descriptor) {
+    descriptor.seekToGrid(stream_);
+    readGridCompression(stream_);
+    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(descriptor.gridType());
+    grid->readMeta(stream_);
+    grid->readTransform(stream_);
+    grid->setName(descriptor.gridName());
+    return grid;
+  }
+
   std::string path_;
   std::ifstream stream_;
 };
@@ -122,25 +137,21 @@ openvdb::GridBase::ConstPtr read_whole(const std::string& path, const std::strin
   throw InputError(path + ": grid '" + grid.getName() + "' " + what);
 }
 
-// Sets origin and spacing of `lattice`.
-void read_transform(const std::string& path, const openvdb::GridBase& grid, Lattice& lattice) {
-  const std::string expected = ", expected scale and translation only";
-  if (!grid.constTransform().isLinear()) fail(path, grid, "has a frustum transform" + expected);
+// The transform, with the samples of `extent`.
+PlacedLattice place(const std::string& path, const openvdb::GridBase& grid, const openvdb::CoordBBox& extent) {
+  std::array<std::int64_t, 3> first{}, counts{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = extent.min()[axis];
+    counts[axis] = std::int64_t{extent.max()[axis]} - extent.min()[axis] + 1;
+  }
   // Row vectors: world = index * matrix.
   const openvdb::Mat4d matrix = grid.constTransform().baseMap()->getAffineMap()->getMat4();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      if (row != column && matrix(row, column) != 0.0) {
-        fail(path, grid, "has a transform with rotation or shear" + expected);
-      }
-    }
-    lattice.spacing[row] = matrix(row, row);
-    lattice.origin[row] = matrix(3, row);
-    if (!std::isfinite(lattice.spacing[row]) || !std::isfinite(lattice.origin[row])) {
-      fail(path, grid, "has a transform that is not finite" + expected);
-    }
-    if (lattice.spacing[row] <= 0.0) fail(path, grid, "has a transform with negative scale" + expected);
-  }
+  const auto row = [&](int n) { return Vec3{matrix(n, 0), matrix(n, 1), matrix(n, 2)}; };
+  const PlacedLattice lattice(row(3), {row(0), row(1), row(2)}, first, counts);
+  if (!lattice.is_finite()) fail(path, grid, "has a transform that is not finite, expected a finite one");
+  if (!lattice.spans_space())
+    fail(path, grid, "has a transform that flattens space, expected axes in three directions");
+  return lattice;
 }
 
 std::optional<openvdb::CoordBBox> box_metadata(const openvdb::GridBase& grid, const char* lower, const char* upper) {
@@ -158,23 +169,103 @@ openvdb::CoordBBox read_extent(const std::string& path, const openvdb::GridBase&
   return active ? *active : read_whole(path, wanted)->evalActiveVoxelBoundingBox();
 }
 
-Lattice read(const std::string& path, const std::string& wanted) {
-  HeadReader reader(path);
-  const openvdb::GridBase::ConstPtr head = reader.has_offsets() ? reader.read(wanted) : read_whole(path, wanted);
-  Lattice lattice;
-  read_transform(path, *head, lattice);
-  const openvdb::CoordBBox extent = read_extent(path, *head, wanted);
-  if (extent.empty()) fail(path, *head, "has no active voxels, expected some, or a lattice recorded by raycone");
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lattice.index_min[axis] = extent.min()[axis];
-    lattice.counts[axis] = std::int64_t{extent.max()[axis]} - extent.min()[axis] + 1;
-  }
-  return lattice;
+// Of the head of grid `wanted`.
+PlacedLattice lattice_of(const std::string& path, const openvdb::GridBase& head, const std::string& wanted) {
+  if (!head.constTransform().isLinear()) fail(path, head, "has a frustum transform, expected a linear one");
+  const openvdb::CoordBBox extent = read_extent(path, head, wanted);
+  if (extent.empty()) fail(path, head, "has no active voxels, expected some, or a lattice recorded by raycone");
+  return place(path, head, extent);
 }
 
-}  // namespace
+PlacedLattice read(const std::string& path, const std::string& wanted) {
+  HeadReader reader(path);
+  const openvdb::GridBase::ConstPtr head = reader.has_offsets() ? reader.read(wanted) : read_whole(path, wanted);
+  return lattice_of(path, *head, wanted);
+}
 
-Lattice vdb::read_lattice(const std::string& path, const std::string& name) {
+// --- How a grid was made
+
+std::string rows_of(const openvdb::Mat4d& matrix) {
+  std::string text = "[";
+  for (int row = 0; row < 4; ++row) {
+    text += row == 0 ? "[" : ", [";
+    for (int column = 0; column < 4; ++column) {
+      std::array<char, 32> digits;
+      const double number = matrix(row, column);
+      if (!std::isfinite(number)) return "null";
+      text += column == 0 ? "" : ", ";
+      text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+    }
+    text += ']';
+  }
+  return text + ']';
+}
+
+// What write_vdb.cpp keeps, under the names that other formats have for it.
+std::vector<MadeFact> how_made(const openvdb::GridBase& grid) {
+  static constexpr std::array<std::array<const char*, 2>, 10> kKeys{{{"raycone_version", "raycone_version"},
+                                                                     {"raycone_mesh", "mesh"},
+                                                                     {"raycone_sha256", "sha256"},
+                                                                     {"raycone_options", "options"},
+                                                                     {"raycone_rule", "rule"},
+                                                                     {"raycone_transform", "transform"},
+                                                                     {"raycone_faces", "faces"},
+                                                                     {"raycone_exterior_edges", "exterior_edges"},
+                                                                     {"raycone_degenerate", "degenerate"},
+                                                                     {"raycone_on_surface", "on_surface"}}};
+  std::vector<MadeFact> facts;
+  for (const auto& [key, name] : kKeys) {
+    if (const auto text = grid.getMetadata<openvdb::StringMetadata>(key)) {
+      facts.push_back({name, text->value()});
+    } else if (const auto number = grid.getMetadata<openvdb::Int64Metadata>(key)) {
+      facts.push_back({name, std::to_string(number->value()), true});
+    } else if (const auto matrix = grid.getMetadata<openvdb::Mat4DMetadata>(key)) {
+      facts.push_back({name, rows_of(matrix->value()), true});
+    }
+  }
+  return facts;
+}
+
+// Of all grids.
+openvdb::GridCPtrVec read_heads(const std::string& path) {
+  openvdb::GridCPtrVec heads;
+  HeadReader reader(path);
+  if (reader.has_offsets()) {
+    (void)reader.read("", &heads);
+    return heads;
+  }
+  openvdb::io::File file(path);
+  file.setCopyMaxBytes(0);
+  file.open();
+  for (const openvdb::GridBase::Ptr& grid : *file.readAllGridMetadata()) heads.push_back(grid);
+  if (heads.empty()) throw InputError(path + ": has no grids, expected one");
+  heads.front() = read_whole(path, "");
+  return heads;
+}
+
+VolumeFacts facts_of(const std::string& path) {
+  VolumeFacts facts;
+  facts.format = "OpenVDB";
+  const openvdb::GridCPtrVec heads = read_heads(path);
+  facts.made = how_made(*heads.front());
+  for (const openvdb::GridBase::ConstPtr& head : heads) {
+    facts.arrays.push_back({head->getName(), value_type(head->type())});
+    // Only some fields have a rule, and all have the same.
+    const auto rule = head->getMetadata<openvdb::StringMetadata>("raycone_rule");
+    const bool known = std::ranges::any_of(facts.made, [](const MadeFact& fact) { return fact.key == "rule"; });
+    if (rule && !known) facts.made.push_back({"rule", rule->value()});
+  }
+  try {
+    facts.lattice = lattice_of(path, *heads.front(), "");
+  } catch (const InputError& error) {
+    facts.no_lattice = std::string(error.what()).substr(path.size() + 2);
+  }
+  return facts;
+}
+
+// What `read_something` makes of the file; what OpenVDB throws as InputError.
+template <typename Read>
+auto read_file(const std::string& path, const Read& read_something) {
   std::error_code status;
   if (!std::filesystem::is_regular_file(path, status)) {
     throw InputError(path + ": cannot read: " + (status ? status.message() : "not a regular file"));
@@ -182,7 +273,7 @@ Lattice vdb::read_lattice(const std::string& path, const std::string& name) {
   openvdb::initialize();
   const MemoryForFile memory(path);
   try {
-    return read(path, name);
+    return read_something();
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -191,6 +282,16 @@ Lattice vdb::read_lattice(const std::string& path, const std::string& name) {
   } catch (const std::exception& error) {  // OpenVDB's own and the standard library's
     throw InputError(path + ": not a readable OpenVDB file: " + error.what());
   }
+}
+
+}  // namespace
+
+PlacedLattice vdb::read_lattice(const std::string& path, const std::string& name) {
+  return read_file(path, [&] { return read(path, name); });
+}
+
+VolumeFacts vdb::read_facts(const std::string& path) {
+  return read_file(path, [&] { return facts_of(path); });
 }
 
 }  // namespace raycone

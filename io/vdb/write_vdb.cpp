@@ -32,9 +32,17 @@ using vdb::kLeafLog2, vdb::kLeafSize, vdb::kLeafVoxels, vdb::LeafLayer;
 
 // --- A grid without its tree
 
-openvdb::math::MapBase::Ptr map_of(const Lattice& lattice) {
-  const openvdb::Vec3d scale(lattice.spacing.x, lattice.spacing.y, lattice.spacing.z);
-  const openvdb::Vec3d translation(lattice.origin.x, lattice.origin.y, lattice.origin.z);
+openvdb::Vec3d to_vec(const Vec3& v) { return {v.x, v.y, v.z}; }
+openvdb::Vec4d to_row(const Vec3& v, double last) { return {v.x, v.y, v.z, last}; }
+
+openvdb::math::MapBase::Ptr map_of(const PlacedLattice& lattice) {
+  const openvdb::Vec3d scale = to_vec(lattice.grid.spacing), translation = to_vec(lattice.origin);
+  if (!lattice.along_axes()) {
+    openvdb::Mat4d matrix = openvdb::Mat4d::identity();  // of row vectors
+    for (int axis = 0; axis < 3; ++axis) matrix.setRow(axis, to_row(lattice.steps[static_cast<std::size_t>(axis)], 0));
+    matrix.setRow(3, to_row(lattice.origin, 1));
+    return std::make_shared<openvdb::math::AffineMap>(matrix);
+  }
   const bool cubic = scale.x() == scale.y() && scale.y() == scale.z();
   if (cubic) return std::make_shared<openvdb::math::UniformScaleTranslateMap>(scale.x(), translation);
   return std::make_shared<openvdb::math::ScaleTranslateMap>(scale, translation);
@@ -42,7 +50,7 @@ openvdb::math::MapBase::Ptr map_of(const Lattice& lattice) {
 
 // Transform's constructor recomputes a map's scale as the difference of two transformed points, which costs digits
 // where the translation is large; a transform that is read has the map as it was written.
-openvdb::math::Transform::Ptr transform_of(const Lattice& lattice) {
+openvdb::math::Transform::Ptr transform_of(const PlacedLattice& lattice) {
   const openvdb::math::MapBase::Ptr map = map_of(lattice);
   std::stringstream bytes;
   openvdb::writeString(bytes, map->type());
@@ -83,10 +91,11 @@ openvdb::GridClass class_of(FieldKind kind) {
   return openvdb::GRID_UNKNOWN;
 }
 
-void describe(openvdb::GridBase& grid, const Lattice& lattice, const FieldDescription& field,
+void describe(openvdb::GridBase& grid, const PlacedLattice& placed, const FieldDescription& field,
               const OutputDescription& description) {
   grid.setName(field.grid);
-  grid.setTransform(transform_of(lattice));
+  const Lattice& lattice = placed.grid;
+  grid.setTransform(transform_of(placed));
   if (const openvdb::GridClass grid_class = class_of(field.kind); grid_class != openvdb::GRID_UNKNOWN) {
     grid.setGridClass(grid_class);
   }
@@ -222,7 +231,7 @@ class TypedGridBuilder final : public GridBuilder {
 // What builders are made of.
 struct GridPlan {
   const FieldDescription& field;
-  const Lattice& lattice;
+  const PlacedLattice& lattice;
   const OutputDescription& description;
 };
 
@@ -230,7 +239,7 @@ template <typename Grid, typename Store>
 std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan, const Store& store, typename Store::Stored background) {
   const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(Grid::gridType());
   describe(*grid, plan.lattice, plan.field, plan.description);
-  return std::make_unique<TypedGridBuilder<typename Grid::TreeType, Store>>(grid, plan.lattice, store, background);
+  return std::make_unique<TypedGridBuilder<typename Grid::TreeType, Store>>(grid, plan.lattice.grid, store, background);
 }
 
 template <typename Grid>
@@ -238,7 +247,7 @@ std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
   const auto background =
-      vdb::level_set_background<Value>(band_width, plan.lattice.spacing.x, plan.description.is(Precision::kHalf));
+      vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, plan.description.is(Precision::kHalf));
   return make_builder<Grid>(plan, vdb::StoreDistance<Value>{band_width, background}, background);
 }
 
@@ -314,7 +323,7 @@ void write_archive(std::ostream& stream, const openvdb::GridCPtrVec& grids) {
 
 class VdbWriter final : public LatticeWriter {
  public:
-  VdbWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description) : output_(output) {
+  VdbWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description) : output_(output) {
     for (const FieldDescription& field : description.fields) {
       builders_.push_back(make_builder({field, lattice, description}));
     }
@@ -341,7 +350,7 @@ class VdbWriter final : public LatticeWriter {
 
 }  // namespace
 
-std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, const Lattice& lattice,
+std::unique_ptr<LatticeWriter> vdb::make_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                         const OutputDescription& description) {
   check_lattice(lattice, description, output.name());
   openvdb::initialize();

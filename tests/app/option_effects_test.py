@@ -180,7 +180,7 @@ TABLE = [
       for words in (FILE + "vdb", FILE + "nii", FILE + "nii.gz", BATCH, BATCH + " --format none")),
     *(Row(FILE + end, "--diagnostics", REFUSED) for end in ("nrrd", "nii")),
     *(Row(words, "--dtype f32", CHANGES)
-      for words in (SAMPLE, POINTS + " --format npy", "batch good --out-dir out/batch --sample uniform=3")),
+      for words in (SAMPLE, SAMPLE + " --field inside", POINTS + " --format npy", "batch good --out-dir out/batch --sample uniform=3")),
     *(Row(words, "--dtype f64", REFUSED)
       for words in (FILE + "csv", POINTS, FILE + "npz --field inside", FILE + "npz --double",
                     "points cubes.obj points.raw -o out/a.raw --raw f64", BATCH + " --format none")),

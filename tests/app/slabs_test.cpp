@@ -55,15 +55,15 @@ TEST(SlabFrom, HoldsSmallLatticesWhole) {
 TEST(SlabMemory, IsThatOfItsNumbers) {
   const LatticeBlock slab{{0, 0, 0}, {1000, 1000, 8}};
   FieldOptions options;
-  EXPECT_EQ(slab_memory(slab, options, false), 64e6 + 24e6);        // and what the scan takes for each
-  EXPECT_EQ(slab_memory(slab, options, true), 64e6 + 24e6 + 64e6);  // and crossings of caps
-  options.tolerance = 0.0;                                          // which the direct sum does without
-  EXPECT_EQ(slab_memory(slab, options, true), 64e6 + 24e6);
+  EXPECT_EQ(slab_memory(slab, options, {false}), 64e6 + 24e6);        // and what the scan takes for each
+  EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6 + 64e6);  // and crossings of caps
+  options.tolerance = 0.0;                                            // which the direct sum does without
+  EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6);
   options.fields = {Field::kInside};  // comes from the winding number
-  EXPECT_EQ(slab_memory(slab, options, false), 64e6 + 24e6 + 8e6);
-  EXPECT_EQ(slab_memory(slab, options, true), 64e6 + 24e6 + 8e6 + 64e6);  // a rule has caps, always
-  options.diagnostics = true;                                             // two 64-bit counts, a flag, a double
-  EXPECT_EQ(slab_memory(slab, options, true), 64e6 + 24e6 + 8e6 + 8e6 * (8 + 8 + 1 + 8));
+  EXPECT_EQ(slab_memory(slab, options, {false}), 64e6 + 24e6 + 8e6);
+  EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6 + 8e6 + 64e6);  // a rule has caps, always
+  options.diagnostics = true;                                               // two 64-bit counts, a flag, a double
+  EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6 + 8e6 + 8e6 * (8 + 8 + 1 + 8));
 }
 
 TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {

@@ -1,5 +1,5 @@
-// libFuzzer target of the readers for --like but OpenVDB's: NPZ, NRRD and NIfTI-1. Whatever the bytes, they return a
-// lattice with samples at finite places, or throw InputError.
+// libFuzzer target of the readers for --like and info but OpenVDB's: NPZ, NRRD and NIfTI-1. Whatever the bytes, they
+// return a lattice with samples at finite places, or throw InputError.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -11,6 +11,7 @@
 
 #include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"
+#include "io/fields/volume_facts.h"
 #include "io/files/file_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -18,11 +19,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (descriptor < 0 || write(descriptor, data, size) != static_cast<ssize_t>(size)) std::abort();
   const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
   try {
-    const raycone::Lattice lattice =
+    const raycone::VolumeFacts facts = raycone::read_volume_facts(path);
+    if (facts.format.empty() || (facts.lattice && !facts.no_lattice.empty())) std::abort();
+  } catch (const raycone::InputError&) {
+  }
+  try {
+    const raycone::PlacedLattice lattice =
         raycone::is_image(path) ? raycone::read_image_lattice(path) : raycone::read_npz_lattice(path);
+    const raycone::Box box = box_of(lattice);
     for (int axis = 0; axis < 3; ++axis) {
-      if (lattice.counts[static_cast<std::size_t>(axis)] < 1 || !(lattice.spacing[axis] > 0.0)) std::abort();
-      if (!std::isfinite(lattice.coordinate(axis, lattice.index_max(axis)))) std::abort();
+      if (lattice.grid.counts[static_cast<std::size_t>(axis)] < 1 || !(lattice.grid.spacing[axis] > 0.0)) std::abort();
+      if (!std::isfinite(box.lower[axis]) || !std::isfinite(box.upper[axis])) std::abort();
     }
   } catch (const raycone::InputError&) {
   }

@@ -125,7 +125,7 @@ TEST(WriteVdbDiagnostics, GridsShareTransformAndDescription) {
     EXPECT_EQ(grid->text("raycone_field"), grid->name());
     EXPECT_EQ(grid->text("raycone_mesh"), "bunny.obj");
     EXPECT_EQ(grid->integer("raycone_degenerate"), 7);
-    const Lattice lattice = read_vdb_lattice(directory / "out.vdb", grid->name());
+    const Lattice lattice = read_vdb_lattice(directory / "out.vdb", grid->name()).grid;
     EXPECT_EQ(lattice.origin, field.lattice.origin);
     EXPECT_EQ(lattice.spacing, field.lattice.spacing);
     EXPECT_EQ(lattice.index_min, field.lattice.index_min);

@@ -195,7 +195,7 @@ TEST(WriteVdb, TransformIsExact) {
   field.lattice.origin = {1e6, -1e-6, 0.3};
   const TemporaryDirectory directory;
   write_vdb(directory / "out.vdb", field);
-  const Lattice actual = read_vdb_lattice(directory / "out.vdb", "");
+  const Lattice actual = read_vdb_lattice(directory / "out.vdb", "").grid;
   EXPECT_EQ(actual.spacing, field.lattice.spacing);
   EXPECT_EQ(actual.origin, field.lattice.origin);
 }
@@ -322,7 +322,7 @@ TEST(WriteVdb, RefusesVoxelsThatOpenVdbTakesForSingular) {
   EXPECT_TRUE(output_error_of(write).ends_with("(--scale 1e5)"));
   field.lattice.spacing = {1e-5, 1e-5, 3.1e-5};
   write();
-  EXPECT_EQ(read_vdb_lattice(directory / "out.vdb", "").spacing, field.lattice.spacing);
+  EXPECT_EQ(read_vdb_lattice(directory / "out.vdb", "").grid.spacing, field.lattice.spacing);
 }
 
 // OpenVDB copies a grid while it writes it, and the copy's voxels would have no size.
@@ -342,7 +342,7 @@ TEST(WriteVdb, RefusesVoxelsBelowTheSpacingOfTheirCoordinates) {
   field.lattice.spacing = {1, 1, 1};
   field.lattice.origin = {0, 0x1p52, -0x1p53};  // the doubles below 2^53 are 1 apart
   write();
-  const Lattice read = read_vdb_lattice(directory / "out.vdb", "");
+  const Lattice read = read_vdb_lattice(directory / "out.vdb", "").grid;
   EXPECT_EQ(read.origin, field.lattice.origin);
   EXPECT_EQ(read.spacing, field.lattice.spacing);
 }
@@ -398,11 +398,13 @@ std::string input_error_of(const std::string& path, const std::string& name) {
   return {};
 }
 
-void expect_same(const Lattice& actual, const Lattice& expected) {
+void expect_same(const PlacedLattice& actual, const PlacedLattice& expected) {
   EXPECT_EQ(actual.origin, expected.origin);
-  EXPECT_EQ(actual.spacing, expected.spacing);
-  EXPECT_EQ(actual.index_min, expected.index_min);
-  EXPECT_EQ(actual.counts, expected.counts);
+  EXPECT_EQ(actual.steps, expected.steps);
+  EXPECT_EQ(actual.grid.origin, expected.grid.origin);
+  EXPECT_EQ(actual.grid.spacing, expected.grid.spacing);
+  EXPECT_EQ(actual.grid.index_min, expected.grid.index_min);
+  EXPECT_EQ(actual.grid.counts, expected.grid.counts);
 }
 
 TEST(ReadVdbLattice, ReturnsTheLatticeThatRayconeRecorded) {
@@ -423,51 +425,63 @@ TEST(ReadVdbLattice, ReturnsTheRecordedLatticeOfAnEmptyGrid) {
 TEST(ReadVdbLattice, ReturnsTheBoxOfActiveVoxelsOfOtherPrograms) {
   const TemporaryDirectory directory;
   write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform(0.5).translate({1, 2, 3}))});
-  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{1, 2, 3}, {0.5, 0.5, 0.5}, {-5, 2, 30}, {10, 1, 71}});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""),
+              Lattice{{1, 2, 3}, {0.5, 0.5, 0.5}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, ReadsTheTreeWhereTheFileHasNoStatistics) {
   const TemporaryDirectory directory;
   write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform(2))}, test::VdbStatistics::kWithout);
-  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""), Lattice{{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, ReadsStreamsWithoutTableOfContents) {
   const TemporaryDirectory directory;
   test::write_vdb_stream(directory / "in.vdb", {named_grid("a", VdbTransform(1)), named_grid("b", VdbTransform(2))});
-  expect_same(read_vdb_lattice(directory / "in.vdb", "b"), {{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
+  expect_same(read_vdb_lattice(directory / "in.vdb", "b"), Lattice{{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, AcceptsAnAffineMapThatScalesOnly) {
   const TemporaryDirectory directory;
   const std::array<double, 16> matrix{0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0};
   write_vdb_grids(directory / "in.vdb", {named_grid("density", VdbTransform::affine(matrix))});
-  expect_same(read_vdb_lattice(directory / "in.vdb", ""), {{7, 8, 9}, {0.1, 0.2, 0.3}, {-5, 2, 30}, {10, 1, 71}});
+  expect_same(read_vdb_lattice(directory / "in.vdb", ""),
+              Lattice{{7, 8, 9}, {0.1, 0.2, 0.3}, {-5, 2, 30}, {10, 1, 71}});
 }
 
 TEST(ReadVdbLattice, FindsGridsByName) {
   const TemporaryDirectory directory;
   write_vdb_grids(directory / "in.vdb", {named_grid("b", VdbTransform(2)), named_grid("a", VdbTransform(1))});
-  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "a").spacing.x, 1.0);
-  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "").spacing.x, 2.0);
+  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "a").grid.spacing.x, 1.0);
+  EXPECT_EQ(read_vdb_lattice(directory / "in.vdb", "").grid.spacing.x, 2.0);
   EXPECT_EQ(input_error_of(directory / "in.vdb", "c"),
             directory / "in.vdb" + ": has no grid 'c', expected one of: b, a");
 }
 
-TEST(ReadVdbLattice, RefusesOtherTransforms) {
+TEST(ReadVdbLattice, ReturnsTransformsOfAnyDirection) {
   const TemporaryDirectory directory;
-  const auto message = [&](const VdbTransform& transform) {
+  const auto lattice_of = [&](const VdbTransform& transform) {
     write_vdb_grids(directory / "in.vdb", {named_grid("g", transform)});
-    const std::string text = input_error_of(directory / "in.vdb", "");
-    return text.substr((directory / "in.vdb").size());
+    return read_vdb_lattice(directory / "in.vdb", "");
   };
-  const std::string expected = ", expected scale and translation only";
-  EXPECT_EQ(message(VdbTransform(1).rotate_about_x(0.5)),
-            ": grid 'g' has a transform with rotation or shear" + expected);
-  EXPECT_EQ(message(VdbTransform(1).shear_x_along_y(0.5)),
-            ": grid 'g' has a transform with rotation or shear" + expected);
-  EXPECT_EQ(message(VdbTransform(1).scale({1, -1, 1})), ": grid 'g' has a transform with negative scale" + expected);
-  EXPECT_EQ(message(VdbTransform::frustum()), ": grid 'g' has a frustum transform" + expected);
+  const auto steps_of = [&](const std::array<Vec3, 3>& steps) {
+    return PlacedLattice({0, 0, 0}, steps, {-5, 2, 30}, {10, 1, 71});
+  };
+  expect_same(lattice_of(VdbTransform(1).scale({1, -1, 1})), steps_of({{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}));
+  const PlacedLattice turned = lattice_of(VdbTransform(2).rotate_about_x(0.5));
+  EXPECT_NEAR(turned.steps[1].y, 2 * std::cos(0.5), 1e-15);
+  EXPECT_NEAR(std::abs(turned.steps[1].z), 2 * std::sin(0.5), 1e-15);
+  EXPECT_NEAR(turned.signed_volume(), 8, 1e-14);
+  const std::array<double, 16> matrix{0.1, 0.5, 0.0, 0.0, 0.0, 0.2, 0.7, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0};
+  expect_same(lattice_of(VdbTransform::affine(matrix)),
+              {{7, 8, 9}, {{{0.1, 0.5, 0}, {0, 0.2, 0.7}, {0, 0, 0.3}}}, {-5, 2, 30}, {10, 1, 71}});
+}
+
+TEST(ReadVdbLattice, RefusesTransformsThatAreNotLinear) {
+  const TemporaryDirectory directory;
+  write_vdb_grids(directory / "in.vdb", {named_grid("g", VdbTransform::frustum())});
+  EXPECT_EQ(input_error_of(directory / "in.vdb", ""),
+            directory / "in.vdb" + ": grid 'g' has a frustum transform, expected a linear one");
 }
 
 TEST(ReadVdbLattice, RefusesAnEmptyGridWithoutRecordedLattice) {

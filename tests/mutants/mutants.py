@@ -429,6 +429,16 @@ MUTANTS = [
     Mutant("gradient_obtuse", "where the angle is obtuse |A| |B| + A B cancels", [
         ("core/evaluation/gradient.cpp", "ab < 0.0 ? square / (lab - ab) : lab + ab", "lab + ab")]),
 
+    # --- Lattices with other axes ---
+    Mutant("mirrored_block_begins_at_its_end", "index i of a mirrored axis is -i along the world's", [
+        ("core/data/placed_lattice.cpp", "mirrored[a] ? -last : indices.first[a]",
+         "mirrored[a] ? -indices.first[a] : indices.first[a]")]),
+    Mutant("mirrored_values_from_the_start", "values of a mirrored axis are sorted from its end", [
+        ("core/data/placed_lattice.cpp", "    if (mirrored[a]) walk.start += (indices.counts[a] - 1) * pitch;\n", "")]),
+    Mutant("nearly_an_axis", "an axis that is the world's but for a little is none of them", [
+        ("core/data/placed_lattice.cpp", "if (step[static_cast<int>(a)] == 0.0) continue;",
+         "if (std::abs(step[static_cast<int>(a)]) < 1e-12) continue;")]),
+
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),

@@ -1,0 +1,17 @@
+// The lattice of --like.
+#pragma once
+
+#include "app/options/lattice_request.h"
+#include "core/data/placed_lattice.h"
+
+namespace raycone {
+
+// That of an OpenVDB, NPZ, NRRD or NIfTI-1 file, whichever the file is by its content. Throws InputError where there is
+// none.
+[[nodiscard]] PlacedLattice lattice_of_grid(const GridReference& grid);
+
+// The same samples along the axes of the world. Throws UsageError, which begins with `purpose`, where the lattice's
+// axes are none of these.
+[[nodiscard]] Lattice world_lattice_of_grid(const GridReference& grid, const char* purpose);
+
+}  // namespace raycone

@@ -1,0 +1,231 @@
+#include "io/fields/nrrd_head.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "io/files/file_error.h"
+#include "io/files/input_buffer.h"
+#include "io/files/unpack.h"
+
+namespace raycone {
+namespace {
+
+[[noreturn]] void fail_head(const std::string& path, const std::string& what) {
+  throw InputError(path + ": not a readable volume: " + what);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
+std::string without_escapes(std::string_view text) {
+  std::string result;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    const char next = text[n] == '\\' && n + 1 < text.size() ? text[n + 1] : '\0';
+    if (next == 'n' || next == '\\') ++n;
+    result += next == 'n' ? '\n' : text[n];
+  }
+  return result;
+}
+
+// --- Fields ---------------------------------------------------------------------------------------------------------
+
+// What a field holds, one number, vector or word after the other; blanks and commas may stand between.
+class Numbers {
+ public:
+  Numbers(const std::string& path, const NrrdHead& head, const std::string& key) : path_(path), key_(key) {
+    const auto found = head.fields.find(key);
+    if (found == head.fields.end()) fail_head(path, "it has no " + key);
+    rest_ = found->second;
+  }
+
+  // Whether the next one is this word, which is then behind.
+  bool take(std::string_view word) {
+    skip();
+    if (!rest_.starts_with(word)) return false;
+    rest_.remove_prefix(word.size());
+    return true;
+  }
+
+  double next(const std::string& expected) {
+    skip();
+    double number = 0.0;
+    const auto [after, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
+    if (error != std::errc() || !std::isfinite(number)) fail(expected);
+    rest_.remove_prefix(static_cast<std::size_t>(after - rest_.data()));
+    return number;
+  }
+
+  Vec3 next_vector(const std::string& expected) {
+    if (!take("(")) fail(expected);
+    Vec3 v;
+    for (int axis = 0; axis < 3; ++axis) v[axis] = next(expected);
+    if (!take(")")) fail(expected);
+    return v;
+  }
+
+  void end(const std::string& expected) {
+    skip();
+    if (!rest_.empty()) fail(expected);
+  }
+
+  [[noreturn]] void fail(const std::string& expected) const { fail_head(path_, key_ + ", expected " + expected); }
+
+ private:
+  void skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(", \t"), rest_.size())); }
+
+  const std::string& path_;
+  std::string key_;
+  std::string_view rest_;
+};
+
+std::size_t read_dimension(const std::string& path, const NrrdHead& head) {
+  constexpr double kMost = 16;  // the format's
+  const std::string expected = "a number from 3 to 16";
+  Numbers numbers(path, head, "dimension");
+  const double dimension = numbers.next(expected);
+  numbers.end(expected);
+  if (!(dimension >= 3.0 && dimension <= kMost) || dimension != std::floor(dimension)) numbers.fail(expected);
+  return static_cast<std::size_t>(dimension);
+}
+
+std::vector<std::int64_t> read_sizes(const std::string& path, const NrrdHead& head, std::size_t dimension) {
+  const std::string expected = std::to_string(dimension) + " whole numbers of at least 1";
+  Numbers numbers(path, head, "sizes");
+  std::vector<std::int64_t> sizes;
+  for (std::size_t n = 0; n < dimension; ++n) {
+    const double size = numbers.next(expected);
+    if (!(size >= 1.0) || size > 0x1p53 || size != std::floor(size)) numbers.fail(expected);
+    sizes.push_back(static_cast<std::int64_t>(size));
+  }
+  numbers.end(expected);
+  return sizes;
+}
+
+// --- Where the samples lie ------------------------------------------------------------------------------------------
+
+// What to multiply coordinates by, to make them right, anterior, superior.
+Vec3 signs_of_space(const std::string& path, const NrrdHead& head) {
+  const auto space = head.fields.find("space");
+  if (space == head.fields.end()) return {1, 1, 1};  // "space dimension: 3", and no names for its axes
+  const std::string name = lower_case(space->second);
+  if (name == "right-anterior-superior" || name == "ras") return {1, 1, 1};
+  if (name == "left-anterior-superior" || name == "las") return {-1, 1, 1};
+  if (name == "left-posterior-superior" || name == "lps") return {-1, -1, 1};
+  if (name == "scanner-xyz" || name == "3d-right-handed" || name == "3d-left-handed") return {1, 1, 1};
+  fail_head(path, "its space, expected right-anterior-superior or another of three axes");
+}
+
+Vec3 times(const Vec3& a, const Vec3& b) { return Vec3{a.x * b.x, a.y * b.y, a.z * b.z} + Vec3{}; }  // no -0
+
+// The three of the world.
+class Axes {
+ public:
+  std::array<Vec3, 3> steps;
+  std::array<std::int64_t, 3> counts{};
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  void add(const Vec3& step, std::int64_t count, const Numbers& numbers) {
+    if (size_ == 3) numbers.fail("3 axes of the world");
+    steps[size_] = step;
+    counts[size_++] = count;
+  }
+  void check(const Numbers& numbers) const {
+    if (size_ != 3) numbers.fail("3 axes of the world");
+  }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+// Whether the place of the samples is told in the world's coordinates, by whatever of the fields for that.
+bool has_space(const NrrdHead& head) {
+  static constexpr std::array kKeys{"space",     "space dimension", "space directions", "space origin",
+                                    "axis mins", "axismins",        "axis maxs",        "axismaxs"};
+  return std::ranges::any_of(kKeys, [&](const char* key) { return head.fields.contains(key); });
+}
+
+// Those of the world: all that are not "none".
+Axes directed_axes(const std::string& path, const NrrdHead& head, const std::vector<std::int64_t>& sizes) {
+  const std::string expected = std::to_string(sizes.size()) + " vectors of 3 numbers, or none for other axes";
+  Numbers numbers(path, head, "space directions");
+  Axes axes;
+  for (const std::int64_t size : sizes) {
+    if (numbers.take("none")) continue;
+    axes.add(numbers.next_vector(expected), size, numbers);
+  }
+  numbers.end(expected);
+  axes.check(numbers);
+  return axes;
+}
+
+// A head without directions: the steps are along the axes.
+Axes spaced_axes(const std::string& path, const NrrdHead& head, const std::vector<std::int64_t>& sizes) {
+  const std::string expected = std::to_string(sizes.size()) + " numbers";
+  Numbers numbers(path, head, "spacings");
+  Axes axes;
+  for (const std::int64_t size : sizes) {
+    if (numbers.take("nan") || numbers.take("NaN")) continue;
+    Vec3 step;
+    step[static_cast<int>(axes.size())] = numbers.next(expected);
+    axes.add(step, size, numbers);
+  }
+  numbers.end(expected);
+  axes.check(numbers);
+  return axes;
+}
+
+}  // namespace
+
+NrrdHead read_nrrd_head(const std::string& path) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+  InputBuffer input(path, unpacked(open_source(path), path));
+  const auto end = [&] { return std::min(input.pending().find("\n\n"), input.pending().find("\n\r\n")); };
+  while (end() == std::string_view::npos && input.pending().size() < kMostBytes && input.fill()) continue;
+  std::string_view text = input.pending().substr(0, end());
+  if (text.size() >= kMostBytes) fail_head(path, "its head has no end");
+  NrrdHead head;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    while (!line.empty() && std::string_view("\r \t").find(line.back()) != std::string_view::npos) {
+      line.remove_suffix(1);
+    }
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos || line.starts_with('#')) continue;
+    const std::string_view key = line.substr(0, colon), rest = line.substr(colon + 1);
+    if (rest.starts_with('=')) {
+      head.pairs.emplace(without_escapes(key), without_escapes(rest.substr(1)));
+    } else if (rest.starts_with(' ')) {
+      head.fields.emplace(lower_case(key), rest.substr(1));
+    }
+  }
+  return head;
+}
+
+PlacedLattice nrrd_lattice(const std::string& path, const NrrdHead& head) {
+  const std::vector<std::int64_t> sizes = read_sizes(path, head, read_dimension(path, head));
+  if (!has_space(head)) {
+    const Axes axes = spaced_axes(path, head, sizes);
+    return {Vec3{}, axes.steps, {0, 0, 0}, axes.counts};
+  }
+  Axes axes = directed_axes(path, head, sizes);
+  const Vec3 signs = signs_of_space(path, head);
+  for (Vec3& step : axes.steps) step = times(signs, step);
+  const std::string expected = "3 numbers in parentheses";
+  Numbers numbers(path, head, "space origin");
+  const Vec3 origin = numbers.next_vector(expected);
+  numbers.end(expected);
+  return {times(signs, origin), axes.steps, {0, 0, 0}, axes.counts};
+}
+
+}  // namespace raycone

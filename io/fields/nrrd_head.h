@@ -1,0 +1,28 @@
+// The head of an NRRD file, as teem.sourceforge.net/nrrd/format.html describes it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/data/placed_lattice.h"
+
+namespace raycone {
+
+inline constexpr std::string_view kNrrdMagic = "NRRD000";
+
+struct NrrdHead {
+  std::map<std::string, std::string, std::less<>> fields;  // "field: description"; the names in small letters
+  std::map<std::string, std::string, std::less<>> pairs;   // "key:=value", unescaped
+};
+
+// Of a file that begins with kNrrdMagic. Throws InputError where the head has no end.
+[[nodiscard]] NrrdHead read_nrrd_head(const std::string& path);
+
+// The samples of three axes of the world, in right, anterior, superior; index 0 is the first one. Other axes, as those
+// of colours, are left out. `path`: of the file, for errors. Throws InputError where the head does not say where the
+// samples lie.
+[[nodiscard]] PlacedLattice nrrd_lattice(const std::string& path, const NrrdHead& head);
+
+}  // namespace raycone

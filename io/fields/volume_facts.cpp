@@ -1,0 +1,104 @@
+#include "io/fields/volume_facts.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+#include "io/fields/nifti_head.h"
+#include "io/fields/nrrd_head.h"
+#include "io/fields/read_image_lattice.h"
+#include "io/fields/read_npz_lattice.h"
+#include "io/files/file_error.h"
+#include "io/files/input_buffer.h"
+#include "io/files/npy_head.h"
+#include "io/files/zip_reader.h"
+
+namespace raycone {
+namespace {
+
+// What a file says of how it was made is text of some thousand characters.
+constexpr std::size_t kMostText = std::size_t{1} << 20;
+
+// Sets the lattice, or why there is none.
+template <typename Read>
+void add_lattice(VolumeFacts& facts, const std::string& path, const Read& read) {
+  try {
+    facts.lattice = read();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    facts.no_lattice = text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
+  }
+}
+
+// --- NPZ ------------------------------------------------------------------------------------------------------------
+
+constexpr std::string_view kNpy = ".npy";
+
+VolumeFacts npz_facts(const std::string& path) {
+  const ZipReader archive(path);
+  VolumeFacts facts;
+  facts.format = "NPZ";
+  for (const ZipReader::Member& member : archive.members()) {
+    if (!member.name.ends_with(kNpy)) continue;
+    InputBuffer input(archive.name_of(member), archive.open(member));
+    const NpyHead head = read_npy_head(input);
+    facts.arrays.push_back({member.name.substr(0, member.name.size() - kNpy.size()), head.type, head.shape});
+    if (member.name != "raycone.npy") continue;
+    while (input.pending().size() < kMostText && input.fill()) continue;
+    facts.made_json = input.pending().substr(0, kMostText);
+  }
+  if (facts.arrays.empty()) throw InputError(path + ": has no arrays, expected an NPZ archive");
+  if (archive.find("origin.npy") != nullptr) add_lattice(facts, path, [&] { return read_npz_lattice(path); });
+  return facts;
+}
+
+// --- NRRD and NIfTI-1 -----------------------------------------------------------------------------------------------
+
+std::string entry_of(const auto& entries, const std::string& key, const std::string& otherwise) {
+  const auto found = entries.find(key);
+  return found == entries.end() ? otherwise : found->second;
+}
+
+// As many as there are at its beginning.
+std::vector<std::uint64_t> numbers_of(std::string_view text) {
+  std::vector<std::uint64_t> numbers;
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) return numbers;
+    numbers.push_back(number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+}
+
+VolumeFacts nrrd_facts(const std::string& path) {
+  const NrrdHead head = read_nrrd_head(path);
+  VolumeFacts facts;
+  facts.format = "NRRD";
+  facts.arrays.push_back({entry_of(head.pairs, "raycone_field", ""), entry_of(head.fields, "type", ""),
+                          numbers_of(entry_of(head.fields, "sizes", ""))});
+  facts.made_json = entry_of(head.pairs, "raycone", "");
+  return facts;
+}
+
+VolumeFacts nifti_facts(const std::string& path) {
+  const NiftiFacts head = read_nifti_facts(path);
+  VolumeFacts facts;
+  facts.format = "NIfTI-1";
+  facts.arrays.push_back({"", head.type, head.shape});
+  if (!head.description.empty()) facts.made.push_back({"description", head.description});
+  return facts;
+}
+
+}  // namespace
+
+VolumeFacts read_volume_facts(const std::string& path) {
+  if (!is_image(path)) return npz_facts(path);
+  VolumeFacts facts = is_nrrd(path) ? nrrd_facts(path) : nifti_facts(path);
+  add_lattice(facts, path, [&] { return read_image_lattice(path); });
+  return facts;
+}
+
+}  // namespace raycone

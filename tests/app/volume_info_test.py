@@ -1,0 +1,171 @@
+"""`raycone info` about files of values: python3 volume_info_test.py RAYCONE MESH_DIRECTORY
+
+The oracle is the report of the run that made the file. Damaged files are refused in one line.
+"""
+
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+CUBE, TEAPOT = (os.path.join(MESHES, name) for name in ("cube.obj", "teapot.obj"))
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+TURNED = """NRRD0004
+dimension: 3
+space: LPS
+sizes: 4 5 6
+space directions: (.3,.1,0) (-.1,.3,0) (0,0,-.5)
+space origin: (0,0,1)
+
+"""
+
+
+def run(words):
+    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
+
+
+class VolumeInfo(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.addCleanup(os.chdir, "/")
+        os.chdir(directory.name)
+
+    def works(self, words):
+        result = run(words)
+        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
+        return result.stdout.decode()
+
+    def refused(self, words, status, expected):
+        result = run(words)
+        self.assertEqual(result.returncode, status, (words, result.stderr))
+        self.assertIn(expected, result.stderr.decode(errors="replace"), words)
+        self.assertEqual(result.stderr.count(b"\n"), 1, words)
+        return result
+
+    def facts(self, name):
+        return json.loads(self.works("info %s --json" % name))
+
+    def test_what_each_format_says(self):
+        with open("turned.nrrd", "w") as file:
+            file.write(TURNED)
+        for lattice in ("--voxel-size .25,.5,.125 --padding 2v", "--like turned.nrrd"):
+            for name, form, array in (("a.vdb", "OpenVDB", ("inside", "bool")), ("a.npz", "NPZ", ("inside", "|b1")),
+                                      ("a.nrrd", "NRRD", ("inside", "uint8")), ("a.nii", "NIfTI-1", ("", "uint8")),
+                                      ("a.nii.gz", "NIfTI-1", ("", "uint8"))):
+                words = "lattice %s -o %s --field inside --rule abs=.5 --scale 2 --quiet --report r.json %s"
+                self.works(words % (CUBE, name, lattice))
+                with open("r.json") as file:
+                    report = json.load(file)
+                facts = self.facts(name)
+                self.assertEqual(facts["format"], form)
+                self.assertEqual((facts["arrays"][0]["name"], facts["arrays"][0]["type"]), array)
+                expected = report["lattice"]
+                if form in ("OpenVDB", "NPZ"):
+                    # Directions are rounded.
+                    self.expect_near(facts["lattice"], expected, 1e-15)
+                else:  # index 0 is the first sample there; NIfTI has 32 bits
+                    self.assertEqual(facts["lattice"]["index_min"], [0, 0, 0])
+                    self.expect_near(facts["lattice"]["spacing"], expected["spacing"], 1e-7)
+                made = facts["made"]
+                if form == "NIfTI-1":
+                    self.assertEqual(made["description"], "raycone %s inside" % report["version"])
+                    continue
+                for key in ("sha256", "transform"):
+                    self.assertEqual(made[key], report[key], name)
+                self.assertEqual((made["raycone_version"], made["rule"]), (report["version"], "abs=0.5"))
+                options = made["options"] if form != "OpenVDB" else made["options"].split(" ")
+                self.assertEqual(options, report["options"])
+
+    def expect_near(self, got, expected, tolerance):
+        if isinstance(expected, dict):
+            self.assertEqual(got.keys(), expected.keys())
+            got, expected = list(got.values()), list(expected.values())
+        if isinstance(expected, list):
+            self.assertEqual(len(got), len(expected))
+            for pair in zip(got, expected):
+                self.expect_near(*pair, tolerance)
+        else:
+            self.assertLessEqual(abs(got - expected), tolerance)
+
+    def test_text_and_several(self):
+        self.works("lattice %s -o a.vdb --field winding,inside --rule odd --resolution 3 --quiet" % CUBE)
+        self.works("points %s --sample uniform=5 -o p.npz --quiet" % CUBE)
+        text = self.works("info a.vdb p.npz")
+        for line in ("  grids                winding float\n                       inside bool\n",
+                     "  samples              3 x 3 x 3\n", "  spacing              (0.5, 0.5, 0.5) world units\n",
+                     "  axes                 those of the world\n", "  rule                 odd\n",
+                     "  mesh                 cube.obj\n", "\np.npz\n", "  arrays               points <f8 (5, 3)\n"):
+            self.assertIn(line, text)
+        several = json.loads(self.works("info %s a.vdb p.npz --json" % CUBE))
+        self.assertEqual([entry.get("mesh", entry.get("file")) for entry in several], [CUBE, "a.vdb", "p.npz"])
+        self.assertIsNone(several[2]["lattice"])
+        self.assertEqual(several[2]["made"]["options"], ["--sample=uniform=5"])
+        for option in ("--csv", "--require closed", "--intersections", "--mark m.ply", "--scale 2", "--orient auto"):
+            self.refused("info %s a.vdb %s" % (CUBE if "mark" not in option else "", option), 1,
+                         "raycone: %s: has no effect on a.vdb, which is no mesh" % option.split()[0])
+
+    def test_a_file_without_a_place_has_no_lattice(self):
+        with open("a.nrrd", "w") as file:
+            file.write("NRRD0004\ntype: float\ndimension: 2\nsizes: 4 5\nencoding: raw\n\n")
+        facts = self.facts("a.nrrd")
+        self.assertEqual((facts["arrays"], facts["lattice"], facts["made"]),
+                         ([{"name": "", "type": "float", "shape": [4, 5]}], None, {}))
+        self.assertIn("no lattice           not a readable volume: dimension, expected", self.works("info a.nrrd"))
+
+    def test_archives_of_others(self):
+        with zipfile.ZipFile("a.npz", "w") as archive:
+            archive.writestr("a.txt", "text")
+        self.refused("info a.npz", 2, "a.npz: has no arrays, expected an NPZ archive")
+        os.rename("a.npz", "a.zip")
+        self.assertNotEqual(run("info a.zip").returncode, 0)
+
+    def test_what_files_say_of_themselves_is_not_trusted(self):
+        deep = "[" * 100000
+        for made in ("{}", "[1, 2]", "{", "\xff\xfe", deep, '{"a": %s%s}' % (deep, "]" * 100000), '{"a": 1e999}',
+                     '{"\x1b[31m": "\x1b[2J\\n\\u001b"}', '{"a": {"b": {"c": [1, "d"]}}}',
+                     '{"transform": null, "a": NaN}'):
+            with open("a.nrrd", "wb") as file:
+                file.write(b"NRRD0004\ntype: float\x1b[31m\ndimension: 3\nsizes: 1 2 3\nspacings: 1 1 1\nraycone:=" +
+                           made.encode("latin1") + b"\n\n")
+            self.assertEqual(self.facts("a.nrrd")["lattice"]["index_max"], [0, 1, 2], made[:40])
+            text = self.works("info a.nrrd")
+            self.assertNotIn("\x1b", text)
+            self.assertLess(len(text), 10000)
+        self.assertEqual(self.facts("a.nrrd")["made"], {})
+
+    def test_damaged_files(self):
+        """Bytes changed, and ends cut off: facts, or one line."""
+        chance = random.Random(3)
+        self.works("lattice %s -o a.vdb --field winding,inside --resolution 3 --quiet" % CUBE)
+        self.works("lattice %s -o a.npz --resolution 3 --quiet" % CUBE)
+        self.works("lattice %s -o a.nrrd --resolution 3 --quiet" % CUBE)
+        self.works("lattice %s -o a.nii --resolution 3 --quiet" % CUBE)
+        outcomes = set()
+        for name in ("a.vdb", "a.npz", "a.nrrd", "a.nii"):
+            with open(name, "rb") as file:
+                whole = file.read()
+            for n in range(12):
+                content = bytearray(whole[: chance.randrange(len(whole))] if n % 3 == 0 else whole)
+                for _ in range(chance.randrange(1, 5) if n % 3 else 0):
+                    place = chance.randrange(min(len(content), 900))
+                    content[place] = chance.choice((0, 255, 127, chance.randrange(256)))
+                with open("b" + name[1:], "wb") as file:
+                    file.write(content)
+                result = run("info b%s --json" % name[1:])
+                self.assertIn(result.returncode, (0, 2), (result.stderr, bytes(content)))
+                self.assertEqual(result.stderr.count(b"\n"), 1 if result.returncode else 0, result.stderr)
+                if result.returncode == 0:
+                    json.loads(result.stdout)
+                outcomes.add((name, result.returncode))
+        self.assertGreaterEqual(len(outcomes), 6)  # both ends are met
+        self.refused("info missing.npz", 2, "missing.npz")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

@@ -35,8 +35,8 @@ bool draws_in_box(const SampleRequest& request) {
 }  // namespace
 
 void refuse_idle_rule(const Values& values, const FieldOptions& field) {
-  if (field.has(Field::kInside) || field.has(Field::kDistance)) return;
-  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside or sdf");
+  if (field.has_rule()) return;
+  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside, sdf or solid");
 }
 
 void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
@@ -57,7 +57,9 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   refuse_idle_encoding(values, command.field, command.encoding);
   refuse_idle_rule(values, command.field);
   refuse_idle_depfile(values, command.output);
-  if (!command.field.has(Field::kDistance)) refuse_option(values, "--band", "without a distance, expected --field sdf");
+  if (!command.field.has_distance()) {
+    refuse_option(values, "--band", "without a distance, expected --field sdf or solid");
+  }
   const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {

@@ -184,7 +184,7 @@ Command parse_lattice(const Values& values) {
   command.mesh = parse_mesh(values);
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
-  if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
+  if (command.field.has_distance()) make_room_for_band(values, command);
   command.output = parse_output_files(values);
   command.encoding =
       parse_encoding(values, command.output,

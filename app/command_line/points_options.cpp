@@ -77,8 +77,6 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 }  // namespace
 
 CommandSpec points_spec() {
-  OptionGroup field = field_group();
-  std::erase_if(field.options, [](const OptionSpec& option) { return option.names == "--band"; });
   OptionGroup output = output_group("csv|npy|npz");
   output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in NPY and NPZ (default: f64)"});
   output.options.push_back(pack_bits_option());
@@ -94,7 +92,7 @@ CommandSpec points_spec() {
                   {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
                    {"--raw", "f64|f32", "Read little-endian x y z triples, write bare values"}}},
                  sample_group(),
-                 field,
+                 points_field_group(),
                  unlisted,
                  output,
                  run_group()},
@@ -109,6 +107,7 @@ CommandSpec points_spec() {
 Command parse_points(const Values& values) {
   PointsCommand command;
   command.field = parse_field(values);
+  if (command.field.has(Field::kSolid)) refuse_solid();
   command.mesh = parse_mesh(values);
   command.run = parse_run(values);
   parse_points_source(values, command);

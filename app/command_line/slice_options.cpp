@@ -96,6 +96,7 @@ FieldOptions parse_slice_field(const Values& values) {
   const std::string name = values.given("--field") ? values.text("--field") : "winding";
   if (name == "label") not_available("--field label");
   const std::optional<Field> field = field_from_name(name);
+  if (field == Field::kSolid) refuse_solid();
   if (!field || field == Field::kDensity || field == Field::kGradient)
     invalid("--field", name, "winding, inside or sdf");
   if (field == Field::kWinding && values.given("--rule")) {

@@ -15,6 +15,7 @@ std::optional<Field> field_from_name(std::string_view name) {
   if (name == "inside") return Field::kInside;
   if (name == "density") return Field::kDensity;
   if (name == "sdf") return Field::kDistance;
+  if (name == "solid") return Field::kSolid;
   if (name == "gradient") return Field::kGradient;
   return std::nullopt;
 }

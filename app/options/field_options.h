@@ -19,10 +19,11 @@ enum class Field {
   kInside,    // whether the rule holds
   kDensity,   // the winding number, clamped to [0, 1]
   kDistance,  // to the triangles, signed: negative inside
+  kSolid,     // likewise, to the closed surface that `raycone surface` makes of the lattice
   kGradient,  // of the winding number, beside its jumps
 };
 
-// "winding", "inside", "density", "sdf" or "gradient".
+// "winding", "inside", "density", "sdf", "solid" or "gradient".
 [[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
 
 // As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
@@ -43,6 +44,10 @@ struct FieldOptions {
   SimdLevel simd = SimdLevel::kBest;
 
   [[nodiscard]] bool has(Field field) const;
+  // Whether a field depends on the rule.
+  [[nodiscard]] bool has_rule() const { return has(Field::kInside) || has_distance(); }
+  // Whether a field is cut off at the band.
+  [[nodiscard]] bool has_distance() const { return has(Field::kDistance) || has(Field::kSolid); }
 
   // Whether of winding numbers nothing is asked but whether the rule holds.
   [[nodiscard]] bool rule_only() const;

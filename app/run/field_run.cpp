@@ -34,10 +34,14 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
                          return FieldEvaluator(std::move(mesh), field, &edges, samples);
                        })),
       samples_(field),
-      draw_(field.verify),
-      has_rule_(field.has(Field::kInside) || field.has(Field::kDistance)) {
+      draw_(field.verify) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
   run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+}
+
+void FieldRun::set_solid(TriangleMesh surface) {
+  timed(run_.report.seconds.prepare, [&] { evaluator_.set_solid(surface); });
+  if (field_.verify > 0) solid_ = std::move(surface);
 }
 
 void FieldRun::prepare_points() {
@@ -65,7 +69,7 @@ void FieldRun::look_for_largest_bound() {
 }
 
 void FieldRun::look_for_inside() {
-  if (!has_rule_ || found_inside_) return;
+  if (!field_.has_rule() || found_inside_) return;
   found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
 }
 
@@ -76,7 +80,7 @@ void FieldRun::finish(double band_width) {
   run_.report.largest_error_bound = field_.diagnostics ? largest_bound_ : open ? evaluator.accuracy() : 0.0;
   if (field_.verify == 0) return;
   run_.report.verification = timed(run_.report.seconds.verify, [&] {
-    return raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
+    return raycone::verify(run_.report.mesh, {original_, &solid_}, evaluator_, field_, band_width, draw_.samples());
   });
 }
 
@@ -95,8 +99,7 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   description.options = report.options;
   std::vector<std::string> names;
   for (const FieldDescription& described : description.fields) names.push_back(described.name);
-  const bool has_rule = field.has(Field::kInside) || field.has(Field::kDistance);
-  description.metadata = provenance_json(report, names, has_rule ? name_of(field.rule) : "");
+  description.metadata = provenance_json(report, names, field.has_rule() ? name_of(field.rule) : "");
   return description;
 }
 

@@ -23,6 +23,7 @@ struct SampleNumbers {
   std::span<const std::uint8_t> inside{};
   std::span<const double> density{};
   std::span<const double> distance{};  // signed
+  std::span<const double> solid{};     // likewise
   std::span<const Vec3> gradient{};
 };
 
@@ -42,18 +43,25 @@ class FieldSamples {
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
+  // Those to the closed surface, likewise.
+  [[nodiscard]] std::span<double> solid_distances() { return solid_distances_; }
   // Empty where they are not wanted.
   [[nodiscard]] std::span<Vec3> gradients() { return gradients_; }
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
-  // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
+  // Computes the fields that follow from winding_numbers(), and the signs of distances. Threaded.
   void derive();
 
   // After derive().
   [[nodiscard]] SampleNumbers numbers() const {
     const bool rule_only = options_.rule_only();
-    return {rule_only ? std::span<const double>() : winding_numbers_, inside_, density_, distances_, gradients_};
+    return {rule_only ? std::span<const double>() : winding_numbers_,
+            inside_,
+            density_,
+            distances_,
+            solid_distances_,
+            gradients_};
   }
 
   // As describe_fields() lists them.
@@ -67,6 +75,7 @@ class FieldSamples {
   std::vector<std::uint8_t> inside_;
   std::vector<double> density_;
   std::vector<double> distances_;
+  std::vector<double> solid_distances_;
   std::vector<Vec3> gradients_;
   std::vector<std::int64_t> crossings_;
   std::vector<std::int64_t> degenerate_;

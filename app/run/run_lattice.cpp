@@ -18,6 +18,7 @@
 #include "app/run/field_run.h"
 #include "app/run/grid_reader.h"
 #include "app/run/lattice_choice.h"
+#include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
 #include "app/run/mesh_warnings.h"
 #include "app/run/slabs.h"
@@ -31,14 +32,14 @@ namespace raycone {
 namespace {
 
 // A level set has one voxel size.
-void check_cubic(const Vec3& spacing) {
+void check_cubic(const char* field, const Vec3& spacing) {
   constexpr double kRounding = 1e-12;  // of sides divided by counts
   const auto [least, most] = std::minmax({spacing.x, spacing.y, spacing.z});
   if (most - least <= kRounding * most) return;
   char message[160];
   std::snprintf(message, sizeof message,
-                "--field sdf: voxels of %g x %g x %g, expected cubic ones (--resolution N, --voxel-size H)", spacing.x,
-                spacing.y, spacing.z);
+                "--field %s: voxels of %g x %g x %g, expected cubic ones (--resolution N, --voxel-size H)", field,
+                spacing.x, spacing.y, spacing.z);
   throw UsageError(message);
 }
 
@@ -52,7 +53,8 @@ Lattice lattice_for(const LatticeCommand& command, const TriangleMesh& mesh, std
   const Lattice lattice = grid
                               ? lattice_of_grid(*grid)
                               : choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
-  if (command.field.has(Field::kDistance)) check_cubic(lattice.spacing);
+  if (command.field.has(Field::kDistance)) check_cubic("sdf", lattice.spacing);
+  if (command.field.has(Field::kSolid)) check_cubic("solid", lattice.spacing);
   return lattice;
 }
 
@@ -142,6 +144,17 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, LatticeWriter& write
   }
 }
 
+// The surface that `raycone surface` would make.
+TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Lattice& lattice, const Rule& rule) {
+  return timed(run.report.seconds.prepare, [&] {
+    const WindingNumberEvaluator evaluator(mesh);
+    MadeSurface made =
+        make_surface(run.report.mesh, mesh, evaluator, lattice, SurfaceOptions{rule}, run.limits().memory());
+    run.report.surface = made.report;
+    return std::move(made.surface.mesh);
+  });
+}
+
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
@@ -152,12 +165,19 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   report.lattice = lattice_for(command, mesh, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(*report.lattice);
-  if (std::isinf(command.field.band)) command.field.band = band_of_all(bounding_box(mesh), *report.lattice);
+  const bool solid = command.field.has(Field::kSolid);
+  // The lattice of the surface that solid distances are to: outside nodes around do not change it.
+  const Lattice around = solid ? with_layers(*report.lattice, 1) : *report.lattice;
+  if (std::isinf(command.field.band)) {
+    command.field.band = band_of_all(bounding_box(mesh), around);
+  }
   run.print_warnings();
 
+  const TriangleMesh original = solid ? mesh : TriangleMesh{};
   const bool may_be_empty = !should_have_inside(bounding_box(mesh), *report.lattice);
   FieldRun fields(run, std::move(mesh), command.field, static_cast<double>(report.samples));
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
+  if (solid) fields.set_solid(solid_of(run, original, around, command.field.rule));
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), *writer, observe, run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
   fields.finish(command.field.band * report.lattice->spacing.x);

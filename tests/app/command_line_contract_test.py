@@ -32,17 +32,16 @@ WORKING = {
 
 NOT_AVAILABLE = {
     "lattice": {
-        "--field solid": "--field solid",
         "--field label": "--field label",
         "--parts component": "--parts",
         "--mesh-format 3mf": "--mesh-format 3mf",
     },
     "points": {
-        "--field winding,solid": "--field winding,solid",
+        "--field winding,label": "--field winding,label",
         "--parts group": "--parts",
     },
     "batch": {
-        "--field solid": "--field solid",
+        "--field label": "--field label",
         "--parts group": "--parts",
     },
 }

@@ -186,7 +186,7 @@ TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {
 
 TEST_F(CommandLine, UnknownWordsListWhatExists) {
   expect_error(lattice({"--field", "foo"}), 1,
-               "--field foo: expected one or more of winding, inside, density, sdf, gradient");
+               "--field foo: expected one or more of winding, inside, density, sdf, solid, gradient");
   expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv, npy, npz, vti, nrrd, nii or nii.gz");
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
@@ -209,7 +209,7 @@ TEST_F(CommandLine, ExtensionsAreRecognisedInAnyCase) {
 }
 
 TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  expect_not_available(lattice({"--field", "solid"}), "--field solid");
+  expect_not_available(lattice({"--field", "label"}), "--field label");
 }
 
 TEST_F(CommandLine, HelpIsAResultWithExamplesAndWithoutWhatIsNotAvailable) {

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "app/report/run_report.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "core/surface/surface.h"
 
@@ -16,6 +18,7 @@ namespace raycone {
 struct MadeSurface {
   SurfaceMesh surface;
   SurfaceReport report;
+  std::vector<Warning> warnings;  // `not-merged`, `not-simplified`: those that apply
 };
 
 // The surface between the inside and the outside nodes of `lattice`, by `evaluator` of `mesh`; it has been checked.

@@ -60,10 +60,11 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   const SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
                                is_single_precision(command.format)};
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
-  auto [surface, surface_report] = timed(report.seconds.evaluate, [&] {
+  auto [surface, surface_report, warnings] = timed(report.seconds.evaluate, [&] {
     return make_surface(report.mesh, mesh, evaluator, *report.lattice, options, limits.memory(), done);
   });
   report.surface = surface_report;
+  for (const Warning& warning : warnings) run.warn(warning);
   for (std::int32_t& source : surface.sources) {
     if (source != kHole) source = static_cast<std::int32_t>(run.place_of(static_cast<std::uint32_t>(source)));
   }

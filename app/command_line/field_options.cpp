@@ -64,8 +64,7 @@ OptionGroup field_group() {
        {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
        {"--band", "B",
         "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not "
-        "cut it "
-        "off"},
+        "cut it off"},
        tolerance_option(),
        {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
        {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
@@ -80,8 +79,7 @@ OptionGroup points_field_group() {
   field.value = "winding|inside|density|sdf|gradient[,...]";
   field.description =
       "Winding number (default), inside mask, winding number clamped to 0..1, signed distance to the faces, gradient "
-      "of "
-      "the winding number";
+      "of the winding number";
   return group;
 }
 

@@ -168,9 +168,7 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   const bool solid = command.field.has(Field::kSolid);
   // The lattice of the surface that solid distances are to: outside nodes around do not change it.
   const Lattice around = solid ? with_layers(*report.lattice, 1) : *report.lattice;
-  if (std::isinf(command.field.band)) {
-    command.field.band = band_of_all(bounding_box(mesh), around);
-  }
+  if (std::isinf(command.field.band)) command.field.band = band_of_all(bounding_box(mesh), around);
   run.print_warnings();
 
   const TriangleMesh original = solid ? mesh : TriangleMesh{};

@@ -158,7 +158,6 @@ CommandSpec batch_spec() {
                    "raycone batch meshes --out-dir samples --sample uniform=100000,near=100000:0.01",
                    "find . -name '*.stl' -size -10M -print0 | raycone batch @- -0 --out-dir fields",
                    "raycone report fields"};
-  std::erase_if(spec.later.with_value, [](const std::string& name) { return kOfOneFile.contains(name); });
   return spec;
 }
 

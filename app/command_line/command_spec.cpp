@@ -10,7 +10,7 @@ std::vector<std::string> names_of(const OptionSpec& option) {
 }
 
 OptionNames option_names(const CommandSpec& spec) {
-  OptionNames names = spec.later;
+  OptionNames names;
   for (const OptionGroup& group : spec.groups) {
     for (const OptionSpec& option : group.options) {
       for (const std::string& name : names_of(option)) {

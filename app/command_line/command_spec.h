@@ -42,13 +42,12 @@ struct CommandSpec {
   std::vector<OptionGroup> groups;
   std::vector<std::string> examples;  // a line each
   std::vector<NoteSpec> notes = {};   // below the examples
-  OptionNames later = {};             // promised options that do not exist yet: recognised, listed nowhere
 };
 
 // "-o,--output" as {"-o", "--output"}.
 [[nodiscard]] std::vector<std::string> names_of(const OptionSpec& option);
 
-// All names in `spec`, those of `later` too.
+// All names in `spec`.
 [[nodiscard]] OptionNames option_names(const CommandSpec& spec);
 
 [[nodiscard]] bool contains(const OptionNames& names, const std::string& name);

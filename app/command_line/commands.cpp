@@ -19,11 +19,6 @@ const std::vector<CommandEntry>& commands() {
   return all;
 }
 
-const std::set<std::string>& later_commands() {
-  static const std::set<std::string> names;
-  return names;
-}
-
 const CommandSpec& program_spec() {
   static const CommandSpec spec{
       .name = "raycone",

@@ -19,9 +19,6 @@ struct CommandEntry {
 // In the order of the help.
 [[nodiscard]] const std::vector<CommandEntry>& commands();
 
-// The names of commands that are promised and do not exist yet.
-[[nodiscard]] const std::set<std::string>& later_commands();
-
 // raycone itself: the options that need no command.
 [[nodiscard]] const CommandSpec& program_spec();
 

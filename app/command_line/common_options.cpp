@@ -31,13 +31,6 @@ Normalize parse_normalize(const std::string& text) {
   return {name == "cube" ? NormalizeTo::kCube : NormalizeTo::kSphere, *size};
 }
 
-// `file`: ends with a dot and the format's name.
-void refuse_later_format(const std::string& what, const std::string& file, const OutputFormats& formats) {
-  for (const char* const name : formats.later) {
-    if (has_extension(file, name)) not_available(what);
-  }
-}
-
 Orient parse_orient(const Values& values) {
   const std::map<std::string, Orient> ways{
       {"", Orient::kKeep}, {"keep", Orient::kKeep}, {"flip", Orient::kFlip}, {"auto", Orient::kAuto}};
@@ -63,7 +56,6 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
       named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
-  refuse_later_format(named ? "--format " + name : output, (named ? "." : "") + (named ? name : output), formats);
   if (named) invalid("--format", values.text("--format"), formats.listed);
   throw UsageError(output + ": its extension names no format, expected " + formats.listed + ", or --format");
 }

@@ -28,7 +28,6 @@ struct OutputFormats {
   std::vector<FieldFormat> written;
   std::string listed;                    // for messages
   std::optional<FieldFormat> only = {};  // whatever the output is called
-  std::vector<const char*> later = {};   // extensions of those that are promised and do not exist yet
 };
 // Of values that go to `output`: --format, --dtype and --pack-bits.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,

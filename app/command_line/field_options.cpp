@@ -28,8 +28,7 @@ std::vector<Field> parse_fields(const Values& values) {
   const std::string text = values.text("--field");
   for (const std::string_view name : items_of(text)) {
     const std::optional<Field> field = field_from_name(name);
-    if (name == "solid") not_available("--field " + text);
-    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf, gradient, label");
+    if (!field) invalid("--field", text, "one or more of winding, inside, density, sdf, solid, gradient, label");
     if (std::ranges::count(fields, *field) > 0) invalid("--field", text, "each field once");
     fields.push_back(*field);
   }
@@ -63,23 +62,42 @@ SimdLevel parse_simd(const std::string& text) {
 }  // namespace
 
 OptionGroup field_group() {
-  return {"Field",
-          {{"--field", "winding|inside|density|sdf|gradient|label[,...]",
-            "Winding number (default), inside mask, winding number clamped to 0..1, signed distance, gradient of the "
-            "winding number, number of the part that a sample is inside of",
-            true},
-           {"--parts", "file|group|component",
-            "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"},
-           {"--priority", "", "Where parts overlap, label is the first of them, not the last"},
-           {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
-           {"--band", "B",
-            "Cut sdf off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not cut it "
-            "off"},
-           tolerance_option(),
-           {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
-           {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
-           {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
-           {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
+  return {
+      "Field",
+      {{"--field", "winding|inside|density|sdf|solid|gradient|label[,...]",
+        "Winding number (default), inside mask, winding number clamped to 0..1, signed distance to the faces, signed "
+        "distance to the surface that raycone surface makes, gradient of the winding number, number of the part that a "
+        "sample is inside of",
+        true},
+       {"--parts", "file|group|component",
+        "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"},
+       {"--priority", "", "Where parts overlap, label is the first of them, not the last"},
+       {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
+       {"--band", "B",
+        "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not "
+        "cut it off"},
+       tolerance_option(),
+       {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
+       {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
+       {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
+       {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
+}
+
+OptionGroup points_field_group() {
+  OptionGroup group = field_group();
+  std::erase_if(group.options, [](const OptionSpec& option) { return option.names == "--band"; });
+  OptionSpec& field = group.options.front();
+  field.value = "winding|inside|density|sdf|gradient|label[,...]";
+  field.description =
+      "Winding number (default), inside mask, winding number clamped to 0..1, signed distance to the faces, gradient "
+      "of the winding number, number of the part that a point is inside of";
+  return group;
+}
+
+void refuse_solid() {
+  throw UsageError(
+      "--field solid: is the distance to a surface between samples of a lattice, expected raycone lattice, "
+      "or --field sdf");
 }
 
 OptionSpec tolerance_option() {

@@ -9,6 +9,12 @@
 namespace raycone {
 
 [[nodiscard]] OptionGroup field_group();
+// The same for points, without what only lattices have.
+[[nodiscard]] OptionGroup points_field_group();
+
+// --field solid, where there is no lattice.
+[[noreturn]] void refuse_solid();
+
 [[nodiscard]] OptionSpec tolerance_option();
 // What --tolerance says. Precondition: it is given.
 [[nodiscard]] double parse_tolerance(const Values& values);

@@ -39,13 +39,11 @@ bool draws_in_box(const SampleRequest& request) {
 
 void refuse_idle_rule(const Values& values, const FieldOptions& field) {
   if (field.has_rule()) return;
-  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside, sdf or label");
+  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside, sdf, solid or label");
 }
 
 void refuse_idle_parts(const Values& values, const FieldOptions& field) {
-  if (field.labels_only()) {
-    refuse_flag(values, "--diagnostics", "on labels, expected another field with them");
-  }
+  if (field.labels_only()) refuse_flag(values, "--diagnostics", "on labels, expected another field with them");
   if (field.has(Field::kLabel)) return;
   refuse_option(values, "--parts", "without labels, expected --field label");
   refuse_flag(values, "--priority", "without labels, expected --field label");
@@ -70,7 +68,9 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   refuse_idle_rule(values, command.field);
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
-  if (!command.field.has(Field::kDistance)) refuse_option(values, "--band", "without a distance, expected --field sdf");
+  if (!command.field.has_distance()) {
+    refuse_option(values, "--band", "without a distance, expected --field sdf or solid");
+  }
   const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {

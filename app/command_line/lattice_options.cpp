@@ -174,8 +174,7 @@ CommandSpec lattice_spec() {
                        "raycone lattice part.stl -o part.vdb --voxel-size 0.5 --padding 3v",
                        "raycone lattice next.obj -o next.vdb --like bunny.vdb      on the lattice of another volume",
                        "raycone lattice femur.stl tibia.stl -o knee.nii.gz --field label",
-                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"},
-          .later = {}};
+                       "zcat scan.ply.gz | raycone lattice - -o - --format csv | head"}};
 }
 
 Command parse_lattice(const Values& values) {
@@ -185,7 +184,7 @@ Command parse_lattice(const Values& values) {
   command.mesh = parse_meshes(values, command.field);
   command.run = parse_run(values);
   command.lattice = parse_lattice_request(values);
-  if (command.field.has(Field::kDistance)) make_room_for_band(values, command);
+  if (command.field.has_distance()) make_room_for_band(values, command);
   command.output = parse_output_files(values);
   command.encoding =
       parse_encoding(values, command.output,

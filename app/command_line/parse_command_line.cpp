@@ -146,7 +146,6 @@ std::string listed_commands() {
 const CommandEntry& command_named(const std::string& name) {
   const auto found = std::ranges::find(commands(), name, [](const CommandEntry& entry) { return entry.spec.name; });
   if (found != commands().end()) return *found;
-  if (later_commands().contains(name)) not_available(name);
   const std::string expected = ", expected " + listed_commands() + help_hint("");
   if (name.empty()) throw UsageError("no command given" + expected);
   const std::string meant = suggestion(name, command_names());
@@ -195,7 +194,6 @@ void check_options(const CommandSpec& spec, const Arguments& arguments) {
   const OptionNames known = option_names(spec);
   for (const OptionArgument& option : arguments.options) {
     if (!contains(known, option.name)) refuse_unknown(option.name, listed_names(spec), arguments.command);
-    if (contains(spec.later, option.name)) not_available(option.name);
   }
   for (const OptionGroup& group : spec.groups) {
     for (const OptionSpec& option : group.options) {

@@ -92,8 +92,6 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 }  // namespace
 
 CommandSpec points_spec() {
-  OptionGroup field = field_group();
-  std::erase_if(field.options, [](const OptionSpec& option) { return option.names == "--band"; });
   OptionGroup output = output_group("csv|npy|npz");
   output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in NPY and NPZ (default: f64)"});
   output.options.push_back(pack_bits_option());
@@ -109,7 +107,7 @@ CommandSpec points_spec() {
                   {{"--columns", "A,B,C", "Columns of x, y, z in text, counted from 1"},
                    {"--raw", "f64|f32", "Read little-endian x y z triples, write bare values"}}},
                  sample_group(),
-                 field,
+                 points_field_group(),
                  unlisted,
                  output,
                  run_group()},
@@ -117,13 +115,13 @@ CommandSpec points_spec() {
                    "raycone points bunny.obj points.npy -o values.npy",
                    "raycone points bunny.obj cloud.ply -o values.csv",
                    "raycone points bunny.obj table.tsv --columns 2,3,4", "echo 0 0.1 0 | raycone points bunny.obj -",
-                   "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"},
-      .later = {}};
+                   "raycone points bunny.obj --sample uniform=100000,near=100000:0.01 -o bunny.npz"}};
 }
 
 Command parse_points(const Values& given) {
   PointsCommand command;
   command.field = parse_field(given);
+  if (command.field.has(Field::kSolid)) refuse_solid();
   const Values values = with_points_operand(given, command.field);
   command.mesh = parse_meshes(values, command.field);
   command.run = parse_run(values);

@@ -95,6 +95,7 @@ SliceRequest parse_request(const Values& values, const Values& up) {
 FieldOptions parse_slice_field(const Values& values) {
   const std::string name = values.given("--field") ? values.text("--field") : "winding";
   const std::optional<Field> field = field_from_name(name);
+  if (field == Field::kSolid) refuse_solid();
   if (!field || field == Field::kDensity || field == Field::kGradient || field == Field::kLabel)
     invalid("--field", name, "winding, inside or sdf");
   if (field == Field::kWinding && values.given("--rule")) {

@@ -77,8 +77,7 @@ CommandSpec surface_spec() {
           .examples = {"raycone surface scan.ply -o solid.ply                      64 samples along the longest side",
                        "raycone surface part.stl -o part-closed.stl --voxel-size 0.2",
                        "raycone surface model.obj -o model.ply --orient auto --resolution 256",
-                       "raycone info part-closed.stl --require closed,oriented,outward,manifold,embedded"},
-          .later = {{"--normalize"}, {}}};
+                       "raycone info part-closed.stl --require closed,oriented,outward,manifold,embedded"}};
 }
 
 Command parse_surface(const Values& values) {

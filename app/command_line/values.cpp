@@ -49,8 +49,6 @@ void invalid(const std::string& name, const std::string& text, const std::string
   throw InvalidValue(name, text, expected);
 }
 
-void not_available(const std::string& what) { throw UsageError(what + ": not available yet"); }
-
 std::string help_hint(const std::string& command) {
   return "; see 'raycone " + (command.empty() ? "" : command + " ") + "--help'";
 }

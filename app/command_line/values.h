@@ -51,7 +51,6 @@ class InvalidValue : public UsageError {
 
 // Throws InvalidValue.
 [[noreturn]] void invalid(const std::string& name, const std::string& text, const std::string& expected);
-[[noreturn]] void not_available(const std::string& what);
 
 // Where to read on, to be put behind a message; an empty `command` is raycone itself.
 [[nodiscard]] std::string help_hint(const std::string& command);

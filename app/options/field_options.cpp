@@ -15,6 +15,7 @@ std::optional<Field> field_from_name(std::string_view name) {
   if (name == "inside") return Field::kInside;
   if (name == "density") return Field::kDensity;
   if (name == "sdf") return Field::kDistance;
+  if (name == "solid") return Field::kSolid;
   if (name == "gradient") return Field::kGradient;
   if (name == "label") return Field::kLabel;
   return std::nullopt;
@@ -22,7 +23,7 @@ std::optional<Field> field_from_name(std::string_view name) {
 
 bool FieldOptions::labels_only() const { return fields == std::vector{Field::kLabel}; }
 
-bool FieldOptions::has_rule() const { return has(Field::kInside) || has(Field::kDistance) || has(Field::kLabel); }
+bool FieldOptions::has_rule() const { return has(Field::kInside) || has_distance() || has(Field::kLabel); }
 
 bool FieldOptions::rule_only() const { return !has(Field::kWinding) && !has(Field::kDensity) && !diagnostics; }
 

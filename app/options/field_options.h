@@ -19,11 +19,12 @@ enum class Field {
   kInside,    // whether the rule holds
   kDensity,   // the winding number, clamped to [0, 1]
   kDistance,  // to the triangles, signed: negative inside
+  kSolid,     // likewise, to the closed surface that `raycone surface` makes of the lattice
   kGradient,  // of the winding number, beside its jumps
   kLabel,     // which part the rule holds for
 };
 
-// "winding", "inside", "density", "sdf", "gradient" or "label".
+// "winding", "inside", "density", "sdf", "solid", "gradient" or "label".
 [[nodiscard]] std::optional<Field> field_from_name(std::string_view name);
 
 // As on the command line: "threshold=0.5", "abs=1", "nonzero", "positive" or "odd".
@@ -44,6 +45,8 @@ struct FieldOptions {
   SimdLevel simd = SimdLevel::kBest;
 
   [[nodiscard]] bool has(Field field) const;
+  // Whether a field is cut off at the band.
+  [[nodiscard]] bool has_distance() const { return has(Field::kDistance) || has(Field::kSolid); }
 
   // Whether the mesh as a whole is not asked about.
   [[nodiscard]] bool labels_only() const;

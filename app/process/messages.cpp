@@ -19,8 +19,6 @@ Failure current_failure() {
     throw;
   } catch (const UsageError& error) {
     return {ExitCode::kUsage, error.what()};
-  } catch (const NotAvailable& error) {
-    return {ExitCode::kUsage, error.what()};
   } catch (const InputError& error) {
     return {ExitCode::kInput, error.what()};
   } catch (const OutputError& error) {

@@ -16,8 +16,6 @@ double tolerance_of(const FieldOptions& options) {
   return options.tolerance > 0.0 && options.rule_only() ? std::max(options.tolerance, kRough) : options.tolerance;
 }
 
-bool has_rule(const FieldOptions& options) { return options.has(Field::kInside) || options.has(Field::kDistance); }
-
 std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const FieldOptions& options,
                                               const std::vector<ExteriorEdge>* edges) {
   if (!options.has(Field::kGradient)) return std::nullopt;
@@ -29,8 +27,9 @@ std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const Fi
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,
                                double samples)
     : band_(options.band),
+      simd_(options.simd),
       rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
-      thresholds_(has_rule(options) ? thresholds_to_settle(options.rule) : std::vector<double>{}),
+      thresholds_(options.has_rule() ? thresholds_to_settle(options.rule) : std::vector<double>{}),
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd)
                                               : std::nullopt),
       gradient_(gradient_for(mesh, options, edges)),
@@ -40,6 +39,7 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();
   if (distance_) distance_->prepare_points();
+  if (solid_) solid_->prepare_points();
 }
 
 template <class Point>
@@ -72,6 +72,7 @@ Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeB
                             : winding_number_.evaluate(lattice, block, values, done, samples.diagnostics());
   settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
   if (distance_) distance_->evaluate(lattice, block, band_width, samples.distances());
+  if (solid_) solid_->evaluate(lattice, block, band_width, samples.solid_distances());
   if (gradient_) gradient_->evaluate(lattice, block, samples.gradients(), last);
   samples.derive();
   return tally;

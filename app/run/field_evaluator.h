@@ -25,6 +25,9 @@ class FieldEvaluator {
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 
+  // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
+  void set_solid(const TriangleMesh& surface) { solid_.emplace(surface, simd_); }
+
   // Builds the search structures that points need and lattices do not.
   void prepare_points() const;
 
@@ -49,9 +52,11 @@ class FieldEvaluator {
   void settle(const Point& point, FieldSamples& samples) const;
 
   double band_;
+  SimdLevel simd_;
   std::optional<Rule> rule_;                   // where nothing but it is asked of winding numbers
   std::vector<double> thresholds_;             // that values may have to be settled for
   std::optional<DistanceEvaluator> distance_;  // where wanted
+  std::optional<DistanceEvaluator> solid_;     // likewise
   std::optional<GradientEvaluator> gradient_;  // likewise
   WindingNumberEvaluator winding_number_;
 };

@@ -34,10 +34,14 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
                          return FieldEvaluator(std::move(mesh), field, &edges, samples);
                        })),
       samples_(field),
-      draw_(field.verify),
-      has_rule_(field.has(Field::kInside) || field.has(Field::kDistance)) {
+      draw_(field.verify) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
   if (!field.labels_only()) run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+}
+
+void FieldRun::set_solid(TriangleMesh surface) {
+  timed(run_.report.seconds.prepare, [&] { evaluator_.set_solid(surface); });
+  if (field_.verify > 0) solid_ = std::move(surface);
 }
 
 void FieldRun::prepare_points() {
@@ -72,7 +76,7 @@ void FieldRun::look_for_largest_bound() {
 }
 
 void FieldRun::look_for_inside() {
-  if (!has_rule_ || found_inside_) return;
+  if (!field_.has_rule() || found_inside_) return;
   found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
 }
 
@@ -84,7 +88,7 @@ void FieldRun::finish(double band_width) {
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
   run_.report.verification = timed(run_.report.seconds.verify, [&] {
-    return raycone::verify(run_.report.mesh, original_, evaluator_, field_, band_width, draw_.samples());
+    return raycone::verify(run_.report.mesh, {original_, &solid_}, evaluator_, field_, band_width, draw_.samples());
   });
 }
 

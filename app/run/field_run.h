@@ -25,6 +25,9 @@ class FieldRun {
   // how many there are.
   FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples);
 
+  // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
+  void set_solid(TriangleMesh surface);
+
   // Builds the search structures that points need and lattices do not.
   void prepare_points();
 
@@ -40,7 +43,7 @@ class FieldRun {
   [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
 
   // Whether a rule was asked for, and held for no sample.
-  [[nodiscard]] bool found_nothing_inside() const { return has_rule_ && !found_inside_; }
+  [[nodiscard]] bool found_nothing_inside() const { return field_.has_rule() && !found_inside_; }
 
   // Tells the report what the values took and, where it is asked for, verifies them. `band_width`: where distances are
   // cut off, world units.
@@ -53,10 +56,10 @@ class FieldRun {
   MeshRun& run_;
   const FieldOptions& field_;
   TriangleMesh original_;  // to verify; empty where that is not asked for
+  TriangleMesh solid_;     // likewise
   FieldEvaluator evaluator_;
   FieldSamples samples_;
   SampleDraw draw_;
-  bool has_rule_;
   bool found_inside_ = false;
   double largest_bound_ = 0.0;  // of diagnostics
 };

@@ -24,6 +24,9 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
     case Field::kDistance:
       description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
       break;
+    case Field::kSolid:
+      description = {"solid", "solid", "solid", FieldKind::kDistance, band_width, name_of(rule)};
+      break;
     case Field::kGradient:
       description = {"gradient", "gradient_x,gradient_y,gradient_z", "gradient", FieldKind::kVector, 0.0, ""};
       break;
@@ -85,7 +88,7 @@ std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
   std::size_t bytes = sizeof(double);  // the winding number, which all others come from
   for (const Field field : options.fields) {
     if (field == Field::kInside) bytes += sizeof(std::uint8_t);
-    if (field == Field::kDensity || field == Field::kDistance) bytes += sizeof(double);
+    if (field == Field::kDensity || field == Field::kDistance || field == Field::kSolid) bytes += sizeof(double);
     if (field == Field::kGradient) bytes += sizeof(Vec3);
     if (field == Field::kLabel) bytes += sizeof(std::int32_t);
   }
@@ -103,6 +106,8 @@ FieldValues FieldSamples::values_of(Field field) const {
       return std::span(density_);
     case Field::kDistance:
       return std::span(distances_);
+    case Field::kSolid:
+      return std::span(solid_distances_);
     case Field::kGradient:
       return std::span<const Vec3>(gradients_);
     case Field::kLabel:
@@ -116,6 +121,7 @@ void FieldSamples::resize(std::size_t count) {
   if (options_.has(Field::kInside)) inside_.resize(count);
   if (options_.has(Field::kDensity)) density_.resize(count);
   if (options_.has(Field::kDistance)) distances_.resize(count);
+  if (options_.has(Field::kSolid)) solid_distances_.resize(count);
   if (options_.has(Field::kGradient)) gradients_.resize(count);
   if (options_.has(Field::kLabel)) labels_.resize(count);
   fields_.clear();
@@ -136,6 +142,8 @@ void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& i
   reorder(inside_, walk, indices);
   reorder(density_, walk, indices);
   reorder(distances_, walk, indices);
+  reorder(solid_distances_, walk, indices);
+  reorder(labels_, walk, indices);
   reorder(gradients_, walk, indices);
   reorder(crossings_, walk, indices);
   reorder(degenerate_, walk, indices);
@@ -146,16 +154,17 @@ void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& i
 
 void FieldSamples::derive() {
   const bool inside = options_.has(Field::kInside), density = options_.has(Field::kDensity);
-  const bool distance = options_.has(Field::kDistance);
-  const bool rule_only = options_.rule_only();
-  if (!inside && !density && !distance) return;
+  const bool distance = options_.has(Field::kDistance), solid = options_.has(Field::kSolid);
+  const bool rule_only = options_.rule_only(), has_rule = options_.has_rule();
+  if (!has_rule && !density) return;
   parallel_for(winding_numbers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const double w = winding_numbers_[n];
-      const bool holds_here = (inside || distance) && holds(options_.rule, w);
+      const bool holds_here = has_rule && holds(options_.rule, w);
       if (inside) inside_[n] = holds_here ? 1 : 0;
       if (density) density_[n] = std::clamp(w, 0.0, 1.0);
       if (distance && holds_here) distances_[n] = -distances_[n];
+      if (solid && holds_here) solid_distances_[n] = -solid_distances_[n];
       if (rule_only) winding_numbers_[n] = holds_here ? 1.0 : 0.0;
     }
   });

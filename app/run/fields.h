@@ -24,6 +24,7 @@ struct SampleNumbers {
   std::span<const std::uint8_t> inside{};
   std::span<const double> density{};
   std::span<const double> distance{};  // signed
+  std::span<const double> solid{};     // likewise
   std::span<const Vec3> gradient{};
   std::span<const std::int32_t> label{};
 };
@@ -44,6 +45,8 @@ class FieldSamples {
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
+  // Those to the closed surface, likewise.
+  [[nodiscard]] std::span<double> solid_distances() { return solid_distances_; }
   // Empty where they are not wanted.
   [[nodiscard]] std::span<Vec3> gradients() { return gradients_; }
   // Likewise. Nothing here sets them: they are about other meshes, the parts.
@@ -51,7 +54,7 @@ class FieldSamples {
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
-  // Computes the fields that follow from winding_numbers(), and the signs of distances(). Threaded.
+  // Computes the fields that follow from winding_numbers(), and the signs of distances. Threaded.
   void derive();
 
   // From the order of the world's axes to that of the indices of a block. What was obtained from here before is no
@@ -61,7 +64,12 @@ class FieldSamples {
   // After derive().
   [[nodiscard]] SampleNumbers numbers() const {
     const bool rule_only = options_.rule_only();
-    return {rule_only ? std::span<const double>() : winding_numbers_, inside_, density_, distances_, gradients_};
+    return {rule_only ? std::span<const double>() : winding_numbers_,
+            inside_,
+            density_,
+            distances_,
+            solid_distances_,
+            gradients_};
   }
 
   // As describe_fields() lists them.
@@ -75,6 +83,7 @@ class FieldSamples {
   std::vector<std::uint8_t> inside_;
   std::vector<double> density_;
   std::vector<double> distances_;
+  std::vector<double> solid_distances_;
   std::vector<Vec3> gradients_;
   std::vector<std::int32_t> labels_;
   std::vector<std::int64_t> crossings_;

@@ -21,6 +21,7 @@
 #include "app/run/grid_lattice.h"
 #include "app/run/labels.h"
 #include "app/run/lattice_choice.h"
+#include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
 #include "app/run/mesh_warnings.h"
 #include "app/run/slabs.h"
@@ -32,23 +33,33 @@ namespace raycone {
 namespace {
 
 // A level set has one voxel size.
-void check_cubic(const PlacedLattice& lattice) {
+void check_cubic(const char* field, const PlacedLattice& lattice) {
   const bool turned = !world_order(lattice).has_value();
   if (lattice.is_cubic(turned ? 1e-5 : 1e-12)) return;  // of matrices in 32 bits; of sides divided by counts
   const Vec3& spacing = lattice.grid.spacing;
   char message[200];
   std::snprintf(message, sizeof message,
-                "--field sdf: voxels of %g x %g x %g%s, expected cubic ones (--resolution N, --voxel-size H)",
+                "--field %s: voxels of %g x %g x %g%s, expected cubic ones (--resolution N, --voxel-size H)", field,
                 spacing.x, spacing.y, spacing.z,
                 lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles");
   throw UsageError(message);
+}
+
+// The surface is made on the axes of the world.
+void check_solid(const PlacedLattice& lattice) {
+  check_cubic("solid", lattice);
+  if (!world_order(lattice)) {
+    throw UsageError(
+        "--field solid: a lattice whose axes are not the world's, expected --field sdf, or another --like");
+  }
 }
 
 PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const auto chosen = [&] { return choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings); };
   const PlacedLattice lattice = grid ? lattice_of_grid(*grid) : PlacedLattice(chosen());
-  if (command.field.has(Field::kDistance)) check_cubic(lattice);
+  if (command.field.has(Field::kDistance)) check_cubic("sdf", lattice);
+  if (command.field.has(Field::kSolid)) check_solid(lattice);
   return lattice;
 }
 
@@ -159,6 +170,20 @@ void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
   loaded.box = loaded.parts->box();
 }
 
+// The lattice of the surface that solid distances are to: outside nodes around do not change it.
+Lattice solid_lattice(const PlacedLattice& lattice) { return with_layers(world_order(lattice)->lattice, 1); }
+
+// The surface that `raycone surface` would make.
+TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) {
+  return timed(run.report.seconds.prepare, [&] {
+    const WindingNumberEvaluator evaluator(mesh);
+    MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, solid_lattice(*run.report.lattice),
+                                    SurfaceOptions{rule}, run.limits().memory());
+    run.report.surface = made.report;
+    return std::move(made.surface.mesh);
+  });
+}
+
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
@@ -171,7 +196,11 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   report.lattice = lattice_for(command, loaded.box, report.warnings);
   if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
   report.samples = sample_count(report.lattice->grid);
-  if (std::isinf(command.field.band)) command.field.band = band_of_all(loaded.box, *report.lattice);
+  const bool solid = command.field.has(Field::kSolid);
+  if (std::isinf(command.field.band)) {
+    command.field.band =
+        band_of_all(loaded.box, solid ? PlacedLattice(solid_lattice(*report.lattice)) : *report.lattice);
+  }
   run.print_warnings();
 
   const bool as_points = !world_order(*report.lattice).has_value();
@@ -179,10 +208,12 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   std::optional<LabelVolume> labels;
   if (loaded.parts) labels = label_lattice(*loaded.parts, *report.lattice, command.field, run);
   if (command.field.labels_only()) command.field.verify = 0;  // done
+  const TriangleMesh original = solid ? loaded.mesh : TriangleMesh{};
   const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
   FieldRun fields(run, std::move(loaded.mesh), command.field, static_cast<double>(report.samples));
   if (as_points) fields.prepare_points();
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
+  if (solid) fields.set_solid(solid_of(run, original, command.field.rule));
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
                    run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));

@@ -4,23 +4,16 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
-#include <utility>
 #include <variant>
 #include <vector>
 
-#include "app/options/field_options.h"
-#include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/run/grid_lattice.h"
 #include "app/run/lattice_choice.h"
+#include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
 #include "app/run/written_files.h"
-#include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
-#include "core/surface/surface.h"
-#include "core/surface/surface_measures.h"
-#include "core/surface/thicken.h"
 #include "io/files/file_error.h"
 #include "io/mesh/write_surface.h"
 
@@ -47,39 +40,6 @@ Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh,
   return with_layers(lattice, 1 + layers_of(command, lattice.spacing));
 }
 
-// What is inside must be something that a surface can go around.
-void check_inside(const NodeSet& inside, const SurfaceCommand& command) {
-  const std::string rule = name_of(command.rule);
-  if (inside.empty()) {
-    throw InputError(command.mesh.path + ": no sample is inside by the rule " + rule +
-                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, "
-                     "--thicken T)?");
-  }
-  if (inside.reaches_border()) {
-    throw InputError(command.mesh.path + ": what is inside by the rule " + rule +
-                     " reaches the border of the lattice, expected a larger box (--padding P), faces that agree "
-                     "(--orient auto), or another rule");
-  }
-}
-
-SurfaceMesh surface_of(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
-                       const SurfaceCommand& command) {
-  const SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
-                               is_single_precision(command.format)};
-  try {
-    return closed_surface(mesh, evaluator, inside, options);
-  } catch (const LatticeTooFine& error) {
-    throw LimitError(command.mesh.path + ": " + error.what() + "; see --resolution and --scale");
-  } catch (const std::length_error&) {
-    throw LimitError(command.mesh.path + ": the surface would have more than 2147483647 faces; see --resolution");
-  }
-}
-
-SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measures) {
-  return {surface.mesh.vertices.size(), surface.mesh.triangles.size(), measures.components, measures.max_distance,
-          measures.hole_area,           measures.dropped_area};
-}
-
 }  // namespace
 
 RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
@@ -92,21 +52,19 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   report.samples = sample_count(lattice);
   run.print_warnings();
 
-  check_memory(report.mesh, node_set_bytes(lattice), limits.memory());
   const WindingNumberEvaluator evaluator = timed(report.seconds.prepare, [&] {
     const std::vector<ExteriorEdge> edges = run.take_edges();
     return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, &edges);
   });
   report.exterior_edges = evaluator.exterior_edges();
+  const SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
+                               is_single_precision(command.format)};
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
-  SurfaceMesh surface = timed(report.seconds.evaluate, [&] {
-    NodeSet inside = nodes_inside(evaluator, command.rule, lattice, done);
-    if (command.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), command.thickness);
-    check_inside(inside, command);
-    SurfaceMesh made = surface_of(mesh, evaluator, inside, command);
-    report.surface = report_of(made, measure_surface(made, mesh, lattice, command.thickness));
-    return made;
+  auto [surface, surface_report, warnings] = timed(report.seconds.evaluate, [&] {
+    return make_surface(report.mesh, mesh, evaluator, lattice, options, limits.memory(), done);
   });
+  report.surface = surface_report;
+  for (const Warning& warning : warnings) run.warn(warning);
   for (std::int32_t& source : surface.sources) {
     if (source != kHole) source = static_cast<std::int32_t>(run.place_of(static_cast<std::uint32_t>(source)));
   }

@@ -33,6 +33,7 @@ DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, c
   if (!numbers.inside.empty()) sample.inside = numbers.inside[n] != 0;
   if (!numbers.density.empty()) sample.density = numbers.density[n];
   if (!numbers.distance.empty()) sample.distance = numbers.distance[n];
+  if (!numbers.solid.empty()) sample.solid = numbers.solid[n];
   if (!numbers.gradient.empty()) sample.gradient = numbers.gradient[n];
   if (!numbers.label.empty()) sample.label = numbers.label[n];
   return sample;
@@ -46,17 +47,26 @@ std::string text(double number) {
 
 constexpr std::array kGradientNames{"gradient_x", "gradient_y", "gradient_z"};
 
-// All numbers of a sample under the names that users know, in one order.
+// Under the name that users know.
 struct NamedNumber {
   std::string name;
   double number;
 };
+
+std::vector<NamedNumber> distances_of(const DrawnSample& sample) {
+  std::vector<NamedNumber> distances;
+  if (sample.distance) distances.push_back({"sdf", *sample.distance});
+  if (sample.solid) distances.push_back({"solid", *sample.solid});
+  return distances;
+}
+
+// All of a sample, in one order.
 std::vector<NamedNumber> numbers_of(const DrawnSample& sample) {
   std::vector<NamedNumber> numbers;
   if (sample.winding) numbers.push_back({"winding", *sample.winding});
   if (sample.inside) numbers.push_back({"inside", *sample.inside ? 1.0 : 0.0});
   if (sample.density) numbers.push_back({"density", *sample.density});
-  if (sample.distance) numbers.push_back({"sdf", *sample.distance});
+  for (const NamedNumber& distance : distances_of(sample)) numbers.push_back(distance);
   for (int axis = 0; sample.gradient && axis < 3; ++axis) {
     numbers.push_back({kGradientNames[static_cast<std::size_t>(axis)], (*sample.gradient)[axis]});
   }
@@ -76,7 +86,7 @@ Quad absolute(Quad x) { return x < 0 ? -x : x; }
 // What a sample's numbers are, in 113 bits.
 struct Truth {
   QuadWithin winding{};
-  Quad distance = 0;
+  Quad distance = 0, solid = 0;
   DirectGradient gradient{};
 };
 
@@ -139,8 +149,8 @@ void check_side(const std::string& name, const DrawnSample& sample, const Expect
   const NamedNumber winding{"winding", *sample.winding};
   if (holds(expectations.rule, winding.number) != *inside) fail(name, sample, winding, rule);
   if (sample.inside && *sample.inside != *inside) fail(name, sample, {"inside", *sample.inside ? 1.0 : 0.0}, rule);
-  if (sample.distance && *sample.distance != 0.0 && std::signbit(*sample.distance) != *inside) {
-    fail(name, sample, {"sdf", *sample.distance}, rule);
+  for (const NamedNumber& distance : distances_of(sample)) {
+    if (distance.number != 0.0 && std::signbit(distance.number) != *inside) fail(name, sample, distance, rule);
   }
 }
 
@@ -157,12 +167,22 @@ double distance_tolerance(const TriangleMesh& mesh, const Vec3& q, Quad distance
          std::numeric_limits<double>::denorm_min();
 }
 
-void check_distance(const std::string& name, const DrawnSample& sample, const TriangleMesh& mesh,
-                    const Expectations& expectations, const Truth& truth, double& largest) {
-  const Quad expected = std::min(truth.distance, Quad(expectations.band_width));
-  const double tolerance = distance_tolerance(mesh, sample.point, truth.distance);
-  check_number(name, sample, {"sdf", *sample.distance}, std::signbit(*sample.distance) ? -expected : expected,
-               tolerance, largest);
+// `truth`: the unsigned distance to `mesh`.
+void check_distance(const std::string& name, const DrawnSample& sample, const NamedNumber& distance,
+                    const TriangleMesh& mesh, double band_width, Quad truth, double& largest) {
+  const Quad expected = std::min(truth, Quad(band_width));
+  const double tolerance = distance_tolerance(mesh, sample.point, truth);
+  check_number(name, sample, distance, std::signbit(distance.number) ? -expected : expected, tolerance, largest);
+}
+
+void check_distances(const std::string& name, const DrawnSample& sample, const VerifiedMeshes& meshes,
+                     const Expectations& expectations, const Truth& truth, std::optional<double>& largest) {
+  if ((sample.distance || sample.solid) && !largest) largest = 0.0;
+  const double band = expectations.band_width;
+  if (sample.distance) {
+    check_distance(name, sample, {"sdf", *sample.distance}, meshes.mesh, band, truth.distance, *largest);
+  }
+  if (sample.solid) check_distance(name, sample, {"solid", *sample.solid}, *meshes.solid, band, truth.solid, *largest);
 }
 
 void check_gradient(const std::string& name, const DrawnSample& sample, const Truth& truth, double& largest) {
@@ -178,7 +198,7 @@ void check_gradient(const std::string& name, const DrawnSample& sample, const Tr
   }
 }
 
-void check(const std::string& name, const DrawnSample& sample, const TriangleMesh& mesh,
+void check(const std::string& name, const DrawnSample& sample, const VerifiedMeshes& meshes,
            const Expectations& expectations, const Truth& truth, Verification& verification) {
   double& largest = verification.largest_difference;
   const Quad w = truth.winding.value;
@@ -187,15 +207,12 @@ void check(const std::string& name, const DrawnSample& sample, const TriangleMes
     const Quad expected = std::clamp(w, Quad(0), Quad(1));
     check_number(name, sample, {"density", *sample.density}, expected, expectations.accuracy, largest);
   }
-  if (sample.inside || sample.distance) check_side(name, sample, expectations, truth);
+  if (sample.inside || sample.distance || sample.solid) check_side(name, sample, expectations, truth);
   if (sample.gradient) {
     if (!verification.largest_gradient_difference) verification.largest_gradient_difference = 0.0;
     check_gradient(name, sample, truth, *verification.largest_gradient_difference);
   }
-  if (sample.distance) {
-    if (!verification.largest_distance_difference) verification.largest_distance_difference = 0.0;
-    check_distance(name, sample, mesh, expectations, truth, *verification.largest_distance_difference);
-  }
+  check_distances(name, sample, meshes, expectations, truth, verification.largest_distance_difference);
 }
 
 void check_bound(const std::string& name, const DrawnSample& sample, double bound, const Truth& truth) {
@@ -204,12 +221,14 @@ void check_bound(const std::string& name, const DrawnSample& sample, double boun
                bound + static_cast<double>(2 * truth.winding.error), largest);
 }
 
-std::vector<Truth> truths_of(const TriangleMesh& mesh, std::span<const DrawnSample> samples) {
+std::vector<Truth> truths_of(const VerifiedMeshes& meshes, std::span<const DrawnSample> samples) {
   std::vector<Truth> truths(samples.size());
+  const TriangleMesh& mesh = meshes.mesh;
   parallel_for(samples.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       truths[n].winding = perturbed_direct_sum(mesh, samples[n].point);
       if (samples[n].distance) truths[n].distance = direct_distance(mesh, samples[n].point);
+      if (samples[n].solid) truths[n].solid = direct_distance(*meshes.solid, samples[n].point);
       if (samples[n].gradient) truths[n].gradient = direct_gradient(mesh, samples[n].point);
     }
   });
@@ -299,9 +318,9 @@ std::vector<DrawnSample> SampleDraw::samples() const {
   return result;
 }
 
-Verification verify_by_definition(const std::string& name, const TriangleMesh& mesh,
+Verification verify_by_definition(const std::string& name, const VerifiedMeshes& meshes,
                                   std::span<const DrawnSample> samples, const Expectations& expectations) {
-  const std::vector<Truth> truths = truths_of(mesh, samples);
+  const std::vector<Truth> truths = truths_of(meshes, samples);
   Verification verification;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     if (!(truths[n].winding.error < kResolved * expectations.accuracy)) {
@@ -309,13 +328,13 @@ Verification verify_by_definition(const std::string& name, const TriangleMesh& m
       continue;
     }
     if (!expectations.error_bounds.empty()) check_bound(name, samples[n], expectations.error_bounds[n], truths[n]);
-    check(name, samples[n], mesh, expectations, truths[n], verification);
+    check(name, samples[n], meshes, expectations, truths[n], verification);
     ++verification.samples;
   }
   return verification;
 }
 
-Verification verify(const std::string& name, const TriangleMesh& mesh, const FieldEvaluator& evaluator,
+Verification verify(const std::string& name, const VerifiedMeshes& meshes, const FieldEvaluator& evaluator,
                     const FieldOptions& options, double band_width, std::span<const DrawnSample> samples) {
   std::vector<Vec3> points;
   for (const DrawnSample& sample : samples) points.push_back(sample.point);
@@ -327,14 +346,16 @@ Verification verify(const std::string& name, const TriangleMesh& mesh, const Fie
   std::vector<DrawnSample> complete(samples.begin(), samples.end());
   for (std::size_t n = 0; n < samples.size(); ++n) {
     DrawnSample again = drawn(samples[n].number, samples[n].rank, points[n], repeated.numbers(), n);
-    if (again.distance) again.distance = cut_off(*again.distance, band_width);
+    for (std::optional<double>* const distance : {&again.distance, &again.solid}) {
+      if (*distance) *distance = cut_off(**distance, band_width);
+    }
     if (!complete[n].winding) complete[n].winding = again.winding;
     check_repeated(name, complete[n], again);
   }
 
-  const double accuracy = accuracy_of(evaluator.winding_number(), mesh, options.tolerance);
+  const double accuracy = accuracy_of(evaluator.winding_number(), meshes.mesh, options.tolerance);
   Verification verification =
-      verify_by_definition(name, mesh, complete, {accuracy, options.rule, band_width, diagnostics.error_bound});
+      verify_by_definition(name, meshes, complete, {accuracy, options.rule, band_width, diagnostics.error_bound});
   for (std::size_t n = 0; n < samples.size(); ++n) {
     verification.on_surface += diagnostics.on_surface[n];
     verification.largest_bound = std::max(verification.largest_bound, diagnostics.error_bound[n]);

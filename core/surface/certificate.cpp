@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <utility>
 
 #include "core/exact/predicates.h"
@@ -72,22 +71,13 @@ std::uint64_t equal_vertices(const TriangleMesh& mesh) {
   return equal;
 }
 
-// By the winding numbers of the surface itself.
-std::uint64_t wrong_nodes(const TriangleMesh& mesh, const NodeSet& inside) {
-  const WindingNumberEvaluator evaluator(mesh);
-  const NodeSet found = nodes_inside(evaluator, Rule{}, inside.lattice());
-  std::uint64_t wrong = 0;
-  for (std::int64_t k = 0; k < inside.count(2); ++k) {
-    for (std::int64_t j = 0; j < inside.count(1); ++j) {
-      for (std::int64_t word = 0; word < inside.words_per_row(); ++word) {
-        wrong += static_cast<std::uint64_t>(std::popcount(inside.row(j, k)[word] ^ found.row(j, k)[word]));
-      }
-    }
-  }
-  return wrong;
-}
-
 }  // namespace
+
+NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside) {
+  NodeSet nodes = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, inside.lattice());
+  nodes.flip(inside);
+  return nodes;
+}
 
 SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
   SurfaceFaults faults;
@@ -95,7 +85,7 @@ SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
   faults.links = wrong_links(mesh);
   faults.degenerate_faces = degenerate_faces(mesh);
   faults.equal_vertices = equal_vertices(mesh);
-  faults.nodes = wrong_nodes(mesh, inside);
+  faults.nodes = misplaced_nodes(mesh, inside).size();
   faults.intersections = self_intersections(mesh);
   return faults;
 }

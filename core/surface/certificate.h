@@ -30,6 +30,9 @@ struct SurfaceFaults {
 // the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a triangle.
 [[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside);
 
+// The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
+[[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside);
+
 // "3 edges, 1 pair of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);
 

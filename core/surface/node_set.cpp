@@ -1,7 +1,9 @@
 #include "core/surface/node_set.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "core/machine/threads.h"
@@ -48,6 +50,16 @@ NodeSet::NodeSet(const Lattice& lattice)
 
 bool NodeSet::empty() const {
   return std::ranges::all_of(words_, [](std::uint64_t word) { return word == 0; });
+}
+
+std::uint64_t NodeSet::size() const {
+  return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0}, [](std::uint64_t sum, std::uint64_t word) {
+    return sum + static_cast<std::uint64_t>(std::popcount(word));
+  });
+}
+
+void NodeSet::flip(const NodeSet& others) {
+  for (std::size_t n = 0; n < words_.size(); ++n) words_[n] ^= others.words_[n];
 }
 
 bool NodeSet::reaches_border() const {

@@ -33,7 +33,11 @@ class NodeSet {
   }
   [[nodiscard]] std::int64_t words_per_row() const { return words_per_row_; }
 
+  // Those of `others`, of the same lattice, change: in it if they were not, and the other way round.
+  void flip(const NodeSet& others);
+
   [[nodiscard]] bool empty() const;
+  [[nodiscard]] std::uint64_t size() const;
   // Whether a node of the lattice's outermost layers is in it.
   [[nodiscard]] bool reaches_border() const;
 

@@ -56,7 +56,7 @@ class SurfaceMaker {
         distance_(mesh),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
-  SurfaceMesh make() {
+  ClosedSurface make() {
     constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
@@ -66,7 +66,7 @@ class SurfaceMaker {
                                          : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
       FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
-        if (std::optional<SurfaceMesh> surface = attempt(sharp, margins)) return std::move(*surface);
+        if (std::optional<ClosedSurface> made = attempt(sharp, margins)) return std::move(*made);
         sharp = sharp.without(involved(sharp));
       }
     }
@@ -75,36 +75,38 @@ class SurfaceMaker {
 
  private:
   static constexpr double kMostMargin = 0x1p-4;
-  static constexpr int kRounds = 4;
+  static constexpr int kRounds = 4, kMergingRounds = 8;
 
-  std::optional<SurfaceMesh> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
+  std::optional<ClosedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
     SurfaceMesh surface = contour(cells_, points_, sharp, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     faults_ = faults_of(surface.mesh, inside_);
     failed_ = surface.mesh;
     if (!faults_.none()) return std::nullopt;
-    if (!options_.merge_planes) return surface;
-    return simplified(merged(std::move(surface), margins), margins);
+    ClosedSurface made{std::move(surface)};
+    if (options_.merge_planes) made.merged = merge(made.surface, margins);
+    if (options_.simplify > 0.0) made.simplified = simplify_surface(made.surface, margins);
+    return made;
   }
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
   // as well as that have faults, they are merged where they agree better.
-  SurfaceMesh merged(SurfaceMesh surface, const SurfaceMargins& margins) {
-    for (const double most : {2.5, 0.25}) {
-      if (std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, most)) return std::move(*result);
-    }
-    return surface;
+  // Returns false where faults are left even so.
+  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
+    std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
+    if (!result) result = merged_within(surface, margins.inner, 0.25, true);
+    if (result) surface = std::move(*result);
+    return result.has_value();
   }
 
-  // What merging spoils is not merged. `most` in margins.
-  std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most) {
+  // What merging spoils is not merged; `nodes`: nor is what puts nodes on the wrong side. `most` in margins.
+  std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most, bool nodes) {
     constexpr double kNeedle = 16.0;
     const Vec3& h = inside_.lattice().spacing;
     const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kMergingRounds; ++round) {
       auto [result, into] = merge_planes(surface, mesh_, kept, most * unit, kNeedle * unit);
-      const std::vector<bool> touched = faulty_vertices(result.mesh);
       TriangleMesh compact = result.mesh;
       drop_unused_vertices(compact);
       faults_ = faults_of(compact, inside_);
@@ -112,30 +114,63 @@ class SurfaceMaker {
         result.mesh = std::move(compact);
         return std::move(result);
       }
-      if (faults_.intersections.pairs == 0) return std::nullopt;
-      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[into[v]];
+      if (faults_.nodes > 0 && !nodes) return std::nullopt;
+      const std::vector<bool> touched = faulty_vertices(result.mesh);
+      const NodeSet misplaced = misplaced_nodes(compact, inside_);
+      for (std::size_t v = 0; v < kept.size(); ++v) {
+        const Vec3 &from = surface.mesh.vertices[v], &to = surface.mesh.vertices[into[v]];
+        // Large faces are undone near the vertices that they have left, first.
+        const bool undone = touched[into[v]] && voxels_between(from, to) <= std::exp2(round);
+        kept[v] = kept[v] || undone || is_beside(from, misplaced);
+      }
     }
     return std::nullopt;
   }
 
-  // Pulls around faces that intersect are undone, until there are none; at worst all.
-  SurfaceMesh simplified(SurfaceMesh surface, const SurfaceMargins& margins) {
+  // Along the axis where that is most.
+  [[nodiscard]] double voxels_between(const Vec3& p, const Vec3& q) const {
+    const Vec3& h = inside_.lattice().spacing;
+    return std::max({std::abs(p.x - q.x) / h.x, std::abs(p.y - q.y) / h.y, std::abs(p.z - q.z) / h.z});
+  }
+
+  // Whether a corner of the cell that a point is in is one of `nodes`.
+  [[nodiscard]] static bool is_beside(const Vec3& p, const NodeSet& nodes) {
+    const Lattice& lattice = nodes.lattice();
+    std::array<std::int64_t, 3> cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double index = std::floor((p[axis] - lattice.origin[axis]) / lattice.spacing[axis]);
+      cell[a] =
+          std::clamp<std::int64_t>(static_cast<std::int64_t>(index) - lattice.index_min[a], 0, lattice.counts[a] - 2);
+    }
+    for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
+      const auto [i, j, k] = SurfaceCells::node_at({cell, 0, 0}, corner);
+      if (nodes.holds(i, j, k)) return true;
+    }
+    return false;
+  }
+
+  // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
+  bool simplify_surface(SurfaceMesh& surface, const SurfaceMargins& margins) {
     constexpr double kMargins = 16.0, kMargin = 1.0 - 1e-6;
-    constexpr int kManyRounds = 16;
     const Vec3& h = inside_.lattice().spacing;
     // Merging has moved points by a few margins already.
     const double most = kMargin * options_.simplify - kMargins * margins.inner * std::max({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    for (int round = 0; round < kManyRounds && most > 0.0; ++round) {
+    if (!(most > 0.0)) return true;
+    for (int round = 0; round < options_.rounds; ++round) {
       MergedSurface result = simplify(surface, inside_, kept, most);
       const std::vector<bool> touched = faulty_vertices(result.surface.mesh);
       drop_unused_vertices(result.surface.mesh);
       const SurfaceFaults faults = faults_of(result.surface.mesh, inside_);
-      if (faults.none()) return std::move(result.surface);
-      if (faults.intersections.pairs == 0) return surface;
+      if (faults.none()) {
+        surface = std::move(result.surface);
+        return true;
+      }
+      if (faults.intersections.pairs == 0) return false;
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[result.into[v]];
     }
-    return surface;
+    return false;
   }
 
   // Vertices near faces that intersect: those of these faces, and of their neighbours.
@@ -193,8 +228,8 @@ double surface_margin(const Lattice& lattice, bool single_precision) {
   return std::max(kLeast, kRoundings * rounding / std::min({h.x, h.y, h.z}));
 }
 
-SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
-                           const SurfaceOptions& options) {
+ClosedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+                             const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
   constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80;
   const Vec3& h = inside.lattice().spacing;

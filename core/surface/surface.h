@@ -19,6 +19,14 @@ struct SurfaceOptions {
   bool merge_planes = true;       // faces of one plane, which changes no point of the surface
   double simplify = 0.0;          // after that, how far the surface may move, world units
   bool single_precision = false;  // vertices are rounded to float
+  int rounds = 16;                // of simplifying, until the surface stays as it was
+};
+
+struct ClosedSurface {
+  SurfaceMesh surface;
+  // Whether that was done as asked. Else too many rounds of undoing what intersects, or has nodes on the wrong side,
+  // left faults still: the surface is the one before.
+  bool merged = true, simplified = true;
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.
@@ -41,8 +49,8 @@ class LatticeTooFine : public std::runtime_error {
 // nor the other way round. The same for any number of threads. Preconditions: !inside.empty(),
 // !inside.reaches_border(); `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // std::length_error for more than 2^31 - 1 faces.
-[[nodiscard]] SurfaceMesh closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
-                                         const NodeSet& inside, const SurfaceOptions& options);
+[[nodiscard]] ClosedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                                           const NodeSet& inside, const SurfaceOptions& options);
 
 // The margin that a lattice is given at first, as a fraction of a voxel.
 [[nodiscard]] double surface_margin(const Lattice& lattice, bool single_precision);

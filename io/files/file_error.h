@@ -13,12 +13,6 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A file of a format that is promised and not read yet: exit status 1. what() is "FILE: not available yet".
-class NotAvailable : public InputError {
- public:
-  explicit NotAvailable(const std::string& file) : InputError(file + ": not available yet") {}
-};
-
 // Output cannot be written: exit status 3. what() is "FILE: what is wrong".
 class OutputError : public std::runtime_error {
  public:

@@ -30,22 +30,6 @@ WORKING = {
     "report": ["report", "done"],
 }
 
-NOT_AVAILABLE = {
-    "lattice": {
-        "--field solid": "--field solid",
-    },
-    "points": {
-        "--field winding,solid": "--field winding,solid",
-    },
-    "batch": {
-        "--field solid": "--field solid",
-    },
-}
-
-# Whole command lines, and what they name.
-NOT_AVAILABLE_LINES = {
-}
-
 # Of a misspelt word: the command line, what is named, what is suggested (nothing: the help).
 SUGGESTIONS = [
     ("lattice m.obj -o o.vdb --resolutoin 5", "unknown option --resolutoin", "--resolution"),
@@ -157,18 +141,7 @@ class Everywhere(Contract):
                 self.assertEqual(piped.stdout, file.read(), name)
 
 
-class NotYet(Contract):
-    def test_what_is_promised_says_so_and_is_in_no_help(self):
-        for command, cases in NOT_AVAILABLE.items():
-            listed = self.works([command, "--help"]).stdout
-            for options, named in cases.items():
-                words = [*WORKING[command], *options.split()]
-                self.assertEqual(self.refused(words, named), "raycone: %s: not available yet\n" % named)
-                if options.split()[-1].startswith("--") or named.startswith("--") and " " not in named:
-                    self.assertNotIn(named, listed)
-        for line, named in NOT_AVAILABLE_LINES.items():
-            self.assertEqual(self.refused(line.split(), named), "raycone: %s: not available yet\n" % named)
-
+class Tolerances(Contract):
     def test_tolerances_that_count_as_none_are_there(self):
         for tolerance in ("0", "1e-13"):
             self.works([*WORKING["lattice"], "--tolerance", tolerance])

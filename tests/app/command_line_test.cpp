@@ -52,12 +52,6 @@ void expect_error(const CommandResult& result, int status, const std::string& pa
   EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
 }
 
-void expect_not_available(const CommandResult& result, const std::string& what) {
-  EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.out, "");
-  EXPECT_EQ(result.err, "raycone: " + what + ": not available yet\n");
-}
-
 TEST_F(CommandLine, WithoutCommandIsUsageError) { expect_error(run_raycone({}), 1, "no command given"); }
 
 TEST_F(CommandLine, UnknownCommandListsThoseThatExist) {
@@ -186,7 +180,7 @@ TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {
 
 TEST_F(CommandLine, UnknownWordsListWhatExists) {
   expect_error(lattice({"--field", "foo"}), 1,
-               "--field foo: expected one or more of winding, inside, density, sdf, gradient");
+               "--field foo: expected one or more of winding, inside, density, sdf, solid, gradient");
   expect_error(lattice({"--format", "xyz"}), 1, "expected vdb, csv, npy, npz, vti, nrrd, nii or nii.gz");
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
@@ -206,10 +200,6 @@ TEST_F(CommandLine, ExtensionsAreRecognisedInAnyCase) {
   const std::string upper = dir_ / "OUT.CSV";
   EXPECT_EQ(run_raycone({"lattice", mesh_, "-o", upper, "--resolution", "2"}).status, 0);
   EXPECT_EQ(first_lines(read_text(upper), 1), "i,j,k,x,y,z,w");
-}
-
-TEST_F(CommandLine, OptionsNotAvailableYetSaySo) {
-  expect_not_available(lattice({"--field", "solid"}), "--field solid");
 }
 
 TEST_F(CommandLine, HelpIsAResultWithExamples) {

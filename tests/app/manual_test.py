@@ -115,7 +115,7 @@ class BashCompletion(unittest.TestCase):
                 self.assertEqual(asked - {"nospace"}, {"dirnames"} if placeholder == "DIR" else files, (command, option))
 
     def test_goes_on_behind_commas_and_equals_signs(self):
-        self.offers(["lattice", "--field", "winding,s"], "winding,sdf")
+        self.offers(["lattice", "--field", "winding,s"], "winding,sdf", "winding,solid")
         self.assertEqual(complete_in_bash("raycone", "lattice", "--rule", "thr"), ({"threshold="}, {"nospace"}))
         self.asks_readline_for(["lattice", "--rule", "threshold", "=", "0."])
 

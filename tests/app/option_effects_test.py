@@ -66,10 +66,14 @@ TABLE = [
     # --- Fields
     *(Row(words, "--field inside", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, "slice cubes.obj -o out/a.png --size 8")),
     *(Row(words, "--field gradient", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, FILE + "npy")),
+    *(Row(words, "--field solid", CHANGES) for words in (LATTICE, BATCH, FILE + "nrrd")),
+    *(Row(words, "--field solid", REFUSED)
+      for words in (POINTS, SAMPLE, "slice cubes.obj -o out/a.png", "batch good --out-dir out/batch --sample uniform=3")),
     *(Row(FILE + name, "--field gradient", REFUSED) for name in ("nrrd", "nii", "nii.gz")),
     *(Row(words + " --field gradient", "--rule odd", REFUSED) for words in (LATTICE, POINTS, BATCH)),
     *(Row(words + " --field inside", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH, SLICE)),
     *(Row(words + " --field sdf", "--rule odd", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+    *(Row(words + " --field solid", "--rule odd", CHANGES) for words in (LATTICE, BATCH)),
     Row(SAMPLE, "--rule odd", CHANGES),  # whose fields are winding, inside and sdf
     *(Row(words + fields, "--rule odd", REFUSED)
       for words in (LATTICE, POINTS, BATCH)
@@ -77,8 +81,8 @@ TABLE = [
     Row(SAMPLE + " --field winding", "--rule odd", REFUSED),
     Row("batch good --out-dir out/batch --sample uniform=3 --field density", "--rule odd", REFUSED),
     *(Row(words + fields, "--band 2", CHANGES)
-      for words in (LATTICE, BATCH) for fields in (" --field sdf", " --field winding,sdf")),
-    *(Row(words + " --field sdf", "--band all", CHANGES) for words in (LATTICE, BATCH)),
+      for words in (LATTICE, BATCH) for fields in (" --field sdf", " --field winding,sdf", " --field solid")),
+    *(Row(words + " --field " + field, "--band all", CHANGES) for words in (LATTICE, BATCH) for field in ("sdf", "solid")),
     *(Row(words + fields, "--band 2", REFUSED)
       for words in (LATTICE, BATCH) for fields in ("", " --field inside", " --field winding,density")),
     *(Row(words + " --field sdf", "--band 2", REFUSED)

@@ -38,7 +38,7 @@ std::vector<DrawnSample> drawn(const TriangleMesh& mesh, const std::vector<Vec3>
 
 Verification verified(const TriangleMesh& mesh, const std::vector<Vec3>& points,
                       const FieldOptions& options = all_fields()) {
-  return verify("mesh.obj", mesh, FieldEvaluator(mesh, options), options, kInfinity, drawn(mesh, points, options));
+  return verify("mesh.obj", {mesh}, FieldEvaluator(mesh, options), options, kInfinity, drawn(mesh, points, options));
 }
 
 std::vector<Vec3> random_points(std::size_t count) {
@@ -67,7 +67,7 @@ std::string error_of(const Verify& verify_something) {
 std::string error_of_run(const TriangleMesh& mesh, const TriangleMesh& other, const std::vector<Vec3>& points) {
   const FieldOptions options = all_fields();
   const FieldEvaluator evaluator(other, options);
-  return error_of([&] { return verify("mesh.obj", mesh, evaluator, options, kInfinity, drawn(other, points)); });
+  return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, drawn(other, points)); });
 }
 
 std::vector<std::uint64_t> numbers_of(const std::vector<DrawnSample>& samples) {
@@ -198,7 +198,7 @@ TEST(Verify, NoticesAValueThatTheEvaluatorDidNotGive) {
   const FieldEvaluator evaluator(mesh, options);
   std::vector<DrawnSample> samples = drawn(mesh, random_points(50));
   const auto error = [&] {
-    return error_of([&] { return verify("mesh.obj", mesh, evaluator, options, kInfinity, samples); });
+    return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, samples); });
   };
   ASSERT_EQ(error(), "");
   samples[17].winding = std::nextafter(*samples[17].winding, 2.0);  // by the last bit
@@ -243,13 +243,13 @@ std::vector<Vec3> telling_points() {
 TEST(Verify, NoticesNumbersThatAreOffByLittle) {
   for (const TriangleMesh& mesh : {open_box(), sphere(4), random_mesh(8)}) {
     const std::vector<DrawnSample> right = drawn(mesh, telling_points());
-    ASSERT_EQ(error_of([&] { return verify_by_definition("m", mesh, right, {}); }), "");
+    ASSERT_EQ(error_of([&] { return verify_by_definition("m", {mesh}, right, {}); }), "");
     for (const Sabotage& sabotage : kNumbers) {
       for (const double by : {1.1e-10, 1e-9, 1e-6, 0.1}) {
         for (std::size_t n = 0; n < right.size(); ++n) {
           std::vector<DrawnSample> wrong{right[n]};
           sabotage.change(wrong[0], by);
-          EXPECT_NE(error_of([&] { return verify_by_definition("m", mesh, wrong, {}); }), "")
+          EXPECT_NE(error_of([&] { return verify_by_definition("m", {mesh}, wrong, {}); }), "")
               << sabotage.name << " by " << by << " at sample " << n;
         }
       }
@@ -265,12 +265,40 @@ TEST(Verify, NoticesSamplesOnTheWrongSide) {
         DrawnSample wrong = sample;
         wrong.inside = !*sample.inside;
         const Expectations expectations{1e-10, rule};
-        EXPECT_NE(error_of([&] { return verify_by_definition("m", mesh, {{wrong}}, expectations); }), "");
+        EXPECT_NE(error_of([&] { return verify_by_definition("m", {mesh}, {{wrong}}, expectations); }), "");
         if (*sample.distance == 0.0) continue;
         wrong = sample;
         wrong.distance = -*sample.distance;
-        EXPECT_NE(error_of([&] { return verify_by_definition("m", mesh, {{wrong}}, expectations); }), "");
+        EXPECT_NE(error_of([&] { return verify_by_definition("m", {mesh}, {{wrong}}, expectations); }), "");
       }
+    }
+  }
+}
+
+TEST(Verify, ComparesSolidDistancesWithTheSolid) {
+  FieldOptions options;
+  options.fields = {Field::kWinding, Field::kSolid};
+  const TriangleMesh mesh = open_box(), solid = sphere(4), other = sphere(5);
+  FieldEvaluator evaluator(mesh, options);
+  evaluator.set_solid(solid);
+  FieldSamples samples(options);
+  const std::vector<Vec3> points = telling_points();
+  evaluator.evaluate(points, samples, nullptr);
+  SampleDraw draw(points.size());
+  draw.offer(points, samples.numbers());
+  const std::vector<DrawnSample> right = draw.samples();
+  const auto error_with = [&](const std::vector<DrawnSample>& found, const TriangleMesh& surface) {
+    return error_of([&] { return verify("m", {mesh, &surface}, evaluator, options, kInfinity, found); });
+  };
+  EXPECT_EQ(error_with(right, solid), "");
+  EXPECT_NE(error_with(right, other).find(" has the solid "), std::string::npos);
+  for (const DrawnSample& sample : right) {
+    if (std::abs(*sample.solid) < 1e-6) continue;  // on the sphere, with no side
+    for (const double is : {-*sample.solid, *sample.solid + 1e-9}) {
+      DrawnSample wrong = sample;
+      wrong.solid = is;
+      EXPECT_NE(error_with({wrong}, solid), "") << sample.number;
+      EXPECT_NE(error_of([&] { return verify_by_definition("m", {mesh, &solid}, {{wrong}}, {}); }), "");
     }
   }
 }
@@ -281,7 +309,7 @@ TEST(Verify, NoticesHalvesThatAreNone) {
   std::vector<DrawnSample> samples = drawn(mesh, {{0.25, 0.5, 1}});
   ASSERT_EQ(samples[0].winding, 0.5);
   samples[0].winding = std::nextafter(0.5, 0.0);
-  EXPECT_NE(error_of([&] { return verify_by_definition("m", mesh, samples, {}); }), "");
+  EXPECT_NE(error_of([&] { return verify_by_definition("m", {mesh}, samples, {}); }), "");
 }
 
 TEST(Verify, NamesTheFirstWrongSampleWhateverTheThreads) {
@@ -300,8 +328,8 @@ TEST(Verify, ComparesDistancesUpToTheBandOnly) {
   evaluator.evaluate(lattice, whole(lattice), samples, nullptr);
   SampleDraw draw(300);
   draw.offer(lattice, whole(lattice), samples.numbers());
-  EXPECT_EQ(verify("m", mesh, evaluator, options, 0.5, draw.samples()).samples, 300U);
-  EXPECT_NE(error_of([&] { return verify("m", mesh, evaluator, options, 0.75, draw.samples()); }), "");
+  EXPECT_EQ(verify("m", {mesh}, evaluator, options, 0.5, draw.samples()).samples, 300U);
+  EXPECT_NE(error_of([&] { return verify("m", {mesh}, evaluator, options, 0.75, draw.samples()); }), "");
 }
 
 TEST(Verify, WrongValuesAreInternalErrorsInOneLine) {

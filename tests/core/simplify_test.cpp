@@ -46,11 +46,11 @@ TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice_around_sphere(14));
   SurfaceOptions options;
-  const SurfaceMesh whole_surface = closed_surface(mesh, evaluator, inside, options);
+  const SurfaceMesh whole_surface = closed_surface(mesh, evaluator, inside, options).surface;
   std::size_t before = whole_surface.mesh.triangles.size();
   for (const double most : {0.005, 0.02, 0.1}) {
     options.simplify = most;
-    const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options);
+    const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options).surface;
     EXPECT_LT(surface.mesh.triangles.size(), before);
     before = surface.mesh.triangles.size();
     EXPECT_TRUE(faults_of(surface.mesh, inside).none());
@@ -148,7 +148,7 @@ TEST(ThickSurface, IsAtItsDistanceOrWhereTheRuleEnds) {
   SurfaceOptions options;
   options.thickness = 0.17;
   insert_near(inside, distance, options.thickness);
-  const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options);
+  const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options).surface;
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   std::vector<double> distances(vertices.size()), w(vertices.size());
   distance.evaluate(vertices, distances);

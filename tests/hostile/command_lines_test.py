@@ -76,6 +76,7 @@ OPTIONS = {
     "lattice": {
         **MESH,
         **EVALUATION,
+        "--field": one_of("winding", "inside", "density", "solid", "winding,inside", "winding,sdf,density,inside"),
         "--bounds": box,
         "--padding": one_of(number, "2v", "-1v", with_number("%sv")),
         "--centers": None,

@@ -69,7 +69,7 @@ add("nul_in_face.obj", V + "f 1 2\0 3\n", 2, "expected a vertex index, found '2?
 add("nul_in_keyword.obj", "\0" + V + "f 1 2 3\n", 0)
 add("control_bytes.obj", "v \x1b[31m 0 0\n" + OBJ, 2, "expected a coordinate, found '?[31m'")
 add("random_bytes.obj", bytes(range(256)) * 4, 2, "no triangles")
-add("zip_bomb.obj", zipped.getvalue(), 1, "not available yet")
+add("zip_bomb.obj", zipped.getvalue(), 2, "no part _rels/.rels, expected a 3MF package")
 add("gzip.obj", gzip.compress(OBJ.encode(), mtime=0), 0)
 add("gzip_twice.obj.gz", gzip.compress(gzip.compress(OBJ.encode(), mtime=0), mtime=0), 2, "no triangles")
 add("gzip_cut.obj.gz", gzip.compress(OBJ.encode(), mtime=0)[:-9], 2, "the compressed data end too early")

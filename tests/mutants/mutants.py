@@ -414,6 +414,8 @@ MUTANTS = [
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 
+    Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
+        ("core/surface/surface.cpp", " || is_beside(from, misplaced);", ";")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [
         ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [

@@ -1,0 +1,75 @@
+#include "app/run/make_surface.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "app/options/field_options.h"
+#include "app/process/limits.h"
+#include "core/distance/distance.h"
+#include "core/surface/surface_measures.h"
+#include "core/surface/thicken.h"
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+// What is inside must be something that a surface can go around.
+void check_inside(const std::string& name, const NodeSet& inside, const Rule& rule) {
+  if (inside.empty()) {
+    throw InputError(name + ": no sample is inside by the rule " + name_of(rule) +
+                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, "
+                     "raycone surface --thicken T)?");
+  }
+  if (inside.reaches_border()) {
+    throw InputError(name + ": what is inside by the rule " + name_of(rule) +
+                     " reaches the border of the lattice, expected a larger box (--padding P), faces that agree "
+                     "(--orient auto), or another rule");
+  }
+}
+
+ClosedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                         const NodeSet& inside, const SurfaceOptions& options) {
+  try {
+    return closed_surface(mesh, evaluator, inside, options);
+  } catch (const LatticeTooFine& error) {
+    throw LimitError(name + ": " + error.what() + "; see --resolution and --scale");
+  } catch (const std::length_error&) {
+    throw LimitError(name + ": the surface would have more than 2147483647 faces; see --resolution");
+  }
+}
+
+SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measures) {
+  return {surface.mesh.vertices.size(), surface.mesh.triangles.size(), measures.components, measures.max_distance,
+          measures.hole_area,           measures.dropped_area};
+}
+
+std::vector<Warning> warnings_about(const ClosedSurface& closed, const SurfaceOptions& options) {
+  std::vector<Warning> warnings;
+  if (!closed.merged) {
+    warnings.push_back({"not-merged",
+                        "faces of one plane are not merged: each try made faces that intersect, or that "
+                        "have samples on the wrong side"});
+  }
+  if (!closed.simplified) {
+    warnings.push_back({"not-simplified", "--simplify left all faces: " + std::to_string(options.rounds) +
+                                              " tries made faces that intersect, expected a smaller distance"});
+  }
+  return warnings;
+}
+
+}  // namespace
+
+MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                         const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
+                         std::atomic<std::uint64_t>* done) {
+  check_memory(name, node_set_bytes(lattice), memory);
+  NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
+  if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
+  check_inside(name, inside, options.rule);
+  ClosedSurface closed = surface_of(name, mesh, evaluator, inside, options);
+  MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
+  made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice, options.thickness));
+  return made;
+}
+
+}  // namespace raycone

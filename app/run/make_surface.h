@@ -1,0 +1,33 @@
+// The closed surface of a mesh, with what its user is told of it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/report/run_report.h"
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
+#include "core/evaluation/winding_number.h"
+#include "core/surface/surface.h"
+
+namespace raycone {
+
+struct MadeSurface {
+  SurfaceMesh surface;
+  SurfaceReport report;
+  std::vector<Warning> warnings;  // `not-merged`, `not-simplified`: those that apply
+};
+
+// The surface between the inside and the outside nodes of `lattice`, by `evaluator` of `mesh`; it has been checked.
+// `name`: the file concerned. `done`, where given, grows by one per node. Throws InputError (nothing is inside, or the
+// inside reaches the lattice's border), LimitError (`memory`, bytes, does not do for the nodes, or numbers do not do
+// for the surface), SurfaceFailure.
+[[nodiscard]] MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh,
+                                       const WindingNumberEvaluator& evaluator, const Lattice& lattice,
+                                       const SurfaceOptions& options, std::uint64_t memory,
+                                       std::atomic<std::uint64_t>* done = nullptr);
+
+}  // namespace raycone

@@ -1,7 +1,6 @@
 // All commands: what each accepts and how its values become a Command.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 

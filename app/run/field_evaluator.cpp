@@ -85,6 +85,7 @@ Tally FieldEvaluator::evaluate_points(std::span<const Vec3> points, double band_
   const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
   settle([&](std::size_t n) { return points[n]; }, samples);
   if (distance_) distance_->evaluate(points, samples.distances());
+  if (solid_) solid_->evaluate(points, samples.solid_distances());
   if (std::isfinite(band_width)) {
     for (double& distance : samples.distances()) distance = std::min(distance, band_width);
   }

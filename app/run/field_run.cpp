@@ -76,7 +76,7 @@ void FieldRun::look_for_largest_bound() {
 }
 
 void FieldRun::look_for_inside() {
-  if (!field_.has_rule() || found_inside_) return;
+  if (!tells_inside() || found_inside_) return;
   found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
 }
 

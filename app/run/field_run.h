@@ -42,14 +42,15 @@ class FieldRun {
   void take_labels(const LabelVolume& volume, const LatticeBlock& block);
   [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
 
-  // Whether a rule was asked for, and held for no sample.
-  [[nodiscard]] bool found_nothing_inside() const { return field_.has_rule() && !found_inside_; }
+  // Whether a rule was asked for of the mesh as a whole, and held for no sample.
+  [[nodiscard]] bool found_nothing_inside() const { return tells_inside() && !found_inside_; }
 
   // Tells the report what the values took and, where it is asked for, verifies them. `band_width`: where distances are
   // cut off, world units.
   void finish(double band_width);
 
  private:
+  [[nodiscard]] bool tells_inside() const { return field_.has(Field::kInside) || field_.has_distance(); }
   void look_for_inside();
   void look_for_largest_bound();
 

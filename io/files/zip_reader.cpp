@@ -1,6 +1,8 @@
 // Numbers of sections are those of PKWARE's APPNOTE.TXT 6.3.10.
 #include "io/files/zip_reader.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -131,6 +133,25 @@ ZipReader::Member read_entry(Fields& fields, const std::string& path) {
   return member;
 }
 
+// Reads through another source.
+class CheckedSource final : public ByteSource {
+ public:
+  CheckedSource(std::unique_ptr<ByteSource> source, std::uint32_t expected, std::string name)
+      : source_(std::move(source)), expected_(expected), name_(std::move(name)) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    const std::size_t count = source_->read(bytes, size);
+    checksum_ = crc32_z(checksum_, reinterpret_cast<const Bytef*>(bytes), count);
+    if (count == 0 && checksum_ != expected_) throw InputError(name_ + ": its bytes do not match their checksum");
+    return count;
+  }
+
+ private:
+  std::unique_ptr<ByteSource> source_;
+  uLong checksum_ = 0, expected_;
+  std::string name_;
+};
+
 }  // namespace
 
 ZipReader::ZipReader(const std::string& path) : path_(path) {
@@ -172,6 +193,10 @@ std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
   std::unique_ptr<ByteSource> part =
       in_memory_ ? open_bytes(in_memory_->substr(offset, size)) : open_part(path_, data, member.packed_size);
   return member.deflated ? inflated(std::move(part), member.size, name_of(member)) : std::move(part);
+}
+
+std::unique_ptr<ByteSource> ZipReader::open_checked(const Member& member) const {
+  return std::make_unique<CheckedSource>(open(member), member.checksum, name_of(member));
 }
 
 }  // namespace raycone

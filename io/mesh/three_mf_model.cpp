@@ -2,8 +2,6 @@
 // Conventions).
 #include "io/mesh/three_mf_model.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -44,25 +42,6 @@ std::string without_case(std::string_view text) {
 
 std::string without_slash(std::string_view name) { return std::string(name.starts_with('/') ? name.substr(1) : name); }
 
-// Reads through another source, and compares what came with the archive's checksum at the end.
-class CheckedSource final : public ByteSource {
- public:
-  CheckedSource(std::unique_ptr<ByteSource> source, std::uint32_t expected, std::string name)
-      : source_(std::move(source)), expected_(expected), name_(std::move(name)) {}
-
-  std::size_t read(char* bytes, std::size_t size) override {
-    const std::size_t count = source_->read(bytes, size);
-    checksum_ = crc32_z(checksum_, reinterpret_cast<const Bytef*>(bytes), count);
-    if (count == 0 && checksum_ != expected_) throw InputError(name_ + ": its bytes do not match their checksum");
-    return count;
-  }
-
- private:
-  std::unique_ptr<ByteSource> source_;
-  uLong checksum_ = 0, expected_;
-  std::string name_;
-};
-
 // Names of parts do not depend on the case of letters.
 const ZipReader::Member& find_part(const ZipReader& archive, const std::string& part, const std::string& file) {
   if (const auto* exact = archive.find(part)) return *exact;
@@ -73,8 +52,7 @@ const ZipReader::Member& find_part(const ZipReader& archive, const std::string& 
 }
 
 void read_part(const ZipReader& archive, const ZipReader::Member& member, const XmlHandler& handler) {
-  CheckedSource source(archive.open(member), member.checksum, archive.name_of(member));
-  read_xml(source, archive.name_of(member), handler);
+  read_xml(*archive.open_checked(member), archive.name_of(member), handler);
 }
 
 // "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.

@@ -185,7 +185,7 @@ TEST_F(CommandLine, UnknownWordsListWhatExists) {
   expect_error(lattice({"--up", "z-to-y"}), 1, "expected y-to-z");
   expect_error(lattice({"--weld", "fuzzy"}), 1, "expected exact, none");
   expect_error(lattice({"--progress", "maybe"}), 1, "expected always, never or auto");
-  expect_error(lattice({"--mesh-format", "fbx"}), 1, "expected obj, ply, stl, off, gltf or glb");
+  expect_error(lattice({"--mesh-format", "fbx"}), 1, "expected obj, ply, stl, off, gltf, glb or 3mf");
 }
 
 TEST_F(CommandLine, UnknownOutputFormatFailsBeforeTheMeshIsRead) {

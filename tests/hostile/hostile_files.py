@@ -91,7 +91,7 @@ add("long_word.obj", "v " + "x" * 100000 + "\n", 2, "found 'xxxxxxxxxxxxxxxxxxxx
 add("long_object_many_groups.obj", "o " + "x" * 300000 + "\n" + "g y\n" * 100000 + OBJ, 0)
 add("many_groups.obj", "".join("g %x\n" % n for n in range(30000)) + OBJ, 0)
 add("nul_in_group.obj", "g a\0b\x1b[31m\xff\n" + OBJ, 0)
-add("group_of_backslashes.obj", "g \\ \\\\ a\\\n\\\n" + OBJ, 0)
+add("group_of_backslashes.obj", "g \\ \\\\ a\\\n\\\n\n" + OBJ, 0)
 add("degenerate.obj", V + "f 1 1 1\nf 1 2 1\n", 0)
 
 # --- OFF

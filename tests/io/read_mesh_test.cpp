@@ -82,7 +82,7 @@ TEST(ReadMesh, WhatCannotBeRecognisedIsRefused) {
   const TemporaryDirectory directory;
   EXPECT_EQ(
       error_of(write(directory, "a.txt", kObj)),
-      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB; --mesh-format names the format where "
+      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF, GLB or 3MF; --mesh-format names the format where "
       "neither content nor extension tells it, as in pipes");
 }
 
@@ -101,7 +101,7 @@ TEST(ReadMesh, StandardInputIsReadUnderTheNameOfADash) {
   EXPECT_TRUE(mesh.companions.empty());
   EXPECT_EQ(
       error,
-      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF or GLB; --mesh-format names the format where "
+      ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF, GLB or 3MF; --mesh-format names the format where "
       "neither content nor extension tells it, as in pipes");
 }
 

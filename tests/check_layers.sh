@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks what the build cannot (docs/architecture.md): sh tests/check_layers.sh [SOURCE-DIRECTORY]
-# Each third-party library has its files, oracles share no code with what they judge, and no include steps out of the
-# include paths by "..". That folders include only what lies below them is the build's job: core/folder.cmake.
+# Each third-party library has its files, oracles share no code with what they judge, no include steps out of the
+# include paths by "..", and no two types of headers have one name. That folders include only what lies below them is the build's job: core/folder.cmake.
 set -eu
 cd "${1:-$(dirname "$0")/..}"
 
@@ -33,6 +33,15 @@ shared='core/(machine/floating_point|data/triangle_mesh|data/vec3)\.h'
 judged=$(find core -name '*.h' | grep -vxE "$shared" | sed 's/\./\\./g' | tr '\n' '|')
 forbid 'oracles must not include what they judge' "\"(${judged%|})\"" \
   tests/support/direct_* tests/support/exact_* tests/support/quad_*
+
+# Two types of one name are one to the linker, which keeps either's destructor for both.
+names='^(struct|class|enum class) +([A-Z][A-Za-z0-9]*)( final)?( *:[^{;]*)? *\{'
+twice=$(find core io app -name '*.h' -exec sed -nE "s/$names.*/\2/p" {} + | sort | uniq -d)
+for name in $twice; do
+  grep -nE "^(struct|class|enum class) +$name\b" $(find core io app -name '*.h') >&2
+  echo "check_layers: two types are called $name" >&2
+  status=1
+done
 
 only_in Embree '[<"]embree' 'core/crossings/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/exact/(predicates|projection)\.cpp'

@@ -11,7 +11,7 @@ mkdir "$copy/tests"
 cp -RL "$root/tests/support" "$copy/tests"
 sh "$root/tests/check_layers.sh" "$copy"
 
-# plant FILE INCLUDE: the check must fail with the line added, and name the file.
+# plant FILE LINE: the check must fail with the line added, and name the file.
 plant() {
   cp "$copy/$1" "$copy/saved"
   printf '%s\n' "$2" >>"$copy/$1"
@@ -40,5 +40,6 @@ plant io/mesh/read_mesh.cpp '#include <nettle/sha2.h>'
 plant app/process/exit_code.h '#include <CLI/CLI.hpp>'
 plant app/process/exit_code.h '#include <zlib.h>'
 plant io/mesh/read_mesh.cpp '#include <png.h>'
+plant app/process/exit_code.h 'struct Vec3 {};'
 plant tests/support/direct_winding_number.cpp '#include "core/exact/predicates.h"'
 plant tests/support/exact_predicates.h '#include "core/exact/direct_sum.h"'

@@ -187,6 +187,13 @@ Json made_object(const VolumeFacts& facts) {
   return object;
 }
 
+// Of a table, where all meshes have the same columns.
+Json to_row(const MeshInfo& info) {
+  Json row = to_object(info);
+  row["unit"] = info.unit;
+  return row;
+}
+
 Json to_object(const VolumeFacts& facts) {
   Json arrays = Json::array();
   for (const ArrayFacts& array : facts.arrays) {
@@ -310,13 +317,13 @@ std::string to_json_item(const MeshInfo& info) {
 
 CsvRecord csv_names(const MeshInfo& info) {
   CsvRecord names{"mesh"};
-  for (const Cell& cell : cells_of(to_object(info))) names.push_back(cell.name);
+  for (const Cell& cell : cells_of(to_row(info))) names.push_back(cell.name);
   return names;
 }
 
 CsvRecord csv_values(const MeshInfo& info) {
   CsvRecord values{info.mesh};
-  for (const Cell& cell : cells_of(to_object(info))) values.push_back(cell.value);
+  for (const Cell& cell : cells_of(to_row(info))) values.push_back(cell.value);
   return values;
 }
 

@@ -27,8 +27,8 @@ void check_inside(const std::string& name, const NodeSet& inside, const Rule& ru
   }
 }
 
-ClosedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
-                         const NodeSet& inside, const SurfaceOptions& options) {
+FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                           const NodeSet& inside, const SurfaceOptions& options) {
   try {
     return closed_surface(mesh, evaluator, inside, options);
   } catch (const LatticeTooFine& error) {
@@ -43,7 +43,7 @@ SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measu
           measures.hole_area,           measures.dropped_area};
 }
 
-std::vector<Warning> warnings_about(const ClosedSurface& closed, const SurfaceOptions& options) {
+std::vector<Warning> warnings_about(const FinishedSurface& closed, const SurfaceOptions& options) {
   std::vector<Warning> warnings;
   if (!closed.merged) {
     warnings.push_back({"not-merged",
@@ -66,7 +66,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
-  ClosedSurface closed = surface_of(name, mesh, evaluator, inside, options);
+  FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice, options.thickness));
   return made;

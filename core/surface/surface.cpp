@@ -56,7 +56,7 @@ class SurfaceMaker {
         distance_(mesh),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
-  ClosedSurface make() {
+  FinishedSurface make() {
     constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
@@ -66,7 +66,7 @@ class SurfaceMaker {
                                          : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
       FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
-        if (std::optional<ClosedSurface> made = attempt(sharp, margins)) return std::move(*made);
+        if (std::optional<FinishedSurface> made = attempt(sharp, margins)) return std::move(*made);
         sharp = sharp.without(involved(sharp));
       }
     }
@@ -77,13 +77,13 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
-  std::optional<ClosedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
+  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
     SurfaceMesh surface = contour(cells_, points_, sharp, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     faults_ = faults_of(surface.mesh, inside_);
     failed_ = surface.mesh;
     if (!faults_.none()) return std::nullopt;
-    ClosedSurface made{std::move(surface)};
+    FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
     if (options_.simplify > 0.0) made.simplified = simplify_surface(made.surface, margins);
     return made;
@@ -228,8 +228,8 @@ double surface_margin(const Lattice& lattice, bool single_precision) {
   return std::max(kLeast, kRoundings * rounding / std::min({h.x, h.y, h.z}));
 }
 
-ClosedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
-                             const SurfaceOptions& options) {
+FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+                               const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
   constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80;
   const Vec3& h = inside.lattice().spacing;

@@ -22,7 +22,7 @@ struct SurfaceOptions {
   int rounds = 16;                // of simplifying, until the surface stays as it was
 };
 
-struct ClosedSurface {
+struct FinishedSurface {
   SurfaceMesh surface;
   // Whether that was done as asked. Else too many rounds of undoing what intersects, or has nodes on the wrong side,
   // left faults still: the surface is the one before.
@@ -49,8 +49,8 @@ class LatticeTooFine : public std::runtime_error {
 // nor the other way round. The same for any number of threads. Preconditions: !inside.empty(),
 // !inside.reaches_border(); `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // std::length_error for more than 2^31 - 1 faces.
-[[nodiscard]] ClosedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
-                                           const NodeSet& inside, const SurfaceOptions& options);
+[[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+                                             const NodeSet& inside, const SurfaceOptions& options);
 
 // The margin that a lattice is given at first, as a fraction of a voxel.
 [[nodiscard]] double surface_margin(const Lattice& lattice, bool single_precision);

@@ -29,11 +29,10 @@ struct Instance {
 
 class ThreeMfPackage {
  public:
-  explicit ThreeMfPackage(const NamedBytes& source)
-      : file_(source.name), archive_(source.bytes, source.name), root_(three_mf_root(archive_, file_)) {}
+  explicit ThreeMfPackage(const NamedBytes& source) : file_(source.name), parts_(source.bytes, source.name) {}
 
   ParsedMesh build() {
-    const ThreeMfModel& root = model(root_);
+    const ThreeMfModel& root = model(parts_.root());
     for (const ThreeMfUse& item : root.items) place(item, {});
     std::ranges::stable_sort(instances_, {}, [&](const Instance& i) { return first_use_.at(i.object); });
     for (auto it = instances_.begin(); it != instances_.end(); ++it) {
@@ -52,9 +51,14 @@ class ThreeMfPackage {
 
  private:
   const ThreeMfModel& model(const std::string& part) {
-    const auto known = models_.find(part);
-    if (known != models_.end()) return known->second;
-    return models_[part] = read_three_mf_model(archive_, part, file_);
+    const ZipReader::Member& member = parts_.find(part);
+    const auto [known, is_new] = models_.try_emplace(&member);
+    if (!is_new) return known->second;
+    known->second = parts_.read_model(member);
+    for (const auto& [id, object] : known->second.objects) {
+      stored_ += object.mesh.vertices.size() + object.mesh.triangles.size();
+    }
+    return known->second;
   }
 
   const ThreeMfObject& object(const ThreeMfUse& use) {
@@ -73,6 +77,10 @@ class ThreeMfPackage {
     if (depth_ == kDeepest) throw InputError(file_ + ": components within components, more than 256 deep");
     const ThreeMfObject& placed = object(use);
     const AffineMap placement = composed(outer, use.placement);
+    if (placed.is_coarse) {
+      throw InputError(file_ + ": object " + std::to_string(use.object) +
+                       " has triangles of low resolution beside its slices, expected its shape in triangles");
+    }
     if (!placed.mesh.triangles.empty()) {
       instances_.push_back({&placed, placement});
       first_use_.try_emplace(&placed, first_use_.size());
@@ -109,29 +117,20 @@ class ThreeMfPackage {
   void spend(std::uint64_t elements) {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 26;
     spent_ += elements;
-    if (spent_ > kMost && spent_ > 16 * stored()) {
+    if (spent_ > kMost && spent_ > 16 * stored_) {
       throw LimitError(file_ + ": copies of objects have more than " + std::to_string(kMost) +
                        " vertices and triangles");
     }
   }
-  [[nodiscard]] std::uint64_t stored() const {
-    std::uint64_t elements = 0;
-    for (const auto& [part, model] : models_) {
-      for (const auto& [id, object] : model.objects) {
-        elements += object.mesh.vertices.size() + object.mesh.triangles.size();
-      }
-    }
-    return elements;
-  }
 
   const std::string& file_;
-  ZipReader archive_;
-  std::string root_;
-  std::map<std::string, ThreeMfModel> models_;  // of the parts read so far
+  ThreeMfParts parts_;
+  std::map<const ZipReader::Member*, ThreeMfModel> models_;  // of the parts read so far
   std::vector<Instance> instances_;
   std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
   std::size_t uses_ = 0, depth_ = 0;
-  std::uint64_t lattices_ = 0, spent_ = 0;
+  std::uint64_t lattices_ = 0;
+  std::uint64_t stored_ = 0, spent_ = 0;  // vertices and triangles: of models_, and of copies
   GroupCollector groups_;
   ParsedMesh parsed_;
 };

@@ -24,6 +24,7 @@ constexpr std::string_view kCore = RAYCONE_3MF "core/2015/02|";
 constexpr std::string_view kProductionPath = RAYCONE_3MF "production/2015/06|path";
 constexpr std::string_view kBeamLattice = RAYCONE_3MF "beamlattice/2017/02|beamlattice";
 constexpr std::string_view kSliceStack = RAYCONE_3MF "slice/2015/07|slicestackid";
+constexpr std::string_view kMeshResolution = RAYCONE_3MF "slice/2015/07|meshresolution";
 constexpr std::string_view kModelRelation = RAYCONE_3MF "2013/01/3dmodel";
 constexpr std::string_view kEncrypted = "/encryptedfile", kKeys = "/keystore";  // ends of relations' types
 // Required extensions that leave triangles as they are, or that are read.
@@ -41,19 +42,6 @@ std::string without_case(std::string_view text) {
 }
 
 std::string without_slash(std::string_view name) { return std::string(name.starts_with('/') ? name.substr(1) : name); }
-
-// Names of parts do not depend on the case of letters.
-const ZipReader::Member& find_part(const ZipReader& archive, const std::string& part, const std::string& file) {
-  if (const auto* exact = archive.find(part)) return *exact;
-  for (const ZipReader::Member& member : archive.members()) {
-    if (without_case(member.name) == without_case(part)) return member;
-  }
-  throw InputError(file + ": no part " + part.substr(0, kMaxQuoted) + ", expected a 3MF package");
-}
-
-void read_part(const ZipReader& archive, const ZipReader::Member& member, const XmlHandler& handler) {
-  read_xml(*archive.open_checked(member), archive.name_of(member), handler);
-}
 
 // "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.
 AffineMap placement_of(const XmlAttributes& attributes) {
@@ -80,13 +68,12 @@ class ModelReader {
  public:
   ModelReader(std::string part, const std::string& name) : part_(std::move(part)), name_(name) {}
 
-  ThreeMfModel read(const ZipReader& archive, const ZipReader::Member& member) {
-    read_part(archive, member,
-              {[&](std::string_view name, const XmlAttributes& attributes) { start(name, attributes); },
-               [&](std::string_view) { end(); },
-               [&](std::string_view prefix, std::string_view uri) { prefixes_[std::string(prefix)] = uri; }});
-    return std::move(model_);
+  [[nodiscard]] XmlHandler handler() {
+    return {[&](std::string_view name, const XmlAttributes& attributes) { start(name, attributes); },
+            [&](std::string_view) { end(); },
+            [&](std::string_view prefix, std::string_view uri) { prefixes_[std::string(prefix)] = uri; }};
   }
+  [[nodiscard]] ThreeMfModel take() { return std::move(model_); }
 
  private:
   enum class Element {
@@ -108,6 +95,9 @@ class ModelReader {
     } else if (const auto element = known(name)) {
       open_.push_back(*element);
       enter(name, attributes);
+    } else if (open_.empty()) {
+      attributes.fail("element " + std::string(name.substr(0, kMaxQuoted)) + ", expected " + std::string(kCore) +
+                      "model");
     } else {
       if (name == kBeamLattice && object_ != nullptr) ++object_->lattices;
       ++passed_over_;
@@ -163,6 +153,8 @@ class ModelReader {
       model_.items.push_back(use_of(attributes));
     } else if (open_.back() == Element::kObject) {
       start_object(attributes);
+    } else if (open_.back() == Element::kMesh) {
+      if (!object_->mesh.vertices.empty()) attributes.fail("a second mesh of an object, expected one");
     } else if (open_.back() == Element::kModel) {
       check_extensions(attributes);
       model_.unit = attributes.find("unit").value_or("millimeter").substr(0, kMostOfName);
@@ -192,6 +184,7 @@ class ModelReader {
     object_ = &object->second;
     object_->name = attributes.find("name").value_or("").substr(0, kMostOfName);
     object_->is_sliced = attributes.find(kSliceStack).has_value();
+    object_->is_coarse = attributes.find(kMeshResolution) == "lowres";
   }
 
   void add_vertex(const XmlAttributes& attributes) {
@@ -231,24 +224,44 @@ class ModelReader {
 
 }  // namespace
 
-std::string three_mf_root(const ZipReader& archive, const std::string& file) {
+// Names of parts do not depend on the case of letters.
+ThreeMfParts::ThreeMfParts(std::string_view bytes, const std::string& file)
+    : file_(file), size_(bytes.size()), archive_(bytes, file) {
+  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(without_case(member.name), &member);
+}
+
+std::string ThreeMfParts::root() {
   std::string root;
   const auto note = [&](std::string_view name, const XmlAttributes& attributes) {
     if (!name.ends_with("|Relationship")) return;
     const std::string_view type = attributes.text("Type");
-    if (type.ends_with(kEncrypted) || type.ends_with(kKeys))
-      throw InputError(file + ": is encrypted, expected a 3MF that can be read");
+    if (type.ends_with(kEncrypted) || type.ends_with(kKeys)) {
+      throw InputError(file_ + ": is encrypted, expected a 3MF that can be read");
+    }
     if (type == kModelRelation && root.empty()) root = without_slash(attributes.text("Target"));
   };
-  read_part(archive, find_part(archive, "_rels/.rels", file), {note, [](std::string_view) {}, {}});
-  if (root.empty()) throw InputError(file + ": no 3D model in its relationships, expected a 3MF package");
+  read(find("_rels/.rels"), {note, [](std::string_view) {}, {}});
+  if (root.empty()) throw InputError(file_ + ": no 3D model in its relationships, expected a 3MF package");
   return root;
 }
 
-ThreeMfModel read_three_mf_model(const ZipReader& archive, const std::string& part, const std::string& file) {
-  const ZipReader::Member& member = find_part(archive, part, file);
-  const std::string name = archive.name_of(member);
-  return ModelReader(part, name).read(archive, member);
+const ZipReader::Member& ThreeMfParts::find(const std::string& name) const {
+  const auto found = parts_.find(without_case(name));
+  if (found != parts_.end()) return *found->second;
+  throw InputError(file_ + ": no part " + name.substr(0, kMaxQuoted) + ", expected a 3MF package");
+}
+
+ThreeMfModel ThreeMfParts::read_model(const ZipReader::Member& part) {
+  const std::string name = archive_.name_of(part);
+  ModelReader reader(part.name, name);
+  read(part, reader.handler());
+  return reader.take();
+}
+
+void ThreeMfParts::read(const ZipReader::Member& part, const XmlHandler& handler) {
+  read_ += part.packed_size;
+  if (read_ > size_) throw InputError(file_ + ": has parts that share bytes, expected parts of their own");
+  read_xml(*archive_.open_checked(part), archive_.name_of(part), handler);
 }
 
 }  // namespace raycone

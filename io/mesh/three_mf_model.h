@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
 #include "io/files/zip_reader.h"
 #include "io/mesh/affine_map.h"
+#include "io/mesh/xml_reader.h"
 
 namespace raycone {
 
@@ -23,7 +25,8 @@ struct ThreeMfObject {
   std::string name;  // may be empty
   TriangleMesh mesh;
   std::vector<ThreeMfUse> components;
-  bool is_sliced = false;      // it has slices, which may be all that it has
+  bool is_sliced = false;      // it has slices, which may be all that it has,
+  bool is_coarse = false;      // and its triangles only stand for them
   std::uint64_t lattices = 0;  // of beams, which are passed over
 };
 
@@ -33,13 +36,27 @@ struct ThreeMfModel {
   std::map<std::uint32_t, ThreeMfObject> objects;
 };
 
-// The name of the root model's part. Throws InputError where `archive` is no 3MF, and where it is encrypted.
-[[nodiscard]] std::string three_mf_root(const ZipReader& archive, const std::string& file);
+// The parts of a package, whose names have no leading '/'. `bytes` and `file` must outlive this; all throw InputError.
+class ThreeMfParts {
+ public:
+  ThreeMfParts(std::string_view bytes, const std::string& file);
 
-// Reads a model part; names of parts have no leading '/'. Throws InputError where it is invalid, damaged or needs an
-// extension that changes shapes and is not known; and LimitError. All indices of triangles are in range, all
-// coordinates finite.
-[[nodiscard]] ThreeMfModel read_three_mf_model(const ZipReader& archive, const std::string& part,
-                                               const std::string& file);
+  // The name of the root model. Throws where this is no 3MF, and where it is encrypted.
+  [[nodiscard]] std::string root();
+  // By its name in any case of letters.
+  [[nodiscard]] const ZipReader::Member& find(const std::string& name) const;
+  // Throws where the model is invalid, damaged or needs an extension that changes shapes and is not known; and
+  // LimitError. All indices of triangles are in range, all coordinates finite.
+  [[nodiscard]] ThreeMfModel read_model(const ZipReader::Member& part);
+
+ private:
+  void read(const ZipReader::Member& part, const XmlHandler& handler);
+
+  const std::string& file_;
+  std::uint64_t size_;      // of the archive
+  std::uint64_t read_ = 0;  // of it: parts that share bytes could ask for any amount of work
+  ZipReader archive_;
+  std::map<std::string, const ZipReader::Member*> parts_;  // by their names in lower case
+};
 
 }  // namespace raycone

@@ -4,6 +4,7 @@ Packages made with zipfile. Triangles are compared as numbers; transforms are su
 side rounds. Then what is refused, and how the message begins.
 """
 
+import csv
 import io
 import itertools
 import json
@@ -140,6 +141,26 @@ class Values(unittest.TestCase):
                  "3D/Objects/one.model": model(TETRAHEDRON)}
         self.assertEqual(len(self.read(package(parts))), 8)
 
+    def test_a_part_is_read_once_however_its_name_is_spelt(self):
+        items = "".join(f'<item objectid="1" p:path="/{name}"/>' for name in ("a.MODEL", "A.model", "a.model"))
+        self.assertEqual(len(self.read(package({"3D/3dmodel.model": model("", items), "a.model": model(TETRAHEDRON)}))), 12)
+        lattice = [RAYCONE, "lattice", self.path, "-o", self.path + ".csv", "--resolution", "3", "--report", self.path + ".json"]
+        self.assertEqual(subprocess.run([*lattice, "--field", "label", "--parts", "group"], capture_output=True).returncode, 0)
+        with open(self.path + ".json", encoding="utf-8") as file:
+            self.assertEqual(len(json.load(file)["parts"]), 1)
+
+    def test_tables_of_several_formats_have_the_same_columns(self):
+        with open(self.path, "wb") as file:
+            file.write(package(model(TETRAHEDRON, ITEM)))
+        other = os.path.join(self.directory.name, "m.off")
+        with open(other, "w", encoding="utf-8") as file:
+            file.write("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        for names in ((other, self.path), (self.path, other)):
+            result = subprocess.run([RAYCONE, "info", *names, "--csv"], capture_output=True, text=True)
+            rows = list(csv.DictReader(io.StringIO(result.stdout)))
+            self.assertEqual({row["mesh"]: row["unit"] for row in rows}, {other: "", self.path: "millimeter"})
+            self.assertNotIn(None, [key for row in rows for key in row])
+
     def test_what_is_not_built_is_left_out(self):
         other = mesh_object(2, VERTICES, FACES[:1])
         self.assertEqual(len(self.read(package(model(TETRAHEDRON + other, '<item objectid="2"/>')))), 1)
@@ -172,6 +193,8 @@ REFUSED = {
     "beams_required": (package(model(TETRAHEDRON, ITEM, 'requiredextensions="p b"')), "beamlattice/2017/02, which is not"),
     "prefix_unknown": (package(model(TETRAHEDRON, ITEM, 'requiredextensions="zz"')), "requires the extension zz"),
     "slices_only": (package(model('<object id="1" s:slicestackid="4"/>', ITEM)), "object 1 has slices only"),
+    "coarse": (package(model(mesh_object(1, VERTICES, FACES, 's:slicestackid="4" s:meshresolution="lowres"'), ITEM)),
+               "triangles of low resolution"),
     "object_missing": (package(model(TETRAHEDRON, '<item objectid="2"/>')), "no object 2"),
     "object_twice": (package(model(TETRAHEDRON * 2, ITEM)), "a second object 1"),
     "cycle": (package(model('<object id="1"><components><component objectid="1"/></components></object>', ITEM)),
@@ -186,6 +209,9 @@ REFUSED = {
     "not_xml": (package("<model"), "3dmodel.model):1: not well-formed XML"),
     "doctype": (package('<!DOCTYPE m [<!ENTITY a "b">]><m/>'), "a document type, expected none"),
     "long_token": (package(f'<m a="{"x" * (3 << 20)}"/>'), "more than a megabyte"),
+    "old_namespace": (package(model(TETRAHEDRON, ITEM).replace(CORE, CORE.replace("2015/02", "2013/01"))),
+                      "expected http://schemas.microsoft.com/3dmanufacturing/core/2015/02|model"),
+    "two_meshes": (package(model(TETRAHEDRON.replace("</mesh>", "</mesh><mesh></mesh>"), ITEM)), "a second mesh"),
     "deep": (package(model("<x>" * 300000, ITEM)), "not well-formed"),
     "no_triangles": (package(model(TETRAHEDRON, "")), "no triangles, expected at least one"),
 }
@@ -211,6 +237,15 @@ class Refusals(unittest.TestCase):
     def test_bytes_that_do_not_match_their_checksum_are_refused(self):
         data = package(model(TETRAHEDRON, ITEM), zipfile.ZIP_STORED)
         self.refused("checksum", data.replace(b"0.2", b"0.7"), "do not match their checksum")
+
+    def test_members_that_share_bytes_are_refused(self):
+        parts = {"3D/3dmodel.model": model("", "".join(f'<item objectid="1" p:path="/{n}.model"/>' for n in range(9)))}
+        data = bytearray(package({**parts, **{f"{n}.model": model(TETRAHEDRON) * (n == 0) for n in range(9)}}))
+        entries = [data.index(b"%d.model" % n, data.index(b"PK\1\2")) - 46 for n in range(9)]
+        for entry in entries[1:]:  # sizes, checksum and place of the first
+            data[entry + 16 : entry + 28] = data[entries[0] + 16 : entries[0] + 28]
+            data[entry + 42 : entry + 46] = data[entries[0] + 42 : entries[0] + 46]
+        self.refused("shared", bytes(data), "share bytes")
 
     # 1000 to the power of 3 copies; and a part of a gigabyte of blanks, which takes no memory.
     def test_small_files_cannot_ask_for_everything(self):

@@ -76,7 +76,7 @@ def main():
     chosen = chosen_mutants(sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         tree, build_directory = Path(directory) / "source", Path(directory) / "build"
-        for folder in ("core", "tests"):
+        for folder in ("core", "io", "tests"):
             shutil.copytree(ROOT / folder, tree / folder)
         for mutant in mutants.MUTANTS:
             mutated_texts(mutant, tree)  # all of them, before the first is built

@@ -46,6 +46,10 @@ class ThreeMfPackage {
     if (lattices_ > 0) {
       parsed_.warnings.push_back({"beam-lattices", counted(lattices_, "beam lattice") + " without triangles ignored"});
     }
+    if (sliced_ > 0) {
+      parsed_.warnings.push_back(
+          {"slices", counted(sliced_, "object") + " with slices, which are ignored: triangles count"});
+    }
     return std::move(parsed_);
   }
 
@@ -88,6 +92,7 @@ class ThreeMfPackage {
       throw InputError(file_ + ": object " + std::to_string(use.object) + " has slices only, expected triangles");
     }
     lattices_ += placed.lattices;
+    sliced_ += placed.is_sliced;
     ++depth_;
     for (const ThreeMfUse& component : placed.components) place(component, placement);
     --depth_;
@@ -129,7 +134,7 @@ class ThreeMfPackage {
   std::vector<Instance> instances_;
   std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
   std::size_t uses_ = 0, depth_ = 0;
-  std::uint64_t lattices_ = 0;
+  std::uint64_t lattices_ = 0, sliced_ = 0;
   std::uint64_t stored_ = 0, spent_ = 0;  // vertices and triangles: of models_, and of copies
   GroupCollector groups_;
   ParsedMesh parsed_;

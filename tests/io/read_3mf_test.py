@@ -182,6 +182,14 @@ class Values(unittest.TestCase):
         self.assertIn("a & b", json.dumps(document["parts"]))
 
 
+    def test_what_is_ignored_is_told(self):
+        beams = TETRAHEDRON.replace("</mesh>", "<b:beamlattice minlength='1'><b:beams/></b:beamlattice></mesh>")
+        with open(self.path, "wb") as file:
+            file.write(package(model(beams.replace("<object", '<object s:slicestackid="4"'), ITEM)))
+        result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
+        self.assertEqual(json.loads(result.stdout)["warnings"][:2], ["beam-lattices", "slices"])
+
+
 REFUSED = {
     "no_relations": (package(model(TETRAHEDRON, ITEM), root=None), "no part _rels/.rels, expected a 3MF package"),
     "no_model": (package(model(TETRAHEDRON, ITEM), root=relations("/x", kind="other")), "no 3D model"),

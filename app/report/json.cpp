@@ -187,10 +187,10 @@ Json made_object(const VolumeFacts& facts) {
   return object;
 }
 
-// Of a table, where all meshes have the same columns.
+// Of a table, where all meshes have the same columns, whatever their format.
 Json to_row(const MeshInfo& info) {
   Json row = to_object(info);
-  row["unit"] = info.unit;
+  row.erase("unit");
   return row;
 }
 

@@ -21,13 +21,13 @@ std::vector<std::uint16_t> halves_of(const FieldDescription& field, const std::v
 }
 
 TEST(ArrayElements, HalvesStayOnTheirSideOfTheThreshold) {
+  constexpr std::uint16_t kQuarter = 0x3400, kBelow = 0x33FF;  // 0.25 in 16 bits, and the number below it
+  const double below = std::nextafter(0.25, 0.0);
   FieldDescription field;
-  field.threshold = 0.5;
-  constexpr std::uint16_t kHalf = 0x3800, kBelow = 0x37FF;  // 0.5 in 16 bits, and the number below it
-  const double below = std::nextafter(0.5, 0.0);
-  EXPECT_EQ(halves_of(field, {0.5, below, 0.5 + 1e-9}), (std::vector<std::uint16_t>{kHalf, kBelow, kHalf}));
-  field.threshold = 0.75;  // where nothing depends on the side of 0.5
-  EXPECT_EQ(halves_of(field, {below}), std::vector<std::uint16_t>{kHalf});
+  field.threshold = 0.25;
+  EXPECT_EQ(halves_of(field, {0.25, below, 0.25 + 1e-9}), (std::vector<std::uint16_t>{kQuarter, kBelow, kQuarter}));
+  field.threshold = 0.75;  // where nothing depends on the side of 0.25
+  EXPECT_EQ(halves_of(field, {below}), std::vector<std::uint16_t>{kQuarter});
 }
 
 }  // namespace

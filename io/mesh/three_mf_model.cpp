@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "io/files/file_error.h"
+#include "io/files/text_scanner.h"
 #include "io/mesh/face_groups.h"
 #include "io/mesh/mesh_error.h"
 #include "io/mesh/xml_reader.h"

@@ -33,6 +33,7 @@ struct ContourPart {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
   std::vector<Vec3> apexes;
+  std::vector<std::uint64_t> tetrahedra;  // of them
 };
 constexpr std::uint32_t kFirstApex = 0x80000000;
 
@@ -50,9 +51,9 @@ class CellContour {
   void add(std::uint32_t cell) {
     cell_ = cell;
     corner_cells_.fill(kUnknown);
-    for (const kuhn::Tetrahedron& tetrahedron : kuhn::kTetrahedra) {
-      const Loop loop = loop_of(tetrahedron);
-      if (loop.size > 0) fill(loop, tetrahedron);
+    for (std::size_t n = 0; n < kuhn::kTetrahedra.size(); ++n) {
+      const Loop loop = loop_of(kuhn::kTetrahedra[n]);
+      if (loop.size > 0) fill(loop, n);
     }
   }
 
@@ -83,7 +84,7 @@ class CellContour {
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
     return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
   }
-  void fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
+  void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
   [[nodiscard]] Vec3 apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
   void add_triangle(const Triangle& triangle, std::int32_t source) {
@@ -144,13 +145,14 @@ Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
 
 std::int32_t source_of(std::int32_t a, std::int32_t b) { return a == kHole || b == kHole ? kHole : a; }
 
-void CellContour::fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
+void CellContour::fill(const Loop& loop, std::size_t number) {
   if (!loop.has_face_point) {
     fill_flat(loop);
     return;
   }
   const auto apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
-  part_.apexes.push_back(apex_of(loop, tetrahedron));
+  part_.apexes.push_back(apex_of(loop, kuhn::kTetrahedra[number]));
+  part_.tetrahedra.push_back(kuhn::kTetrahedra.size() * cell_ + number);
   const auto corners = std::span(loop.corners).first(loop.size);
   const bool at_hole = std::ranges::any_of(
       corners, [](const LoopCorner& corner) { return corner.edge_point && corner.edge_point->source == kHole; });
@@ -208,8 +210,8 @@ Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron
 
 }  // namespace
 
-SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-                    double tolerance, const SurfaceMargins& margins) {
+ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                         const FacePoints& face_points, double tolerance, const SurfaceMargins& margins) {
   const std::size_t count = cells.cells().size();
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -220,7 +222,8 @@ SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_p
       }
     }
   });
-  SurfaceMesh surface;
+  ContouredSurface contoured;
+  SurfaceMesh& surface = contoured.surface;
   std::vector<Vec3>& vertices = surface.mesh.vertices;
   for (const EdgePoint& point : edge_points) vertices.push_back(point.position);
   vertices.insert(vertices.end(), face_points.positions().begin(), face_points.positions().end());
@@ -233,11 +236,12 @@ SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_p
       }
       surface.mesh.triangles.push_back(triangle);
     }
+    contoured.tetrahedra.insert(contoured.tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
     surface.sources.insert(surface.sources.end(), part.sources.begin(), part.sources.end());
     if (vertices.size() >= kFirstApex || surface.mesh.triangles.size() > kMaxTriangles)
       throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
   }
-  return surface;
+  return contoured;
 }
 
 }  // namespace raycone

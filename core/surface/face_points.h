@@ -30,6 +30,7 @@ class FacePoints {
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
       : faces_(std::move(faces)), positions_(std::move(positions)) {}
 
+  [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
 
   // The number of the point of a face of the cell, as in kuhn::kFaces; nothing where it has none. Thread-safe.

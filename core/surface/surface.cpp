@@ -13,6 +13,7 @@
 #include "core/surface/merge_planes.h"
 #include "core/surface/simplify.h"
 #include "core/surface/thicken.h"
+#include "core/surface/vertex_places.h"
 
 namespace raycone {
 namespace {
@@ -78,9 +79,10 @@ class SurfaceMaker {
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
-    SurfaceMesh surface = contour(cells_, points_, sharp, tolerance_, margins);
+    auto [surface, tetrahedra] = contour(cells_, points_, sharp, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     faults_ = faults_of(surface.mesh, inside_);
+    faults_.places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
     failed_ = surface.mesh;
     if (!faults_.none()) return std::nullopt;
     FinishedSurface made{std::move(surface)};

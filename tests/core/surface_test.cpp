@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -19,6 +20,7 @@
 #include "core/surface/merge_planes.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
+#include "core/surface/vertex_places.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -94,7 +96,10 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   const SurfaceCells cells(nodes);
   const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
   const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-  return faults_of(contour(cells, points, face_points, 0.0, kMargins).mesh, nodes);
+  const auto [surface, tetrahedra] = contour(cells, points, face_points, 0.0, kMargins);
+  SurfaceFaults faults = faults_of(surface.mesh, nodes);
+  faults.places = misplaced_vertices(surface.mesh.vertices, cells, face_points, tetrahedra, kMargins);
+  return faults;
 }
 
 TEST(Surface, IsRightForEachLabellingOfACell) {
@@ -128,7 +133,7 @@ TEST(SurfaceCertificate, FindsEachFault) {
   const DefaultFloatingPoint guard;
   const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
   const SurfaceCells cells(nodes);
-  const SurfaceMesh surface = contour(cells, random_edge_points(cells, random, true), {}, 0.0, kMargins);
+  const SurfaceMesh surface = contour(cells, random_edge_points(cells, random, true), {}, 0.0, kMargins).surface;
   ASSERT_TRUE(faults_of(surface.mesh, nodes).none());
   TriangleMesh open = surface.mesh;
   open.triangles.pop_back();
@@ -145,6 +150,37 @@ TEST(SurfaceCertificate, FindsEachFault) {
   const auto last = static_cast<std::uint32_t>(pinched.vertices.size() - 1);
   for (Triangle& t : pinched.triangles) std::ranges::replace(t, last, 0U);
   EXPECT_GT(faults_of(pinched, nodes).links + faults_of(pinched, nodes).edges, 0U);
+}
+
+// Vertices that have left their edge, face or tetrahedron by less than anything else would notice.
+TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
+  Random random(4);
+  const DefaultFloatingPoint guard;
+  const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
+  const SurfaceCells cells(nodes);
+  const FacePoints face_points = random_face_points(cells, random);
+  const auto [surface, tetrahedra] =
+      contour(cells, random_edge_points(cells, random, false), face_points, 0.0, kMargins);
+  const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, tetrahedra, kMargins), 0U);
+  const std::size_t first_apex = cells.edges() + face_points.positions().size();
+  const Vec3 off{1e-7, 2e-7, 3e-7}, away{2.0, 0.0, 0.0};
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    std::vector<Vec3> moved = vertices;
+    moved[v] = moved[v] + (v < first_apex ? off : away);
+    EXPECT_EQ(misplaced_vertices(moved, cells, face_points, tetrahedra, kMargins), 1U) << v;
+  }
+  for (std::size_t n = 0; n < tetrahedra.size(); ++n) {
+    std::vector<std::uint64_t> others(tetrahedra.begin(), tetrahedra.end());
+    others[n] = others[n] % 6 == 5 ? others[n] - 1 : others[n] + 1;
+    EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, others, kMargins), 1U) << n;
+  }
+  // An end of an edge is not inside of it.
+  std::vector<Vec3> at_end = vertices;
+  const SurfaceCell& cell = cells.cells().front();
+  const auto direction = static_cast<unsigned>(std::countr_zero(cell.mixed_directions()));
+  at_end[cell.edge(direction)] = cells.corner(cell, 0);
+  EXPECT_EQ(misplaced_vertices(at_end, cells, face_points, tetrahedra, kMargins), 1U);
 }
 
 TEST(SegmentHit, IsExactAboutEnds) {

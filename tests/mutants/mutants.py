@@ -411,6 +411,10 @@ MUTANTS = [
         ("core/surface/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
     Mutant("surface_turned", "loops around three inside nodes run the other way", [
         ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
+    Mutant("surface_places_on_border", "a vertex on the border of its edge, face or cell is out of place", [
+        ("core/surface/vertex_places.cpp", "!(last - here >= margin_ / 2)", "!(last - here >= 0.0)")]),
+    Mutant("surface_places_off_faces", "a vertex beside its edge or face is out of place", [
+        ("core/surface/vertex_places.cpp", "<= margin_ / 16)", "<= 1.0)")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 

@@ -14,6 +14,7 @@ namespace raycone {
 namespace {
 
 constexpr std::size_t kCellsPerPart = 512;
+constexpr double kSamePlace = 16.0;  // square of how many tolerances points on two planes may be apart
 
 // A corner of a loop: a vertex of the surface, and the edge point where it is one.
 struct LoopCorner {
@@ -40,10 +41,11 @@ constexpr std::uint32_t kFirstApex = 0x80000000;
 class CellContour {
  public:
   CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-              double tolerance, double margin, ContourPart& part)
+              const CellCreases& creases, double tolerance, double margin, ContourPart& part)
       : cells_(cells),
         edge_points_(edge_points),
         face_points_(face_points),
+        creases_(creases),
         tolerance_(tolerance),
         margin_(margin),
         part_(part) {}
@@ -59,6 +61,11 @@ class CellContour {
 
  private:
   static constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
+  using Corners = std::array<Vec3, 4>;
+  struct Apex {
+    Vec3 position;
+    bool on_mesh;
+  };
 
   [[nodiscard]] bool is_inside(unsigned corner) const { return cells_.cells()[cell_].is_inside(corner); }
   [[nodiscard]] std::uint32_t cell_of(unsigned corner) {
@@ -86,7 +93,9 @@ class CellContour {
   }
   void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
-  [[nodiscard]] Vec3 apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  [[nodiscard]] std::optional<Vec3> crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
+                                                const Vec3& from) const;
   void add_triangle(const Triangle& triangle, std::int32_t source) {
     part_.triangles.push_back(triangle);
     part_.sources.push_back(source);
@@ -95,6 +104,7 @@ class CellContour {
   const SurfaceCells& cells_;
   std::span<const EdgePoint> edge_points_;
   const FacePoints& face_points_;
+  const CellCreases& creases_;
   double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
@@ -150,16 +160,18 @@ void CellContour::fill(const Loop& loop, std::size_t number) {
     fill_flat(loop);
     return;
   }
-  const auto apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
-  part_.apexes.push_back(apex_of(loop, kuhn::kTetrahedra[number]));
+  const auto vertex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
+  const Apex apex = apex_of(loop, kuhn::kTetrahedra[number]);
+  part_.apexes.push_back(apex.position);
   part_.tetrahedra.push_back(kuhn::kTetrahedra.size() * cell_ + number);
-  const auto corners = std::span(loop.corners).first(loop.size);
-  const bool at_hole = std::ranges::any_of(
-      corners, [](const LoopCorner& corner) { return corner.edge_point && corner.edge_point->source == kHole; });
+  const bool at_hole = std::ranges::any_of(std::span(loop.corners).first(loop.size), [](const LoopCorner& corner) {
+    return corner.edge_point && corner.edge_point->source == kHole;
+  });
   for (std::size_t i = 0; i < loop.size; ++i) {
     const LoopCorner &here = loop.corners[i], &next = loop.corners[(i + 1) % loop.size];
-    const EdgePoint* const point = here.edge_point ? here.edge_point : next.edge_point;
-    add_triangle({here.vertex, next.vertex, apex}, at_hole ? kHole : point->source);
+    const std::int32_t first = (here.edge_point ? here : next).edge_point->source;
+    const std::int32_t second = (next.edge_point ? next : here).edge_point->source;
+    add_triangle({here.vertex, next.vertex, vertex}, at_hole && !apex.on_mesh ? kHole : source_of(first, second));
   }
 }
 
@@ -183,8 +195,28 @@ void CellContour::fill_flat(const Loop& loop) {
   add(from + 2, (from + 3) % 4, from);
 }
 
-Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
-  std::array<Vec3, 4> corners;
+// Where a crease leaves the tetrahedron through the face whose nodes are of one kind, as far from a point as there is
+// one; relative to the first corner.
+std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
+                                             const Vec3& from) const {
+  for (std::size_t lone = 0; lone < corners.size(); ++lone) {
+    std::array<Vec3, 3> face;
+    std::size_t next = 0, inside = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (i == lone) continue;
+      face[next++] = corners[i];
+      inside += is_inside(tetrahedron.corners[i]) ? 1 : 0;
+    }
+    if (inside != 0 && inside != face.size()) continue;
+    const Vec3 start = corners[0] + from;
+    const std::optional<Vec3> hit = creases_.farthest_hit(cell_, face, start, corners[lone]);
+    return hit ? std::optional(moved_within(corners, *hit - corners[0], margin_)) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
+  Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
                          [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
   std::array<PointOnPlane, 4> planes;
@@ -203,20 +235,30 @@ Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron
   }
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
                                       : (1.0 / static_cast<double>(loop.size)) * of_all;
+  if (face_points == 1) {
+    if (const auto exit = crease_exit(corners, tetrahedron, middle)) return {corners[0] + *exit, true};
+  }
   const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), middle, tolerance_);
-  if (meeting && is_within(corners, *meeting, margin_)) return corners[0] + *meeting;
-  return corners[0] + moved_within(corners, middle, margin_);
+  const bool meets_within = meeting && is_within(corners, *meeting, margin_);
+  const std::optional<Vec3> on_crease = creases_.nearest_within(cell_, corners, meets_within ? *meeting : middle);
+  const auto is_at = [&](const Vec3& p) {
+    const Vec3 off = p - *meeting;
+    return dot(off, off) <= kSamePlace * tolerance_ * tolerance_;
+  };
+  if (meets_within && (!on_crease || is_at(*on_crease))) return {corners[0] + *meeting, on_crease.has_value()};
+  return {corners[0] + moved_within(corners, on_crease.value_or(middle), margin_), on_crease.has_value()};
 }
 
 }  // namespace
 
 ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                         const FacePoints& face_points, double tolerance, const SurfaceMargins& margins) {
+                         const FacePoints& face_points, const CellCreases& creases, double tolerance,
+                         const SurfaceMargins& margins) {
   const std::size_t count = cells.cells().size();
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {
-      CellContour contour(cells, edge_points, face_points, tolerance, margins.inner, parts[part]);
+      CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part]);
       for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
         contour.add(static_cast<std::uint32_t>(cell));
       }

@@ -54,7 +54,9 @@ class SurfaceMaker {
         inside_(inside),
         options_(options),
         cells_(inside),
-        distance_(mesh),
+        triangles_(mesh, cells_),
+        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, triangles_)),
+
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
@@ -62,10 +64,11 @@ class SurfaceMaker {
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = options_.thickness > 0.0 ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), distance_,
-                                                             options_.thickness, cells_, margins)
-                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
-      FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
+      points_ = options_.thickness > 0.0
+                    ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), DistanceEvaluator(mesh_),
+                                        options_.thickness, cells_, margins)
+                    : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
+      FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (std::optional<FinishedSurface> made = attempt(sharp, margins)) return std::move(*made);
         sharp = sharp.without(involved(sharp));
@@ -79,7 +82,7 @@ class SurfaceMaker {
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
-    auto [surface, tetrahedra] = contour(cells_, points_, sharp, tolerance_, margins);
+    auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     faults_ = faults_of(surface.mesh, inside_);
     faults_.places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
@@ -205,7 +208,9 @@ class SurfaceMaker {
   const NodeSet& inside_;
   const SurfaceOptions& options_;
   SurfaceCells cells_;
-  DistanceEvaluator distance_;
+  CellTriangles triangles_;
+  CellCreases creases_;
+
   double tolerance_;
   std::vector<EdgePoint> points_;
   SurfaceFaults faults_;

@@ -58,6 +58,25 @@ struct LinePart {
   }
 };
 
+// Of some points the one that is nearest to another; the first of equal ones.
+class Nearest {
+ public:
+  explicit Nearest(const Vec3& to) : to_(to) {}
+
+  void add(const Vec3& p) {
+    const Vec3 off = p - to_;
+    if (!(dot(off, off) < least_)) return;
+    least_ = dot(off, off);
+    point_ = p;
+  }
+  [[nodiscard]] const std::optional<Vec3>& point() const { return point_; }
+
+ private:
+  Vec3 to_;
+  double least_ = std::numeric_limits<double>::infinity();
+  std::optional<Vec3> point_;
+};
+
 }  // namespace
 
 CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles)
@@ -103,8 +122,7 @@ std::optional<Vec3> CellCreases::farthest_hit(std::uint32_t cell, const std::arr
 
 std::optional<Vec3> CellCreases::nearest_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
                                                 const Vec3& near) const {
-  std::optional<Vec3> nearest;
-  double least = std::numeric_limits<double>::infinity();
+  Nearest nearest(near);
   for_each(cell, [&](const Vec3& a, const Vec3& b) {
     const Vec3 from = a - corners[0], step = b - a;
     const std::array<double, 4> first = barycentric(corners, from), last = barycentric(corners, b - corners[0]);
@@ -112,12 +130,20 @@ std::optional<Vec3> CellCreases::nearest_within(std::uint32_t cell, const std::a
     for (std::size_t i = 0; i < first.size(); ++i) part.cut(first[i] + kTouch, last[i] + kTouch);
     if (!(part.begin <= part.end)) return;
     const double at = std::clamp(dot(near - from, step) / dot(step, step), part.begin, part.end);
-    const Vec3 point = from + at * step, off = point - near;
-    if (!(dot(off, off) < least)) return;
-    least = dot(off, off);
-    nearest = point;
+    nearest.add(from + at * step);
   });
-  return nearest;
+  return nearest.point();
+}
+
+std::optional<Vec3> CellCreases::nearest_end_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
+                                                    const Vec3& near, double margin) const {
+  Nearest nearest(near);
+  for_each(cell, [&](const Vec3& a, const Vec3& b) {
+    for (const Vec3& end : {a, b}) {
+      if (is_within(corners, end - corners[0], margin)) nearest.add(end - corners[0]);
+    }
+  });
+  return nearest.point();
 }
 
 }  // namespace raycone

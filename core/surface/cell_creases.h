@@ -39,10 +39,12 @@ class CellCreases {
   [[nodiscard]] std::optional<Vec3> farthest_hit(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
                                                  const Vec3& q) const;
 
-  // The point of a crease in a tetrahedron of the cell that is nearest to another one. Both are relative to the first
-  // corner. Off by rounding.
+  // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
+  // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
   [[nodiscard]] std::optional<Vec3> nearest_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
                                                    const Vec3& near) const;
+  [[nodiscard]] std::optional<Vec3> nearest_end_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
+                                                       const Vec3& near, double margin) const;
 
  private:
   template <class Visit>

@@ -210,7 +210,7 @@ std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn:
     if (inside != 0 && inside != face.size()) continue;
     const Vec3 start = corners[0] + from;
     const std::optional<Vec3> hit = creases_.farthest_hit(cell_, face, start, corners[lone]);
-    return hit ? std::optional(moved_within(corners, *hit - corners[0], margin_)) : std::nullopt;
+    return hit ? std::optional(*hit - corners[0]) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -235,18 +235,17 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   }
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
                                       : (1.0 / static_cast<double>(loop.size)) * of_all;
-  if (face_points == 1) {
-    if (const auto exit = crease_exit(corners, tetrahedron, middle)) return {corners[0] + *exit, true};
-  }
-  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), middle, tolerance_);
-  const bool meets_within = meeting && is_within(corners, *meeting, margin_);
-  const std::optional<Vec3> on_crease = creases_.nearest_within(cell_, corners, meets_within ? *meeting : middle);
-  const auto is_at = [&](const Vec3& p) {
-    const Vec3 off = p - *meeting;
-    return dot(off, off) <= kSamePlace * tolerance_ * tolerance_;
-  };
-  if (meets_within && (!on_crease || is_at(*on_crease))) return {corners[0] + *meeting, on_crease.has_value()};
-  return {corners[0] + moved_within(corners, on_crease.value_or(middle), margin_), on_crease.has_value()};
+  std::optional<Vec3> on_crease = creases_.nearest_end_within(cell_, corners, middle, margin_);
+  if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
+  if (!on_crease) on_crease = creases_.nearest_within(cell_, corners, middle);
+  const bool on_mesh = on_crease.has_value();
+  const Vec3 target = on_crease.value_or(middle);
+  // There it is in all planes as well as numbers can tell.
+  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, tolerance_);
+  const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
+  const bool meets = meeting && is_within(corners, *meeting, margin_) &&
+                     (!on_mesh || off_square() <= kSamePlace * tolerance_ * tolerance_);
+  return {corners[0] + (meets ? *meeting : moved_within(corners, target, margin_)), on_mesh};
 }
 
 }  // namespace

@@ -24,10 +24,11 @@ struct ContouredSurface {
 
 // In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.
 // Without face points the loop is filled by one or two triangles, else by a cone from a point within the tetrahedron:
-// where all planes at its points meet, else on a crease. Where a crease leaves the tetrahedron through a face with
-// nodes of one kind, it is followed up to there. Vertices are first the edge points in their order, then the face
-// points, then those apexes. Fronts look from inside to outside. The same for any number of threads. docs/method.md,
-// "Surfaces", shows that the triangles meet nowhere but in shared vertices and edges.
+// an end of a crease, else where a crease leaves the tetrahedron through the face with nodes of one kind, else another
+// point of a crease. Where there are none, it is the point where all planes meet, or the mean of the points. Vertices
+// are first the edge points in their order, then the face points, then those apexes. Fronts look from inside to
+// outside. The same for any number of threads. docs/method.md, "Surfaces", shows that the triangles meet nowhere but in
+// shared vertices and edges.
 [[nodiscard]] ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
                                        const FacePoints& face_points, const CellCreases& creases, double tolerance,
                                        const SurfaceMargins& margins);

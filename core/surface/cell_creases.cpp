@@ -11,7 +11,8 @@
 namespace raycone {
 namespace {
 
-constexpr double kFlat = 0.99999847691328772;  // cos 0.1 degrees
+constexpr double kFlat = 0.99999847691328772;   // cos 0.1 degrees
+constexpr double kBlunt = 0.96592582628906829;  // cos 15 degrees
 
 constexpr double kTouch = 1e-9;  // of barycentric coordinates, where a crease only touches a tetrahedron
 
@@ -41,9 +42,10 @@ Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
   return unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
-bool is_flat(const TriangleMesh& mesh, const SideUse& a, const SideUse& b) {
+// Of the angle between two triangles at an edge of both.
+double cosine_at(const TriangleMesh& mesh, const SideUse& a, const SideUse& b) {
   const double cosine = dot(normal_of(mesh, a.triangle), normal_of(mesh, b.triangle));
-  return (a.forward == b.forward ? -cosine : cosine) > kFlat;
+  return a.forward == b.forward ? -cosine : cosine;
 }
 
 // The part of a line that is within a tetrahedron, as a range of its parameter from 0 to 1.
@@ -85,14 +87,16 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     const SideUse& first = uses[begin];
     while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
-    if (end - begin == 2 && is_flat(mesh, first, uses[begin + 1])) continue;
-    sides_[first.triangle] = static_cast<std::uint8_t>(sides_[first.triangle] | 1U << first.side);
+    const double cosine = end - begin == 2 ? cosine_at(mesh, first, uses[begin + 1]) : 0.0;
+    const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kBlunt ? 0U : 1U << kSharpBit);
+    sides_[first.triangle] = static_cast<std::uint8_t>(sides_[first.triangle] | bits << first.side);
   }
 }
 
 template <class Visit>
-void CellCreases::for_each_hit(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Visit& visit) const {
-  for_each(cell, [&](const Vec3& a, const Vec3& b) {
+void CellCreases::for_each_hit(std::uint32_t cell, Which which, const std::array<Vec3, 3>& corners,
+                               const Visit& visit) const {
+  for_each(cell, which, [&](const Vec3& a, const Vec3& b) {
     const std::optional<double> at = segment_hit(a, b, corners[0], corners[1], corners[2]);
     if (at) visit(a + *at * (b - a));
   });
@@ -101,7 +105,8 @@ void CellCreases::for_each_hit(std::uint32_t cell, const std::array<Vec3, 3>& co
 bool CellCreases::has_hit_near(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
                                double distance) const {
   bool has = false;
-  for_each_hit(cell, corners, [&](const Vec3& hit) { has = has || dot(hit - p, hit - p) <= distance * distance; });
+  for_each_hit(cell, Which::kAll, corners,
+               [&](const Vec3& hit) { has = has || dot(hit - p, hit - p) <= distance * distance; });
   return has;
 }
 
@@ -109,9 +114,8 @@ std::optional<Vec3> CellCreases::farthest_hit(std::uint32_t cell, const std::arr
                                               const Vec3& q) const {
   std::optional<Vec3> farthest;
   double most = -1.0;
-  for_each_hit(cell, corners, [&](const Vec3& hit) {
+  for_each_hit(cell, Which::kSharp, corners, [&](const Vec3& hit) {
     const Vec3 off = cross(q - p, hit - p);
-
     const double distance = dot(off, off);
     if (!(distance > most)) return;
     most = distance;
@@ -123,7 +127,7 @@ std::optional<Vec3> CellCreases::farthest_hit(std::uint32_t cell, const std::arr
 std::optional<Vec3> CellCreases::nearest_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
                                                 const Vec3& near) const {
   Nearest nearest(near);
-  for_each(cell, [&](const Vec3& a, const Vec3& b) {
+  for_each(cell, Which::kAll, [&](const Vec3& a, const Vec3& b) {
     const Vec3 from = a - corners[0], step = b - a;
     const std::array<double, 4> first = barycentric(corners, from), last = barycentric(corners, b - corners[0]);
     LinePart part;
@@ -138,7 +142,7 @@ std::optional<Vec3> CellCreases::nearest_within(std::uint32_t cell, const std::a
 std::optional<Vec3> CellCreases::nearest_end_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
                                                     const Vec3& near, double margin) const {
   Nearest nearest(near);
-  for_each(cell, [&](const Vec3& a, const Vec3& b) {
+  for_each(cell, Which::kAll, [&](const Vec3& a, const Vec3& b) {
     for (const Vec3& end : {a, b}) {
       if (is_within(corners, end - corners[0], margin)) nearest.add(end - corners[0]);
     }

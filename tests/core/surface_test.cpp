@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <iterator>
 #include <numbers>
@@ -119,9 +120,15 @@ TEST(Surface, IsRightForEachLabellingOfACell) {
   }
 }
 
+// For a longer check, RAYCONE_LABEL_ROUNDS=100000.
+int label_rounds() {
+  const char* const text = std::getenv("RAYCONE_LABEL_ROUNDS");
+  return text ? std::stoi(text) : 60;
+}
+
 TEST(Surface, IsRightForRandomLabels) {
   Random random(2);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < label_rounds(); ++round) {
     const double density = uniform(random, 0.05, 0.95);
     const NodeSet nodes = nodes_where(lattice_of(3 + round % 5, round % 2 == 0 ? 1.0 : 0.013),
                                       [&](auto, auto, auto) { return uniform(random, 0.0, 1.0) < density; });
@@ -179,12 +186,14 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
     others[n] = others[n] % 6 == 5 ? others[n] - 1 : others[n] + 1;
     EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, others, kMargins), 1U) << n;
   }
-  // An end of an edge is not inside of it.
-  std::vector<Vec3> at_end = vertices;
+  // The ends of an edge are not inside of it.
   const SurfaceCell& cell = cells.cells().front();
   const auto direction = static_cast<unsigned>(std::countr_zero(cell.mixed_directions()));
-  at_end[cell.edge(direction)] = cells.corner(cell, 0);
-  EXPECT_EQ(misplaced_vertices(at_end, cells, face_points, tetrahedra, kMargins), 1U);
+  for (const unsigned corner : {0U, direction}) {
+    std::vector<Vec3> at_end = vertices;
+    at_end[cell.edge(direction)] = cells.corner(cell, corner);
+    EXPECT_EQ(misplaced_vertices(at_end, cells, face_points, tetrahedra, kMargins), 1U) << corner;
+  }
 }
 
 TEST(SegmentHit, IsExactAboutEnds) {

@@ -80,7 +80,7 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
-  // What is merged is looked at as a whole, so that the surface before has to be only where that has faults.
+  // The merged surface is checked as a whole. The one before is checked only if that has faults, or nothing is merged.
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
     auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);

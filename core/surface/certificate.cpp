@@ -100,6 +100,7 @@ std::string described(const SurfaceFaults& faults) {
   add(faults.degenerate_faces, " faces without area");
   add(faults.equal_vertices, " vertices in the place of others");
   add(faults.nodes, " nodes on the wrong side");
+  add(faults.places, " vertices outside of their edge, face or cell");
   add(faults.intersections.pairs, " pairs of faces that intersect");
   return text;
 }

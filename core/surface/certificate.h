@@ -19,15 +19,17 @@ struct SurfaceFaults {
   std::uint64_t degenerate_faces = 0;  // of zero area
   std::uint64_t equal_vertices = 0;    // at the position of another one
   std::uint64_t nodes = 0;             // of the lattice on the wrong side
+  std::uint64_t places = 0;            // vertices of a contour that are not inside of what they lie in
   SelfIntersections intersections{};
 
   [[nodiscard]] bool none() const {
-    return edges + links + degenerate_faces + equal_vertices + nodes + intersections.pairs == 0;
+    return edges + links + degenerate_faces + equal_vertices + nodes + places + intersections.pairs == 0;
   }
 };
 
-// Looks for all of them, exactly. So a mesh without faults is closed, a 2-manifold and free of self-intersections, with
-// the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a triangle.
+// Looks for all of them but places, exactly. So a mesh without faults is closed, a 2-manifold and free of
+// self-intersections, with the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a
+// triangle.
 [[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside);
 
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.

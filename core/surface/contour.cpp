@@ -14,6 +14,7 @@ namespace raycone {
 namespace {
 
 constexpr std::size_t kCellsPerPart = 512;
+constexpr double kSamePlace = 16.0;  // square of how many tolerances points on two planes may be apart
 
 // A corner of a loop: a vertex of the surface, and the edge point where it is one.
 struct LoopCorner {
@@ -33,16 +34,18 @@ struct ContourPart {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
   std::vector<Vec3> apexes;
+  std::vector<std::uint64_t> tetrahedra;  // of them
 };
 constexpr std::uint32_t kFirstApex = 0x80000000;
 
 class CellContour {
  public:
   CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-              double tolerance, double margin, ContourPart& part)
+              const CellCreases& creases, double tolerance, double margin, ContourPart& part)
       : cells_(cells),
         edge_points_(edge_points),
         face_points_(face_points),
+        creases_(creases),
         tolerance_(tolerance),
         margin_(margin),
         part_(part) {}
@@ -50,14 +53,19 @@ class CellContour {
   void add(std::uint32_t cell) {
     cell_ = cell;
     corner_cells_.fill(kUnknown);
-    for (const kuhn::Tetrahedron& tetrahedron : kuhn::kTetrahedra) {
-      const Loop loop = loop_of(tetrahedron);
-      if (loop.size > 0) fill(loop, tetrahedron);
+    for (std::size_t n = 0; n < kuhn::kTetrahedra.size(); ++n) {
+      const Loop loop = loop_of(kuhn::kTetrahedra[n]);
+      if (loop.size > 0) fill(loop, n);
     }
   }
 
  private:
   static constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
+  using Corners = std::array<Vec3, 4>;
+  struct Apex {
+    Vec3 position;
+    bool on_mesh;
+  };
 
   [[nodiscard]] bool is_inside(unsigned corner) const { return cells_.cells()[cell_].is_inside(corner); }
   [[nodiscard]] std::uint32_t cell_of(unsigned corner) {
@@ -83,9 +91,11 @@ class CellContour {
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
     return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
   }
-  void fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
+  void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
-  [[nodiscard]] Vec3 apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  [[nodiscard]] std::optional<Vec3> crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
+                                                const Vec3& from) const;
   void add_triangle(const Triangle& triangle, std::int32_t source) {
     part_.triangles.push_back(triangle);
     part_.sources.push_back(source);
@@ -94,6 +104,7 @@ class CellContour {
   const SurfaceCells& cells_;
   std::span<const EdgePoint> edge_points_;
   const FacePoints& face_points_;
+  const CellCreases& creases_;
   double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
@@ -144,20 +155,23 @@ Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
 
 std::int32_t source_of(std::int32_t a, std::int32_t b) { return a == kHole || b == kHole ? kHole : a; }
 
-void CellContour::fill(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
+void CellContour::fill(const Loop& loop, std::size_t number) {
   if (!loop.has_face_point) {
     fill_flat(loop);
     return;
   }
-  const auto apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
-  part_.apexes.push_back(apex_of(loop, tetrahedron));
-  const auto corners = std::span(loop.corners).first(loop.size);
-  const bool at_hole = std::ranges::any_of(
-      corners, [](const LoopCorner& corner) { return corner.edge_point && corner.edge_point->source == kHole; });
+  const auto vertex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
+  const Apex apex = apex_of(loop, kuhn::kTetrahedra[number]);
+  part_.apexes.push_back(apex.position);
+  part_.tetrahedra.push_back(kuhn::kTetrahedra.size() * cell_ + number);
+  const bool at_hole = std::ranges::any_of(std::span(loop.corners).first(loop.size), [](const LoopCorner& corner) {
+    return corner.edge_point && corner.edge_point->source == kHole;
+  });
   for (std::size_t i = 0; i < loop.size; ++i) {
     const LoopCorner &here = loop.corners[i], &next = loop.corners[(i + 1) % loop.size];
-    const EdgePoint* const point = here.edge_point ? here.edge_point : next.edge_point;
-    add_triangle({here.vertex, next.vertex, apex}, at_hole ? kHole : point->source);
+    const std::int32_t first = (here.edge_point ? here : next).edge_point->source;
+    const std::int32_t second = (next.edge_point ? next : here).edge_point->source;
+    add_triangle({here.vertex, next.vertex, vertex}, at_hole && !apex.on_mesh ? kHole : source_of(first, second));
   }
 }
 
@@ -181,8 +195,28 @@ void CellContour::fill_flat(const Loop& loop) {
   add(from + 2, (from + 3) % 4, from);
 }
 
-Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
-  std::array<Vec3, 4> corners;
+// Where a crease leaves the tetrahedron through the face whose nodes are of one kind, as far from a point as there is
+// one; relative to the first corner.
+std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
+                                             const Vec3& from) const {
+  for (std::size_t lone = 0; lone < corners.size(); ++lone) {
+    std::array<Vec3, 3> face;
+    std::size_t next = 0, inside = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (i == lone) continue;
+      face[next++] = corners[i];
+      inside += is_inside(tetrahedron.corners[i]) ? 1 : 0;
+    }
+    if (inside != 0 && inside != face.size()) continue;
+    const Vec3 start = corners[0] + from;
+    const std::optional<Vec3> hit = creases_.farthest_hit(cell_, face, start, corners[lone]);
+    return hit ? std::optional(*hit - corners[0]) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
+  Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
                          [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
   std::array<PointOnPlane, 4> planes;
@@ -201,26 +235,36 @@ Vec3 CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron
   }
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
                                       : (1.0 / static_cast<double>(loop.size)) * of_all;
-  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), middle, tolerance_);
-  if (meeting && is_within(corners, *meeting, margin_)) return corners[0] + *meeting;
-  return corners[0] + moved_within(corners, middle, margin_);
+  std::optional<Vec3> on_crease = creases_.nearest_end_within(cell_, corners, middle, margin_);
+  if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
+  if (!on_crease) on_crease = creases_.nearest_within(cell_, corners, middle);
+  const bool on_mesh = on_crease.has_value();
+  const Vec3 target = on_crease.value_or(middle);
+  // There it is in all planes as well as numbers can tell.
+  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, tolerance_);
+  const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
+  const bool meets = meeting && is_within(corners, *meeting, margin_) &&
+                     (!on_mesh || off_square() <= kSamePlace * tolerance_ * tolerance_);
+  return {corners[0] + (meets ? *meeting : moved_within(corners, target, margin_)), on_mesh};
 }
 
 }  // namespace
 
-SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-                    double tolerance, const SurfaceMargins& margins) {
+ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                         const FacePoints& face_points, const CellCreases& creases, double tolerance,
+                         const SurfaceMargins& margins) {
   const std::size_t count = cells.cells().size();
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {
-      CellContour contour(cells, edge_points, face_points, tolerance, margins.inner, parts[part]);
+      CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part]);
       for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
         contour.add(static_cast<std::uint32_t>(cell));
       }
     }
   });
-  SurfaceMesh surface;
+  ContouredSurface contoured;
+  SurfaceMesh& surface = contoured.surface;
   std::vector<Vec3>& vertices = surface.mesh.vertices;
   for (const EdgePoint& point : edge_points) vertices.push_back(point.position);
   vertices.insert(vertices.end(), face_points.positions().begin(), face_points.positions().end());
@@ -233,11 +277,12 @@ SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_p
       }
       surface.mesh.triangles.push_back(triangle);
     }
+    contoured.tetrahedra.insert(contoured.tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
     surface.sources.insert(surface.sources.end(), part.sources.begin(), part.sources.end());
     if (vertices.size() >= kFirstApex || surface.mesh.triangles.size() > kMaxTriangles)
       throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
   }
-  return surface;
+  return contoured;
 }
 
 }  // namespace raycone

@@ -17,12 +17,20 @@ struct SurfaceMesh {
   std::vector<std::int32_t> sources;  // of each triangle: a triangle of the input, or kHole
 };
 
+struct ContouredSurface {
+  SurfaceMesh surface;
+  std::vector<std::uint64_t> tetrahedra;  // of each apex: 6 * cell + the place in kuhn::kTetrahedra
+};
+
 // In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.
 // Without face points the loop is filled by one or two triangles, else by a cone from a point within the tetrahedron:
-// where all planes at its points meet, or on the line between its face points. Vertices are first the edge points in
-// their order, then the face points, then those apexes. Fronts look from inside to outside. The same for any number of
-// threads. docs/method.md, "Surfaces", shows that the triangles meet nowhere but in shared vertices and edges.
-[[nodiscard]] SurfaceMesh contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                                  const FacePoints& face_points, double tolerance, const SurfaceMargins& margins);
+// an end of a crease, else where a crease leaves the tetrahedron through the face with nodes of one kind, else another
+// point of a crease. Where there are none, it is the point where all planes meet, or the mean of the points. Vertices
+// are first the edge points in their order, then the face points, then those apexes. Fronts look from inside to
+// outside. The same for any number of threads. docs/method.md, "Surfaces", shows that the triangles meet nowhere but in
+// shared vertices and edges.
+[[nodiscard]] ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                                       const FacePoints& face_points, const CellCreases& creases, double tolerance,
+                                       const SurfaceMargins& margins);
 
 }  // namespace raycone

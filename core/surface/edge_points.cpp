@@ -25,8 +25,9 @@ struct OpenEdge {
 
 class EdgePointFinder {
  public:
-  EdgePointFinder(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells, double margin)
-      : mesh_(mesh), rule_(rule), cells_(cells), margin_(margin), points_(cells.edges()) {}
+  EdgePointFinder(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells,
+                  const CellTriangles& triangles, double margin)
+      : mesh_(mesh), rule_(rule), cells_(cells), triangles_(triangles), margin_(margin), points_(cells.edges()) {}
 
   std::vector<EdgePoint> find() {
     find_hits();
@@ -53,6 +54,7 @@ class EdgePointFinder {
   const TriangleMesh& mesh_;
   const RuleAlong& rule_;
   const SurfaceCells& cells_;
+  const CellTriangles& triangles_;
   double margin_;
   std::vector<EdgePoint> points_;
   std::vector<OpenEdge> open_;
@@ -66,7 +68,6 @@ void keep_places(std::vector<SegmentHit>& hits) {
 }
 
 void EdgePointFinder::find_hits() {
-  const CellTriangles triangles(mesh_, cells_);
   std::mutex mutex;
   parallel_for(cells_.cells().size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<SegmentHit> hits;
@@ -78,7 +79,7 @@ void EdgePointFinder::find_hits() {
         if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
         const Vec3 high = cells_.corner(cell, direction);
         const MixedEdge edge{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)};
-        find_segment_hits(edge.inside, edge.outside, mesh_, triangles.of(n), hits);
+        find_segment_hits(edge.inside, edge.outside, mesh_, triangles_.of(n), hits);
         keep_places(hits);
         // A closed mesh changes w nowhere else.
         if (rule_.is_closed() && hits.size() == 1) {
@@ -145,8 +146,9 @@ void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probe
 }  // namespace
 
 std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const Rule& rule,
-                                   const SurfaceCells& cells, const SurfaceMargins& margins) {
-  return EdgePointFinder(mesh, RuleAlong(evaluator, rule), cells, margins.inner).find();
+                                   const SurfaceCells& cells, const CellTriangles& triangles,
+                                   const SurfaceMargins& margins) {
+  return EdgePointFinder(mesh, RuleAlong(evaluator, rule), cells, triangles, margins.inner).find();
 }
 
 }  // namespace raycone

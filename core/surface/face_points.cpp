@@ -50,21 +50,52 @@ std::optional<Vec3> inside_face(const std::array<Vec3, 3>& corners, std::array<d
   return corners[0] + (weights[1] / sum) * first + (weights[2] / sum) * second;
 }
 
-// Where the planes at the two points meet in the face's plane.
-std::optional<Vec3> meeting_point(const FaceEdges& face, double tolerance, double margin) {
+// Whether the surface is bent between the two points.
+bool disagree(const FaceEdges& face, double tolerance, double margin) {
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
-  if (p.source == kHole || q.source == kHole || p.source == q.source) return std::nullopt;
+  if (p.source == q.source) return false;
   const Vec3 step = q.position - p.position;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
   const double moved = 2.0 * margin * std::sqrt(std::max(dot(first, first), dot(second, second)));
   // Where one of the points lies on both planes, so does the straight line between them on one.
   const double same = tolerance + moved;
-  if (std::abs(dot(p.normal, step)) <= same || std::abs(dot(q.normal, step)) <= same) return std::nullopt;
+  return (p.source == kHole || std::abs(dot(p.normal, step)) > same) &&
+         (q.source == kHole || std::abs(dot(q.normal, step)) > same);
+}
+
+// Where the planes at the two points meet in the face's plane.
+std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
+  const EdgePoint &p = *face.points[0], &q = *face.points[1];
+  if (p.source == kHole || q.source == kHole) return std::nullopt;
+  const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
   const double pu = dot(p.normal, first), pv = dot(p.normal, second), pw = dot(p.normal, p.position - face.corners[0]);
   const double qu = dot(q.normal, first), qv = dot(q.normal, second), qw = dot(q.normal, q.position - face.corners[0]);
   const double determinant = pu * qv - pv * qu;
   const double u = (pw * qv - pv * qw) / determinant, v = (pu * qw - pw * qu) / determinant;
   return inside_face(face.corners, {1.0 - u - v, u, v}, margin);
+}
+
+// The point of a crease in the face that is farthest from the straight line between the two points.
+std::optional<Vec3> crease_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double margin) {
+  const auto& [low, middle, high] = face.corners;
+  const std::optional<Vec3> hit =
+      creases.farthest_hit(cell, face.corners, face.points[0]->position, face.points[1]->position);
+  if (!hit) return std::nullopt;
+  const Vec3 first = middle - low, second = high - low, normal = cross(first, second), from = *hit - low;
+  const double size = dot(normal, normal);
+  const double u = dot(cross(from, second), normal) / size, v = dot(cross(first, from), normal) / size;
+  // Next to the border a point of an edge is as good, and there are no needles.
+  constexpr double kBorder = 16.0;  // margins
+  if (std::min({1.0 - u - v, u, v}) < kBorder * margin) return std::nullopt;
+  return inside_face(face.corners, {1.0 - u - v, u, v}, margin);
+}
+
+// Where planes meet on a crease, that is the point: it is in both planes as well as numbers can tell.
+std::optional<Vec3> face_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double near,
+                               double margin) {
+  const std::optional<Vec3> meeting = meeting_point(face, margin);
+  if (meeting && creases.has_hit_near(cell, face.corners, *meeting, near)) return meeting;
+  return crease_point(face, creases, cell, margin);
 }
 
 }  // namespace
@@ -86,34 +117,30 @@ double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
   return std::max(kVoxels * std::min({h.x, h.y, h.z}), (single ? kSingle : kDouble) * largest);
 }
 
-FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                       const DistanceEvaluator& distance, double tolerance, const SurfaceMargins& margins) {
-  std::vector<FacePoint> candidates;
-  std::mutex mutex;
-  parallel_for(cells.cells().size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<FacePoint> found;
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
-        const auto edges = mixed_edges(cells, edge_points, static_cast<std::uint32_t>(cell), kuhn::kFaces[face]);
-        const auto point = edges ? meeting_point(*edges, tolerance, margins.inner) : std::nullopt;
-        if (point) found.push_back({16 * cell + face, *point});
-      }
-    }
-    const std::scoped_lock lock(mutex);
-    candidates.insert(candidates.end(), found.begin(), found.end());
-  });
-  std::ranges::sort(candidates, {}, &FacePoint::face);
-  std::vector<Vec3> positions;
-  for (const FacePoint& candidate : candidates) positions.push_back(candidate.position);
-  std::vector<double> distances(positions.size());
-  if (!positions.empty()) distance.evaluate(positions, distances);
+FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
+                       double tolerance, const SurfaceMargins& margins) {
   // The margin and rounding move points off the mesh by less than this.
   const Vec3& h = cells.lattice().spacing;
   const double near = 4.0 * (tolerance + margins.inner * std::max({h.x, h.y, h.z}));
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!(distances[i] <= near)) continue;
-    faces_.push_back(candidates[i].face);
-    positions_.push_back(positions[i]);
+  std::vector<FacePoint> all;
+  std::mutex mutex;
+  parallel_for(cells.cells().size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<FacePoint> found;
+    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+      for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
+        const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
+        if (!edges || !disagree(*edges, tolerance, margins.inner)) continue;
+        const auto point = face_point(*edges, creases, cell, near, margins.inner);
+        if (point) found.push_back({std::uint64_t{16} * cell + face, *point});
+      }
+    }
+    const std::scoped_lock lock(mutex);
+    all.insert(all.end(), found.begin(), found.end());
+  });
+  std::ranges::sort(all, {}, &FacePoint::face);
+  for (const FacePoint& point : all) {
+    faces_.push_back(point.face);
+    positions_.push_back(point.position);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/distance/distance.h"
+#include "core/surface/cell_creases.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/surface_cells.h"
 
@@ -20,16 +20,18 @@ namespace raycone {
 
 class FacePoints {
  public:
-  // Where the planes at a mixed face's two points disagree and meet within the face, at a point of the mesh: that
-  // point, kept inside the face by the margin. It depends on the face's two points alone, so that both its cells agree.
-  // `distance`: to the mesh.
-  FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const DistanceEvaluator& distance,
+  // Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in
+  // the face, if there is one; that where the planes meet, else the one farthest from the straight line. Points are
+  // kept inside the face by the margin. They depend on the face, its two points and the mesh alone, so that both its
+  // cells agree.
+  FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
              double tolerance, const SurfaceMargins& margins);
   FacePoints() = default;
   // These points, of faces numbered 16 * cell + face, increasing.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
       : faces_(std::move(faces)), positions_(std::move(positions)) {}
 
+  [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
 
   // The number of the point of a face of the cell, as in kuhn::kFaces; nothing where it has none. Thread-safe.

@@ -8,15 +8,6 @@
 namespace raycone {
 namespace {
 
-// Of a point relative to the first corner.
-std::array<double, 4> barycentric(const std::array<Vec3, 4>& corners, const Vec3& from_first) {
-  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
-  const double volume = dot(a, cross(b, c));
-  const double u = dot(from_first, cross(b, c)) / volume, v = dot(from_first, cross(c, a)) / volume,
-               w = dot(from_first, cross(a, b)) / volume;
-  return {1.0 - u - v - w, u, v, w};
-}
-
 // The part of v across the axis, which has length 1.
 Vec3 across(const Vec3& v, const Vec3& axis) { return v - dot(v, axis) * axis; }
 
@@ -47,6 +38,14 @@ Vec3 moved_onto(std::span<const PointOnPlane> planes, Vec3 point) {
 }
 
 }  // namespace
+
+std::array<double, 4> barycentric(const std::array<Vec3, 4>& corners, const Vec3& from_first) {
+  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
+  const double volume = dot(a, cross(b, c));
+  const double u = dot(from_first, cross(b, c)) / volume, v = dot(from_first, cross(c, a)) / volume,
+               w = dot(from_first, cross(a, b)) / volume;
+  return {1.0 - u - v - w, u, v, w};
+}
 
 std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec3& near, double tolerance) {
   if (planes.empty()) return std::nullopt;

@@ -19,6 +19,9 @@ struct PointOnPlane {
 [[nodiscard]] std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec3& near,
                                                double tolerance);
 
+// Of a point relative to the first corner.
+[[nodiscard]] std::array<double, 4> barycentric(const std::array<Vec3, 4>& corners, const Vec3& from_first);
+
 // Whether a point, relative to the first corner, has barycentric coordinates above `margin`.
 [[nodiscard]] bool is_within(const std::array<Vec3, 4>& corners, const Vec3& from_first, double margin);
 

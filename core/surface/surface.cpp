@@ -13,6 +13,7 @@
 #include "core/surface/merge_planes.h"
 #include "core/surface/simplify.h"
 #include "core/surface/thicken.h"
+#include "core/surface/vertex_places.h"
 
 namespace raycone {
 namespace {
@@ -53,7 +54,8 @@ class SurfaceMaker {
         inside_(inside),
         options_(options),
         cells_(inside),
-        distance_(mesh),
+        triangles_(mesh, cells_),
+        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, triangles_)),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
@@ -61,10 +63,11 @@ class SurfaceMaker {
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = options_.thickness > 0.0 ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), distance_,
-                                                             options_.thickness, cells_, margins)
-                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, margins);
-      FacePoints sharp(cells_, points_, distance_, tolerance_, margins);
+      points_ = options_.thickness > 0.0
+                    ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), DistanceEvaluator(mesh_),
+                                        options_.thickness, cells_, margins)
+                    : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
+      FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (std::optional<FinishedSurface> made = attempt(sharp, margins)) return std::move(*made);
         sharp = sharp.without(involved(sharp));
@@ -77,16 +80,27 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
+  // The merged surface is checked as a whole. The one before is checked only if that has faults, or nothing is merged.
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
-    SurfaceMesh surface = contour(cells_, points_, sharp, tolerance_, margins);
+    auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
-    faults_ = faults_of(surface.mesh, inside_);
-    failed_ = surface.mesh;
-    if (!faults_.none()) return std::nullopt;
+    is_right_.reset();
+    const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
+    if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
+    if (!is_right_.value_or(true)) return std::nullopt;
     if (options_.simplify > 0.0) made.simplified = simplify_surface(made.surface, margins);
     return made;
+  }
+
+  bool is_right(const SurfaceMesh& surface, std::uint64_t places) {
+    if (is_right_) return *is_right_;
+    faults_ = faults_of(surface.mesh, inside_);
+    faults_.places = places;
+    is_right_ = faults_.none();
+    if (!*is_right_) failed_ = surface.mesh;
+    return *is_right_;
   }
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
@@ -94,7 +108,7 @@ class SurfaceMaker {
   // Returns false where faults are left even so.
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
     std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
-    if (!result) result = merged_within(surface, margins.inner, 0.25, true);
+    if (!result && is_right(surface, 0)) result = merged_within(surface, margins.inner, 0.25, true);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
@@ -109,13 +123,14 @@ class SurfaceMaker {
       auto [result, into] = merge_planes(surface, mesh_, kept, most * unit, kNeedle * unit);
       TriangleMesh compact = result.mesh;
       drop_unused_vertices(compact);
-      faults_ = faults_of(compact, inside_);
-      if (faults_.none()) {
+      const SurfaceFaults faults = faults_of(compact, inside_);
+      if (faults.none()) {
         result.mesh = std::move(compact);
         return std::move(result);
       }
-      if (faults_.nodes > 0 && !nodes) return std::nullopt;
-      const std::vector<bool> touched = faulty_vertices(result.mesh);
+      if ((faults.nodes > 0 && !nodes) || !is_right(surface, 0)) return std::nullopt;
+      const std::vector<bool> touched = faulty_vertices(result.mesh, faults);
+
       const NodeSet misplaced = misplaced_nodes(compact, inside_);
       for (std::size_t v = 0; v < kept.size(); ++v) {
         const Vec3 &from = surface.mesh.vertices[v], &to = surface.mesh.vertices[into[v]];
@@ -160,22 +175,26 @@ class SurfaceMaker {
     if (!(most > 0.0)) return true;
     for (int round = 0; round < options_.rounds; ++round) {
       MergedSurface result = simplify(surface, inside_, kept, most);
-      const std::vector<bool> touched = faulty_vertices(result.surface.mesh);
-      drop_unused_vertices(result.surface.mesh);
-      const SurfaceFaults faults = faults_of(result.surface.mesh, inside_);
+      TriangleMesh compact = result.surface.mesh;
+      drop_unused_vertices(compact);
+      const SurfaceFaults faults = faults_of(compact, inside_);
+
       if (faults.none()) {
-        surface = std::move(result.surface);
+        surface = {std::move(compact), std::move(result.surface.sources)};
         return true;
       }
       if (faults.intersections.pairs == 0) return false;
+      const std::vector<bool> touched = faulty_vertices(result.surface.mesh, faults);
+
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[result.into[v]];
     }
     return false;
   }
 
   // Vertices near faces that intersect: those of these faces, and of their neighbours.
-  [[nodiscard]] static std::vector<bool> faulty_vertices(const TriangleMesh& mesh) {
-    const std::vector<bool> faulty = self_intersections(mesh).of_triangle;
+  [[nodiscard]] static std::vector<bool> faulty_vertices(const TriangleMesh& mesh, const SurfaceFaults& faults) {
+    const std::vector<bool>& faulty = faults.intersections.of_triangle;
+
     std::vector<bool> vertices(mesh.vertices.size(), false);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       if (!faulty[i]) continue;
@@ -188,7 +207,7 @@ class SurfaceMaker {
   [[nodiscard]] std::vector<bool> involved(const FacePoints& sharp) const {
     const std::size_t count = sharp.positions().size(), first = points_.size();
     std::vector<bool> dropped(count, faults_.intersections.pairs == 0);
-    const std::vector<bool> near = faulty_vertices(failed_);
+    const std::vector<bool> near = faulty_vertices(failed_, faults_);
     for (const Triangle& t : failed_.triangles) {
       if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
       for (const std::uint32_t corner : t) {
@@ -203,10 +222,13 @@ class SurfaceMaker {
   const NodeSet& inside_;
   const SurfaceOptions& options_;
   SurfaceCells cells_;
-  DistanceEvaluator distance_;
+  CellTriangles triangles_;
+  CellCreases creases_;
+
   double tolerance_;
   std::vector<EdgePoint> points_;
-  SurfaceFaults faults_;
+  std::optional<bool> is_right_;  // the surface of this attempt, before merging, where that is known
+  SurfaceFaults faults_;          // of the last one that is not
   TriangleMesh failed_;
 };
 

@@ -411,6 +411,17 @@ MUTANTS = [
         ("core/surface/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
     Mutant("surface_turned", "loops around three inside nodes run the other way", [
         ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
+    Mutant("surface_places_on_border", "a vertex on the border of its edge, face or cell is out of place", [
+        ("core/surface/vertex_places.cpp", "!(last - here >= margin_ / 2)", "!(last - here >= 0.0)")]),
+    Mutant("surface_places_off_faces", "a vertex beside its edge or face is out of place", [
+        ("core/surface/vertex_places.cpp", "<= margin_ / 16)", "<= 1.0)")]),
+    Mutant("surface_creases_cut_off", "a sharp edge is followed up to where it leaves the cells", [
+        ("core/surface/contour.cpp", "if (!on_crease && face_points == 1)", "if (!on_crease && face_points == 9)")]),
+    Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
+        ("core/surface/cell_creases.cpp", "end - corners[0], margin)) nearest.add", "end - corners[0], 9.0 + margin)) nearest.add")]),
+    Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [
+        ("core/surface/face_points.cpp", "return crease_point(face, creases, cell, margin);",
+         "return margin > 9.0 ? crease_point(face, creases, cell, margin) : std::nullopt;")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
 

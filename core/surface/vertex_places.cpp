@@ -1,0 +1,90 @@
+#include "core/surface/vertex_places.h"
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// The part of a cell that a chain of corners spans, from the cell's lowest one on. In fractions of the cell, the axes
+// that a step of the chain adds have one coordinate; it decreases from step to step, from 1 down to 0.
+class ChainPlace {
+ public:
+  ChainPlace(const SurfaceCells& cells, double margin) : cells_(cells), margin_(margin) {}
+
+  [[nodiscard]] bool holds(const Vec3& p, const SurfaceCell& cell, std::span<const unsigned> chain) const {
+    const Vec3 low = cells_.corner(cell, 0);
+    const Vec3& h = cells_.lattice().spacing;
+    const std::array<double, 3> at{(p.x - low.x) / h.x, (p.y - low.y) / h.y, (p.z - low.z) / h.z};
+    double last = 1.0;
+    unsigned reached = 0;
+    for (const unsigned corner : chain) {
+      const double here = at[first_axis(corner ^ reached)];
+      if (!(last - here >= margin_ / 2) || !all_at(at, corner ^ reached, here)) return false;
+      last = here;
+      reached = corner;
+    }
+    return last >= margin_ / 2 && all_at(at, kuhn::kCorners - 1 - reached, 0.0);
+  }
+
+ private:
+  [[nodiscard]] static std::size_t first_axis(unsigned axes) {
+    return static_cast<std::size_t>(std::countr_zero(axes));
+  }
+  [[nodiscard]] bool all_at(const std::array<double, 3>& at, unsigned axes, double where) const {
+    for (std::size_t axis = 0; axis < at.size(); ++axis) {
+      if ((axes >> axis & 1U) != 0 && !(std::abs(at[axis] - where) <= margin_ / 16)) return false;
+    }
+    return true;
+  }
+
+  const SurfaceCells& cells_;
+  double margin_;
+};
+
+template <class WrongAt>
+std::uint64_t sum_of_wrong(std::size_t count, const WrongAt& wrong_at) {
+  std::atomic<std::uint64_t> wrong = 0;
+  parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) wrong += wrong_at(n);
+  });
+  return wrong;
+}
+
+}  // namespace
+
+std::uint64_t misplaced_vertices(std::span<const Vec3> vertices, const SurfaceCells& cells,
+                                 const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
+                                 const SurfaceMargins& margins) {
+  const ChainPlace place(cells, margins.inner);
+  const auto at_edges = [&](std::size_t n) {
+    const SurfaceCell& cell = cells.cells()[n];
+    std::uint64_t wrong = 0;
+    for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
+      if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
+      wrong += place.holds(vertices[cell.edge(direction)], cell, std::array{direction}) ? 0 : 1;
+    }
+    return wrong;
+  };
+  const auto at_face = [&](std::size_t n) {
+    const std::uint64_t face = face_points.faces()[n];
+    const auto [first, second] = kuhn::kFaces[face % 16];
+    const SurfaceCell& cell = cells.cells()[face / 16];
+    return place.holds(vertices[cells.edges() + n], cell, std::array{first, second}) ? 0U : 1U;
+  };
+  const std::size_t first_apex = cells.edges() + face_points.faces().size();
+  const auto at_apex = [&](std::size_t n) {
+    const kuhn::Tetrahedron& tetrahedron = kuhn::kTetrahedra[tetrahedra[n] % kuhn::kTetrahedra.size()];
+    const SurfaceCell& cell = cells.cells()[tetrahedra[n] / kuhn::kTetrahedra.size()];
+    return place.holds(vertices[first_apex + n], cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;
+  };
+  return sum_of_wrong(cells.cells().size(), at_edges) + sum_of_wrong(face_points.faces().size(), at_face) +
+         sum_of_wrong(tetrahedra.size(), at_apex);
+}
+
+}  // namespace raycone

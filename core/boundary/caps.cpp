@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <queue>
 #include <span>
+#include <tuple>
 #include <utility>
 
 namespace raycone {
@@ -106,32 +107,43 @@ class LoopFiller {
 
   struct Filling {
     std::vector<Triangle> triangles;
-    double area = std::numeric_limits<double>::infinity();
+    double area = 0.0;
   };
 
-  // The one of least area that is found. Empty for an edge there and back.
+  // Ears are cut off, the one with the shortest diagonal first. So the loop gets coarser, round by round, until its
+  // edges are as long as it is wide: few triangles are large, and a crack or a ribbon takes little more than its area.
+  // Empty for an edge there and back.
   [[nodiscard]] Filling fill(const Loop& loop) const {
-    if (loop.size() < 3) return {{}, 0.0};
-    Filling best;
-    for (const std::size_t start : sharpest(loop)) {
-      Filling filling = band(loop, start);
-      if (filling.area < best.area || best.triangles.empty()) best = std::move(filling);
+    const auto n = static_cast<std::uint32_t>(loop.size());
+    struct Ear {
+      double length;
+      std::uint32_t at, before, after;
+      bool operator<(const Ear& other) const {
+        return std::tie(length, at, before, after) > std::tie(other.length, other.at, other.before, other.after);
+      }
+    };
+    std::vector<std::uint32_t> before(n), after(n);
+    std::priority_queue<Ear> queue;
+    const auto push = [&](std::uint32_t i) {
+      const Vec3 diagonal = vertices_[loop[after[i]]] - vertices_[loop[before[i]]];
+      queue.push({dot(diagonal, diagonal), i, before[i], after[i]});
+    };
+    for (std::uint32_t i = 0; i < n; ++i) {
+      before[i] = (i + n - 1) % n;
+      after[i] = (i + 1) % n;
     }
-    return best;
-  }
-
-  // A triangle of both ends and the middle, likewise for both halves.
-  [[nodiscard]] Filling halved(const Loop& loop) const {
-    Filling filling{{}, 0.0};
-    std::vector<std::pair<std::size_t, std::size_t>> ranges{{0, loop.size() - 1}};
-    while (!ranges.empty()) {
-      const auto [first, last] = ranges.back();
-      ranges.pop_back();
-      if (last - first < 2) continue;
-      const std::size_t half = first + (last - first) / 2;
-      add(filling, loop[first], loop[half], loop[last]);
-      ranges.emplace_back(first, half);
-      ranges.emplace_back(half, last);
+    for (std::uint32_t i = 0; i < n; ++i) push(i);
+    Filling filling;
+    while (filling.triangles.size() + 2 < n) {
+      const Ear ear = queue.top();
+      queue.pop();
+      if (before[ear.at] != ear.before || after[ear.at] != ear.after) continue;  // a neighbour is gone since
+      add(filling, loop[ear.before], loop[ear.at], loop[ear.after]);
+      after[ear.before] = ear.after;
+      before[ear.after] = ear.before;
+      before[ear.at] = after[ear.at] = ear.at;
+      push(ear.before);
+      push(ear.after);
     }
     return filling;
   }
@@ -149,44 +161,6 @@ class LoopFiller {
     const Vec3 normal = cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
     filling.area += length_of(normal) / 2;
     filling.triangles.push_back({a, b, c});
-  }
-
-  // Triangles that fill the loop as a band that begins at one of its vertices and takes the nearer neighbour on either
-  // side each time: of a crack, begun at its end, that is nearly the least area there is.
-  [[nodiscard]] Filling band(const Loop& loop, std::size_t start) const {
-    Filling filling{{}, 0.0};
-    const std::size_t n = loop.size();
-    std::size_t up = start + 1, down = start + n - 1;  // modulo n
-    const auto at = [&](std::size_t i) { return loop[i % n]; };
-    add(filling, at(start), at(up), at(down));
-    while (down - up > 1) {
-      const Vec3 &u = vertices_[at(up)], &d = vertices_[at(down)];
-      if (length_of(vertices_[at(up + 1)] - d) < length_of(vertices_[at(down - 1)] - u)) {
-        add(filling, at(up), at(up + 1), at(down));
-        ++up;
-      } else {
-        add(filling, at(up), at(down - 1), at(down));
-        --down;
-      }
-    }
-    return filling;
-  }
-
-  // The vertices at which the loop turns by most.
-  [[nodiscard]] std::vector<std::size_t> sharpest(const Loop& loop) const {
-    constexpr std::size_t kTried = 4;
-    std::vector<std::pair<double, std::size_t>> corners;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Vec3& v = vertices_[loop[i]];
-      const Vec3 back = vertices_[loop[(i + loop.size() - 1) % loop.size()]] - v;
-      const Vec3 out = vertices_[loop[(i + 1) % loop.size()]] - v;
-      corners.emplace_back(-dot(back, out) / (length_of(back) * length_of(out)), i);
-    }
-    const std::size_t count = std::min(kTried, corners.size());
-    std::ranges::partial_sort(corners, corners.begin() + static_cast<std::ptrdiff_t>(count));
-    std::vector<std::size_t> starts;
-    for (std::size_t i = 0; i < count; ++i) starts.push_back(corners[i].second);
-    return starts;
   }
 
   const std::vector<Vec3>& vertices_;
@@ -214,16 +188,13 @@ Caps make_caps(const Boundary& boundary, double width) {
   return caps;
 }
 
-TriangleMesh halved_caps(const Boundary& boundary) {
-  constexpr double kMuchLess = 0.5;  // large caps are near to many samples
+TriangleMesh all_caps(const Boundary& boundary) {
   EdgeGraph graph(boundary.directed_edges());
   TriangleMesh caps;
   caps.vertices = graph.vertices();
   const LoopFiller filler(caps.vertices);
   graph.for_each_loop([&](const Loop& loop) {
-    if (loop.size() < 3) return;
-    const LoopFiller::Filling halves = filler.halved(loop), band = filler.fill(loop);
-    const auto& triangles = band.area < kMuchLess * halves.area ? band.triangles : halves.triangles;
+    const std::vector<Triangle> triangles = filler.fill(loop).triangles;
     caps.triangles.insert(caps.triangles.end(), triangles.begin(), triangles.end());
   });
   return caps;

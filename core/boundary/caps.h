@@ -21,8 +21,7 @@ struct Caps {
 // the sum of multiplicities, times its logarithm.
 [[nodiscard]] Caps make_caps(const Boundary& boundary, double width);
 
-// Caps of which few are large, for a far field: a loop is halved, each half again, and so on, unless the band of
-// make_caps() has much less area, as in a crack. As long.
-[[nodiscard]] TriangleMesh halved_caps(const Boundary& boundary);
+// The caps alone.
+[[nodiscard]] TriangleMesh all_caps(const Boundary& boundary);
 
 }  // namespace raycone

@@ -94,7 +94,7 @@ const Changes& ScaledMesh::changes() const {
 
 const Blocks& ScaledMesh::blocks() const {
   std::call_once(blocks_built_, [this] {
-    TriangleMesh caps = counts_crossings() ? halved_caps(boundary_) : TriangleMesh();
+    TriangleMesh caps = counts_crossings() ? all_caps(boundary_) : TriangleMesh();
     SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
     const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
     blocks_.reset(new Blocks{std::move(caps), !faces.has_repeated_faces,

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/boundary/sample_tile.h"
@@ -38,6 +37,7 @@ class CoverSums {
       : tree_(tree),
         cover_(cover),
         triangles_(gathered(tree, cover.triangles)),
+        corners_(triangles_),
         shared_corners_(shared_corners),
         far_(far) {}
 
@@ -47,9 +47,9 @@ class CoverSums {
     tile.fill_up();
     Tile far{};
     for (const auto& [node, degree] : cover_.expansions) far_.add_multipole(tree_, node, degree, tile, far);
-    if (triangles_.chunks() > 0) shared_corners_(triangles_, tile, products_);
+    if (corners_.chunks() > 0) shared_corners_(corners_, tile, products_);
     for (std::size_t i = 0; i < tile.count; ++i) {
-      if (triangles_.chunks() > 0) {
+      if (corners_.chunks() > 0) {
         visit(i, static_cast<double>(products_.turns(i)), products_.argument[i] + far[i]);
       } else {
         visit(i, 0.0, far[i]);
@@ -58,16 +58,17 @@ class CoverSums {
   }
 
  private:
-  static SharedCorners gathered(const SourceTree& tree, std::span<const std::uint32_t> numbers) {
+  static std::vector<SolidTriangle> gathered(const SourceTree& tree, std::span<const std::uint32_t> numbers) {
     std::vector<SolidTriangle> all;
     all.reserve(numbers.size());
     for (const std::uint32_t n : numbers) all.push_back(tree.triangles()[n]);
-    return SharedCorners(std::move(all));
+    return all;
   }
 
   const SourceTree& tree_;
   const Cover& cover_;
-  SharedCorners triangles_;
+  std::vector<SolidTriangle> triangles_;
+  SharedCorners corners_;
   SharedCornersKernel shared_corners_;
   FarKernel far_;
   ProductTile products_;

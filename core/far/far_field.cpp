@@ -27,7 +27,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
                    SimdLevel level)
     : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)) {
   if (sources == FarSources::kCaps) {
-    caps_ = halved_caps(boundary);
+    caps_ = all_caps(boundary);
     if (!caps_.triangles.empty()) cap_grid_.emplace(caps_);
   }
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);

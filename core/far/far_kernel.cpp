@@ -1,6 +1,5 @@
 #include "core/far/far_kernel.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -10,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/boundary/triangle_lanes-inl.h"
+#include "core/far/chunk_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -123,14 +122,6 @@ HWY_INLINE Lanes multipole_at(const SourceNode& node, const double* coefficients
   return multipole<true>(node, coefficients, p, degrees, r);
 }
 
-void multiply_near(std::span<const SolidTriangle> all, const SampleTile& samples, std::size_t i,
-                   hn::Mask<Doubles> active, ProductTile& products) {
-  const TrianglesOfRays rays(all, samples);
-  for (std::size_t begin = 0; begin < all.size(); begin += kFactorsPerBlock) {
-    multiply_block(products, all, rays, samples, i, begin, std::min(begin + kFactorsPerBlock, all.size()), active);
-  }
-}
-
 // Walks the tree with the lanes from sample i on. A lane that has taken a node as far is out until the node is over.
 void sum_group(const SourceTree& tree, const SampleTile& samples, std::size_t i, FarTile& result) {
   const std::span<const SourceNode> nodes = tree.nodes();
@@ -156,11 +147,10 @@ void sum_group(const SourceTree& tree, const SampleTile& samples, std::size_t i,
         continue;
       }
     }
-    const std::size_t own = node.own_end - node.begin;
-    if (own > 0) {
-      multiply_near(tree.triangles().subspan(node.begin, own), samples, i, near, result.near);
-      result.near_terms += own * hn::CountTrue(d, hn::And(near, counted));
+    for (std::size_t chunk = node.first_chunk; chunk < node.last_chunk; ++chunk) {
+      multiply_chunk(result.near, tree.corners().chunk(chunk), samples, i, near);
     }
+    result.near_terms += (node.own_end - node.begin) * hn::CountTrue(d, hn::And(near, counted));
     ++k;
   }
   hn::Store(far, d, &result.far[i]);

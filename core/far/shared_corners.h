@@ -14,25 +14,40 @@
 namespace raycone {
 
 // Triangles in chunks, each with the list of its corners: a sample looks at each corner once, which takes most of the
-// time of a triangle.
+// time of a triangle. The triangles must outlive this.
 class SharedCorners {
  public:
-  explicit SharedCorners(std::vector<SolidTriangle> triangles);
-
   static constexpr std::size_t kInChunk = 32;  // triangles at most
+
+  SharedCorners() = default;
+  // One group of all.
+  explicit SharedCorners(std::span<const SolidTriangle> triangles);
+  // No group yet: all triangles must be added.
+  static SharedCorners without_groups(std::span<const SolidTriangle> triangles) {
+    SharedCorners none;
+    none.triangles_ = triangles;
+    return none;
+  }
+
+  // The next `count` of the triangles. No chunk has triangles of two groups.
+  void add_group(std::size_t count);
+
   struct Chunk {
     std::span<const SolidTriangle> triangles;
     std::span<const std::array<std::uint8_t, 3>> places;  // of each one's a, b, c among the corners
     std::span<const Vec3> corners;
   };
-  [[nodiscard]] std::size_t chunks() const { return corners_begin_.size() - 1; }
+  [[nodiscard]] std::size_t chunks() const { return chunks_.size(); }
   [[nodiscard]] Chunk chunk(std::size_t n) const;
 
  private:
-  std::vector<SolidTriangle> triangles_;
+  struct Begin {
+    std::size_t triangles, corners;
+  };
+  std::span<const SolidTriangle> triangles_;
   std::vector<std::array<std::uint8_t, 3>> places_;
   std::vector<Vec3> corners_;
-  std::vector<std::size_t> corners_begin_{0};  // of each chunk; and the end
+  std::vector<Begin> chunks_;
 };
 
 // As SolidAngleKernel, with the bits that it has for samples with a ray each.

@@ -98,8 +98,12 @@ void SourceTree::build() {
   nodes_.reserve(triangles_.size() / 2 + 1);
   build_node(0, static_cast<std::uint32_t>(triangles_.size()));
   std::size_t coefficients = 0;
+  corners_ = SharedCorners::without_groups(triangles_);
   for (SourceNode& node : nodes_) {
     measure(node);
+    node.first_chunk = static_cast<std::uint32_t>(corners_.chunks());
+    corners_.add_group(node.own_end - node.begin);
+    node.last_chunk = static_cast<std::uint32_t>(corners_.chunks());
     node.first_coefficient = coefficients;
     if (node.order > 0) coefficients += 2 * (multipole_index(node.order, node.order, node.order) + 1);
   }
@@ -209,7 +213,8 @@ void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
   node.bounds = bounds_of(multipole);
   const std::span all(coefficients_);
   set_coefficients(multipole, node.order, all.subspan(node.first_coefficient));
-  const double share = tolerance_ * (node.area / area()) * (1 - 4 * kRounding);
+  const double of_triangles = static_cast<double>(node.triangles()) / static_cast<double>(triangles_.size());
+  const double share = tolerance_ / 2 * (node.area / area() + of_triangles) * (1 - 8 * kRounding);
   const auto ratios = largest_ratios(node, share);
   double least = kInfinity;
   for (int p = 1; p <= node.order; ++p) {

@@ -10,6 +10,7 @@
 #include "core/boundary/solid_angle_kernel.h"
 #include "core/data/vec3.h"
 #include "core/far/multipole.h"
+#include "core/far/shared_corners.h"
 
 namespace raycone {
 
@@ -21,7 +22,8 @@ struct SourceNode {
   double radius = 0;  // no point of its triangles is farther from the centre
   double area = 0;
   std::uint32_t begin = 0, own_end = 0, end = 0, next = 0;
-  int order = 0;  // of its expansion; 0: there is none
+  std::uint32_t first_chunk = 0, last_chunk = 0;  // of its own triangles in corners(): up to, without the last
+  int order = 0;                                  // of its expansion; 0: there is none
   std::size_t first_coefficient = 0;
   MultipoleBounds bounds;
   // From so far on, squared, the expansion cut off behind degree p errs by at most the node's share of the tolerance,
@@ -34,15 +36,15 @@ struct SourceNode {
 // Thread-safe once made.
 class SourceTree {
  public:
-  static constexpr std::uint32_t kLeaf = 8;  // triangles
+  static constexpr std::uint32_t kLeaf = 16;  // triangles
 
   // Triangles of a mesh in scale: coordinates of at most 1. Nodes that are accepted as square_of_distance says err by
-  // at most `tolerance` turns (positive) together, whichever they are. Deterministic. About 3 microseconds per
-  // triangle.
+  // at most `tolerance` turns (positive) together, whichever they are. Deterministic.
   SourceTree(std::vector<SolidTriangle> triangles, double tolerance);
 
   [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any
   [[nodiscard]] std::span<const SolidTriangle> triangles() const { return triangles_; }
+  [[nodiscard]] const SharedCorners& corners() const { return corners_; }
   [[nodiscard]] std::span<const double> coefficients() const { return coefficients_; }  // set_coefficients()
   [[nodiscard]] double area() const { return nodes_.empty() ? 0.0 : nodes_.front().area; }
 
@@ -58,6 +60,7 @@ class SourceTree {
   void finish(SourceNode& node, const Multipole& multipole);
 
   std::vector<SolidTriangle> triangles_;
+  SharedCorners corners_;  // of the triangles, node by node
   double tolerance_;
   std::vector<SourceNode> nodes_;
   std::vector<double> coefficients_;

@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -73,17 +74,26 @@ struct Workload {
 };
 
 std::vector<double> values_of(const Workload& workload, const Samples& samples, Summation summation, double tolerance,
-                              std::uint64_t* edges = nullptr) {
+                              benchmark::State* state = nullptr) {
   const Accuracy accuracy{tolerance, static_cast<double>(samples.size())};
+  const auto start = std::chrono::steady_clock::now();
   const WindingNumberEvaluator evaluator(workload.mesh, RayEngine::kScan, SimdLevel::kBest, summation, nullptr,
                                          accuracy);
+  if (!samples.points.empty()) evaluator.prepare_points();
+  const std::chrono::duration<double, std::milli> preparation = std::chrono::steady_clock::now() - start;
   std::vector<double> values(samples.size());
   if (samples.points.empty()) {
     evaluator.evaluate(samples.lattice, whole(samples.lattice), values);
   } else {
     evaluator.evaluate(samples.points, values);
   }
-  if (edges) *edges = evaluator.exterior_edges();
+  if (state) {
+    const auto count = static_cast<double>(samples.size());
+    state->counters["prepare_ms"] = preparation.count();
+    state->counters["exterior_edges"] = static_cast<double>(evaluator.exterior_edges());
+    state->counters["near"] = static_cast<double>(evaluator.terms().near) / count;  // of one sample
+    state->counters["far"] = static_cast<double>(evaluator.terms().far) / count;
+  }
   return values;
 }
 
@@ -91,8 +101,7 @@ void time_all(benchmark::State& state, Workload& workload, const Samples& sample
               double tolerance) {
   const ThreadLimit limit(1);
   std::vector<double> values;
-  std::uint64_t edges = 0;
-  for (auto _ : state) values = values_of(workload, samples, summation, tolerance, &edges);
+  for (auto _ : state) values = values_of(workload, samples, summation, tolerance, &state);
   std::vector<double>& direct = workload.direct[&samples];
   if (direct.empty()) direct = tolerance == 0.0 ? values : values_of(workload, samples, Summation::kCheapest, 0.0);
   double largest = 0.0;
@@ -102,10 +111,6 @@ void time_all(benchmark::State& state, Workload& workload, const Samples& sample
     if (!(difference <= kTolerance)) ++wrong;  // NaN, too
     largest = std::max(largest, difference);
   }
-  state.counters["exterior_edges"] = static_cast<double>(edges);
-  state.counters["ns_per_sample"] = benchmark::Counter(static_cast<double>(values.size()) * 1e-9,
-                                                       benchmark::Counter::kIsIterationInvariantRate |
-                                                           benchmark::Counter::kInvert);
   state.counters["max_difference"] = largest;
   state.counters["wrong"] = static_cast<double>(wrong);
 }
@@ -117,10 +122,9 @@ void add(Workload& workload) {
     double tolerance;
   };
   for (const Samples& samples : workload.samples) {
-    for (const Method& method : {Method{"direct", Summation::kCheapest, 0.0},
-                                 Method{"default", Summation::kCheapest, kTolerance},
-                                 Method{"far", Summation::kFarField, kTolerance},
-                                 Method{"blocks", Summation::kBlocks, kTolerance}}) {
+    for (const Method& method :
+         {Method{"direct", Summation::kCheapest, 0.0}, Method{"default", Summation::kCheapest, kTolerance},
+          Method{"far", Summation::kFarField, kTolerance}, Method{"blocks", Summation::kBlocks, kTolerance}}) {
       if (method.summation == Summation::kBlocks && !samples.points.empty()) continue;
       const std::string name = samples.name + "/" + workload.name + "/" + method.name;
       benchmark::RegisterBenchmark(name.c_str(), [&workload, &samples, method](benchmark::State& state) {

@@ -38,8 +38,8 @@ def main():
     parser.add_argument("--timeout", type=int, default=60)
     arguments = parser.parse_args()
     refused, failed, left_out, slow, made = [], [], 0, 0, 0
-    print("| mesh | faces | boundary edges | faces of the surface | parts | max. distance, voxels | area of holes, % | "
-          "dropped area, % | CPU, s |")
+    print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
+          "dropped, % | CPU, s |")
     print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as work:
         for path in meshes_in(arguments.directory, arguments.most_bytes):

@@ -65,12 +65,13 @@ void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
 
 Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeBlock& block, double band_width,
                                           FieldSamples& samples, std::atomic<std::uint64_t>* done) const {
-  samples.resize(static_cast<std::size_t>(block.size()));
-  const std::span<double> values = samples.winding_numbers();
+  const auto count = static_cast<std::size_t>(block.size());
+  samples.resize(count, rule_ ? FieldSamples::From::kSides : FieldSamples::From::kWindingNumbers);
   std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
-  const Tally tally = rule_ ? winding_number_.evaluate_for(*rule_, lattice, block, values, done)
-                            : winding_number_.evaluate(lattice, block, values, done, samples.diagnostics());
-  settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
+  const Tally tally =
+      rule_ ? winding_number_.evaluate_sides(*rule_, lattice, block, samples.sides(), done)
+            : winding_number_.evaluate(lattice, block, samples.winding_numbers(), done, samples.diagnostics());
+  if (!rule_) settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
   if (distance_) distance_->evaluate(lattice, block, band_width, samples.distances());
   if (solid_) solid_->evaluate(lattice, block, band_width, samples.solid_distances());
   if (gradient_) gradient_->evaluate(lattice, block, samples.gradients(), last);
@@ -80,7 +81,7 @@ Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeB
 
 Tally FieldEvaluator::evaluate_points(std::span<const Vec3> points, double band_width, FieldSamples& samples,
                                       std::atomic<std::uint64_t>* done) const {
-  samples.resize(points.size());
+  samples.resize(points.size(), FieldSamples::From::kWindingNumbers);
   std::atomic<std::uint64_t>* const last = gradient_ ? std::exchange(done, nullptr) : nullptr;
   const Tally tally = winding_number_.evaluate(points, samples.winding_numbers(), done, samples.diagnostics());
   settle([&](std::size_t n) { return points[n]; }, samples);

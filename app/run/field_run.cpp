@@ -65,8 +65,8 @@ void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>
 void FieldRun::take_labels(const LabelVolume& volume, const LatticeBlock& block) {
   volume.copy(block, samples_.labels());
   if (!field_.labels_only()) return;
-  std::ranges::transform(samples_.labels(), samples_.winding_numbers().begin(),
-                         [](std::int32_t label) { return label != 0 ? 1.0 : 0.0; });
+  std::ranges::transform(samples_.labels(), samples_.sides().begin(),
+                         [](std::int32_t label) { return static_cast<std::uint8_t>(label != 0); });
 }
 
 void FieldRun::look_for_largest_bound() {
@@ -77,7 +77,7 @@ void FieldRun::look_for_largest_bound() {
 
 void FieldRun::look_for_inside() {
   if (!tells_inside() || found_inside_) return;
-  found_inside_ = std::ranges::any_of(winding_numbers(), [this](double w) { return holds(field_.rule, w); });
+  found_inside_ = std::ranges::any_of(samples_.sides(), [](std::uint8_t side) { return side != 0; });
 }
 
 void FieldRun::finish(double band_width) {

@@ -37,10 +37,10 @@ class FieldRun {
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
   // To be set, where they are wanted.
   [[nodiscard]] std::span<std::int32_t> labels() { return samples_.labels(); }
-  // Sets them for the block that was evaluated last. Where nothing else is asked for, winding_numbers() are 1 where
-  // there is a label, else 0.
+  // Sets them for the block that was evaluated last. Where nothing else is asked for, shown() is 1 where there is a
+  // label, else 0.
   void take_labels(const LabelVolume& volume, const LatticeBlock& block);
-  [[nodiscard]] std::span<const double> winding_numbers() { return samples_.winding_numbers(); }
+  [[nodiscard]] std::vector<double> shown() const { return samples_.shown(); }
 
   // Whether a rule was asked for of the mesh as a whole, and held for no sample.
   [[nodiscard]] bool found_nothing_inside() const { return tells_inside() && !found_inside_; }

@@ -49,6 +49,9 @@ std::vector<FieldDescription> describe_diagnostics() {
   return descriptions;
 }
 
+// Also where nothing at all is asked of winding numbers: pictures show sides then.
+bool has_sides(const FieldOptions& options) { return options.has_rule() || options.rule_only(); }
+
 // Empty numbers stay so.
 template <typename Number>
 void reorder(std::vector<Number>& numbers, const WorldOrder::Walk& walk, const LatticeBlock& indices) {
@@ -85,9 +88,9 @@ FieldSamples::FieldSamples(const FieldOptions& options) : options_(options) {
 }
 
 std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
-  std::size_t bytes = sizeof(double);  // the winding number, which all others come from
+  std::size_t bytes = sizeof(double);  // the winding number, or what takes its place
+  if (has_sides(options)) bytes += sizeof(std::uint8_t);
   for (const Field field : options.fields) {
-    if (field == Field::kInside) bytes += sizeof(std::uint8_t);
     if (field == Field::kDensity || field == Field::kDistance || field == Field::kSolid) bytes += sizeof(double);
     if (field == Field::kGradient) bytes += sizeof(Vec3);
     if (field == Field::kLabel) bytes += sizeof(std::int32_t);
@@ -101,7 +104,7 @@ FieldValues FieldSamples::values_of(Field field) const {
     case Field::kWinding:
       break;
     case Field::kInside:
-      return std::span(inside_);
+      return std::span(sides_);
     case Field::kDensity:
       return std::span(density_);
     case Field::kDistance:
@@ -116,21 +119,27 @@ FieldValues FieldSamples::values_of(Field field) const {
   return std::span(winding_numbers_);
 }
 
-void FieldSamples::resize(std::size_t count) {
-  winding_numbers_.resize(count);
-  if (options_.has(Field::kInside)) inside_.resize(count);
+void FieldSamples::resize(std::size_t count, From from) {
+  winding_numbers_.resize(from == From::kWindingNumbers ? count : 0);
+  if (has_sides(options_)) sides_.resize(count);
   if (options_.has(Field::kDensity)) density_.resize(count);
   if (options_.has(Field::kDistance)) distances_.resize(count);
   if (options_.has(Field::kSolid)) solid_distances_.resize(count);
   if (options_.has(Field::kGradient)) gradients_.resize(count);
   if (options_.has(Field::kLabel)) labels_.resize(count);
+  if (diagnostics_) {
+    crossings_.resize(count);
+    degenerate_.resize(count);
+    on_surface_.resize(count);
+    error_bound_.resize(count);
+  }
+  find_fields();
+}
+
+void FieldSamples::find_fields() {
   fields_.clear();
   for (const Field field : options_.fields) fields_.push_back(values_of(field));
   if (!diagnostics_) return;
-  crossings_.resize(count);
-  degenerate_.resize(count);
-  on_surface_.resize(count);
-  error_bound_.resize(count);
   *diagnostics_ = {crossings_, degenerate_, on_surface_, error_bound_};
   fields_.insert(fields_.end(), {std::span<const std::int64_t>(crossings_), std::span<const std::int64_t>(degenerate_),
                                  std::span<const std::uint8_t>(on_surface_), std::span<const double>(error_bound_)});
@@ -139,7 +148,7 @@ void FieldSamples::resize(std::size_t count) {
 void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& indices) {
   const WorldOrder::Walk walk = order.walk(indices);
   reorder(winding_numbers_, walk, indices);
-  reorder(inside_, walk, indices);
+  reorder(sides_, walk, indices);
   reorder(density_, walk, indices);
   reorder(distances_, walk, indices);
   reorder(solid_distances_, walk, indices);
@@ -149,23 +158,26 @@ void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& i
   reorder(degenerate_, walk, indices);
   reorder(on_surface_, walk, indices);
   reorder(error_bound_, walk, indices);
-  resize(winding_numbers_.size());  // which finds the numbers where they are now
+  find_fields();  // where they are now
+}
+
+std::vector<double> FieldSamples::shown() const {
+  return options_.rule_only() ? std::vector<double>(sides_.begin(), sides_.end()) : winding_numbers_;
 }
 
 void FieldSamples::derive() {
-  const bool inside = options_.has(Field::kInside), density = options_.has(Field::kDensity);
-  const bool distance = options_.has(Field::kDistance), solid = options_.has(Field::kSolid);
-  const bool rule_only = options_.rule_only(), has_rule = options_.has_rule();
-  if (!has_rule && !density) return;
-  parallel_for(winding_numbers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const double w = winding_numbers_[n];
-      const bool holds_here = has_rule && holds(options_.rule, w);
-      if (inside) inside_[n] = holds_here ? 1 : 0;
-      if (density) density_[n] = std::clamp(w, 0.0, 1.0);
-      if (distance && holds_here) distances_[n] = -distances_[n];
-      if (solid && holds_here) solid_distances_[n] = -solid_distances_[n];
-      if (rule_only) winding_numbers_[n] = holds_here ? 1.0 : 0.0;
+  const std::size_t count = std::max(winding_numbers_.size(), sides_.size());
+  const bool sides = options_.has_rule() && !winding_numbers_.empty();
+  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; sides && n < end; ++n) sides_[n] = holds(options_.rule, winding_numbers_[n]) ? 1 : 0;
+    for (std::size_t n = begin; !density_.empty() && n < end; ++n) {
+      density_[n] = std::clamp(winding_numbers_[n], 0.0, 1.0);
+    }
+    for (std::vector<double>* const distances : {&distances_, &solid_distances_}) {
+      if (distances->empty()) continue;
+      for (std::size_t n = begin; n < end; ++n) {
+        if (sides_[n] != 0) (*distances)[n] = -(*distances)[n];
+      }
     }
   });
 }

@@ -38,11 +38,16 @@ class FieldSamples {
 
   [[nodiscard]] static std::size_t bytes_per_sample(const FieldOptions& options);
 
-  // What was obtained from here before is no longer valid.
-  void resize(std::size_t count);
+  // What derive() begins with.
+  enum class From { kWindingNumbers, kSides };
 
-  // After derive(), where only the rule is asked for: 1 inside, 0 outside.
+  // What was obtained from here before is no longer valid.
+  void resize(std::size_t count, From from);
+
+  // Empty where derive() begins with sides.
   [[nodiscard]] std::span<double> winding_numbers() { return winding_numbers_; }
+  // Whether the rule holds for each sample, 1, or not, 0. Empty where there is none.
+  [[nodiscard]] std::span<std::uint8_t> sides() { return sides_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
   // Those to the closed surface, likewise.
@@ -54,7 +59,7 @@ class FieldSamples {
   // Null where they are not wanted.
   [[nodiscard]] const Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
-  // Computes the fields that follow from winding_numbers(), and the signs of distances. Threaded.
+  // Computes the fields that follow from winding_numbers() or sides(), and the signs of distances. Threaded.
   void derive();
 
   // From the order of the world's axes to that of the indices of a block. What was obtained from here before is no
@@ -63,24 +68,28 @@ class FieldSamples {
 
   // After derive().
   [[nodiscard]] SampleNumbers numbers() const {
-    const bool rule_only = options_.rule_only();
-    return {rule_only ? std::span<const double>() : winding_numbers_,
-            inside_,
+    const bool inside = options_.has(Field::kInside);
+    return {options_.rule_only() ? std::span<const double>() : winding_numbers_,
+            inside ? sides_ : std::span<const std::uint8_t>(),
             density_,
             distances_,
             solid_distances_,
             gradients_};
   }
 
+  // After derive(), for pictures: the winding numbers; where only the rule is asked for, 1 inside and 0 outside.
+  [[nodiscard]] std::vector<double> shown() const;
+
   // As describe_fields() lists them.
   [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }
 
  private:
   [[nodiscard]] FieldValues values_of(Field field) const;
+  void find_fields();
 
   FieldOptions options_;
   std::vector<double> winding_numbers_;
-  std::vector<std::uint8_t> inside_;
+  std::vector<std::uint8_t> sides_;
   std::vector<double> density_;
   std::vector<double> distances_;
   std::vector<double> solid_distances_;

@@ -146,7 +146,7 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* l
   for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
     fields.evaluate(lattice, slab, done);
     if (labels) fields.take_labels(*labels, slab);
-    if (observe) observe(lattice, slab, fields.winding_numbers());
+    if (observe) observe(lattice, slab, fields.shown());
     timed(run.report.seconds.write, [&] { writer.write(slab, fields.values()); });
   }
 }

@@ -42,6 +42,12 @@ void set_to_zero(std::span<Number> numbers) {
   });
 }
 
+// Whether crossings are added up from the first one on.
+bool is_dense(std::size_t rows, std::size_t samples) {
+  constexpr std::size_t kIndexable = std::numeric_limits<std::uint32_t>::max();
+  return samples < kShortRow || samples > kIndexable || rows > kIndexable;
+}
+
 template <class Number>
 void add_to(Number& sum, Number term) {
   std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
@@ -51,9 +57,8 @@ void add_to(Number& sum, Number term) {
 
 LatticeSums::LatticeSums(std::size_t rows, std::size_t samples, std::span<double> crossings,
                          const Diagnostics* diagnostics)
-    : rows_(rows), samples_(samples), crossings_(crossings), diagnostics_(diagnostics) {
-  constexpr std::size_t kIndexable = std::numeric_limits<std::uint32_t>::max();
-  if (samples < kShortRow || samples > kIndexable || rows > kIndexable) {
+    : rows_(rows), samples_(samples), counts_(!crossings.empty()), crossings_(crossings), diagnostics_(diagnostics) {
+  if (is_dense(rows, samples)) {
     set_to_zero(crossings_);
     dense_ = true;
   }
@@ -61,6 +66,11 @@ LatticeSums::LatticeSums(std::size_t rows, std::size_t samples, std::span<double
   set_to_zero(diagnostics_->degenerate);
   set_to_zero(diagnostics_->on_surface);
   on_surface_ = diagnostics_->on_surface.data();
+}
+
+LatticeSums::LatticeSums(std::size_t rows, std::size_t samples)
+    : rows_(rows), samples_(samples), counts_(true), diagnostics_(nullptr) {
+  if (is_dense(rows, samples)) make_dense();
 }
 
 void LatticeSums::Collector::count(std::size_t row, const TriangleCrossing& crossing) {
@@ -82,7 +92,7 @@ void LatticeSums::take(std::vector<RowCrossing>& crossed) {
   if (crossed.empty()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!dense_ && kept_ + crossed.size() > crossings_.size() / kSamplesPerKept) make_dense();
+    if (!dense_ && kept_ + crossed.size() > rows_ * samples_ / kSamplesPerKept) make_dense();
     if (!dense_) {
       kept_ += crossed.size();
       parts_.emplace_back(crossed.begin(), crossed.end());
@@ -95,7 +105,12 @@ void LatticeSums::take(std::vector<RowCrossing>& crossed) {
 
 // On one thread: others may wait for it.
 void LatticeSums::make_dense() {
-  std::ranges::fill(crossings_, 0.0);
+  if (crossings_.empty()) {
+    own_crossings_.resize(rows_ * samples_);
+    crossings_ = own_crossings_;
+  } else {
+    std::ranges::fill(crossings_, 0.0);
+  }
   for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);
   parts_ = {};
   dense_.store(true, std::memory_order_release);
@@ -129,7 +144,7 @@ std::uint8_t* LatticeSums::on_surface() {
 }
 
 void LatticeSums::arrange() {
-  if (dense_ || crossings_.empty()) return;
+  if (dense_ || !counts_) return;
   begin_.assign(rows_ + 2, 0);
   for (const std::vector<RowCrossing>& part : parts_) {
     for (const RowCrossing& c : part) ++begin_[c.row + 2];
@@ -144,12 +159,12 @@ void LatticeSums::arrange() {
 }
 
 void LatticeSums::sum_prefixes(std::size_t row) {
-  const std::span<Prefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
-  std::ranges::sort(prefixes, std::ranges::greater{}, &Prefix::samples);
+  const std::span<RowPrefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+  std::ranges::sort(prefixes, std::ranges::greater{}, &RowPrefix::samples);
   const std::span<double> sums = crossings_.subspan(row * samples_, samples_);
   double sum = 0.0;
   auto end = sums.end();
-  for (const Prefix& e : prefixes) {
+  for (const RowPrefix& e : prefixes) {
     const auto begin = sums.begin() + static_cast<std::ptrdiff_t>(e.samples);
     std::fill(begin, end, sum);
     sum += e.sigma;
@@ -158,11 +173,20 @@ void LatticeSums::sum_prefixes(std::size_t row) {
   std::fill(sums.begin(), end, sum);
 }
 
+void LatticeSums::make_runs(std::size_t row) {
+  const std::span<RowPrefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+  std::ranges::sort(prefixes, std::ranges::less{}, &RowPrefix::samples);
+  std::int32_t sum = 0;
+  for (std::size_t i = prefixes.size(); i-- > 0;) prefixes[i].sigma = sum += prefixes[i].sigma;
+}
+
 std::uint64_t LatticeSums::finish(std::size_t row) {
   const std::size_t first = row * samples_;
-  if (!crossings_.empty()) {
+  if (counts_) {
     if (dense_) {
       suffix_sums(crossings_.subspan(first, samples_));
+    } else if (crossings_.empty()) {
+      make_runs(row);
     } else {
       sum_prefixes(row);
     }

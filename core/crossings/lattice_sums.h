@@ -2,6 +2,7 @@
 // and sheets have thousands of crossings per row.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,58 @@
 #include "core/data/diagnostics.h"
 
 namespace raycone {
+
+// Crossings that are counted by the first samples of a row, so many: or, of runs, how many each of them has.
+struct RowPrefix {
+  std::uint32_t samples;
+  std::int32_t sigma;
+};
+
+// The crossings n of the samples of one row, as runs of samples that have the same.
+class RowRuns {
+ public:
+  explicit RowRuns(std::span<const RowPrefix> runs) : runs_(runs) {}
+  explicit RowRuns(std::span<const double> each) : each_(each) {}
+
+  [[nodiscard]] double at(std::size_t sample) const {
+    if (!each_.empty()) return each_[sample];
+    const auto run = run_of(sample);
+    return run == runs_.end() ? 0.0 : run->sigma;
+  }
+
+  // visit(first, last, n) for the samples [begin, end), in ascending order, as long as it returns true. Returns whether
+  // it always did.
+  template <class Visit>
+  bool for_each(std::size_t begin, std::size_t end, const Visit& visit) const {
+    if (!each_.empty()) return for_each_of_each(begin, end, visit);
+    auto run = run_of(begin);
+    while (begin < end) {
+      const std::size_t last = run == runs_.end() ? end : std::min<std::size_t>(end, run->samples);
+      if (last > begin && !visit(begin, last, run == runs_.end() ? 0.0 : run->sigma)) return false;
+      begin = last;
+      if (run != runs_.end()) ++run;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::span<const RowPrefix>::iterator run_of(std::size_t sample) const {
+    return std::ranges::upper_bound(runs_, sample, {}, &RowPrefix::samples);
+  }
+  template <class Visit>
+  bool for_each_of_each(std::size_t begin, std::size_t end, const Visit& visit) const {
+    while (begin < end) {
+      std::size_t last = begin + 1;
+      while (last < end && each_[last] == each_[begin]) ++last;
+      if (!visit(begin, last, each_[begin])) return false;
+      begin = last;
+    }
+    return true;
+  }
+
+  std::span<const RowPrefix> runs_;  // ascending; what is behind the last one has none
+  std::span<const double> each_;     // of each sample, where there are too many runs
+};
 
 // Rows of `samples` samples each; sample i of row r is number r * samples + i of all spans. First all crossings are
 // collected, then they are arranged, then rows are finished.
@@ -27,8 +80,10 @@ class LatticeSums {
   // `crossings` receives n of each sample, an integer; empty where nobody asks for it. `diagnostics`, where given, its
   // crossings (which need the other ones), degenerate and on_surface. All must outlive this.
   LatticeSums(std::size_t rows, std::size_t samples, std::span<double> crossings, const Diagnostics* diagnostics);
+  // For who asks for runs().
+  LatticeSums(std::size_t rows, std::size_t samples);
 
-  // Most bytes per sample that this takes beside the caller's spans.
+  // Most bytes per sample that this takes beside the caller's spans; for runs(), sizeof(double) more.
   static constexpr double kBytesPerSample = 3.0;
 
   // What one thread has to say.
@@ -36,7 +91,7 @@ class LatticeSums {
    public:
     explicit Collector(LatticeSums& sums) : sums_(sums) {}
     void add(std::size_t row, const TriangleCrossing& crossing) {
-      if (crossing.crossed > 0 && !sums_.crossings_.empty()) count(row, crossing);
+      if (crossing.crossed > 0 && sums_.counts_) count(row, crossing);
       if (crossing.ties > 0 || crossing.on_begin < crossing.on_end) sums_.add_degenerate(row, crossing);
       ties_ += crossing.met * static_cast<std::uint64_t>(crossing.ties);
     }
@@ -58,24 +113,27 @@ class LatticeSums {
   // finished at the same time.
   std::uint64_t finish(std::size_t row);
 
+  // The crossings of a row that is finished; where runs were asked for.
+  [[nodiscard]] RowRuns runs(std::size_t row) const {
+    if (dense_) return RowRuns(std::span<const double>(crossings_).subspan(row * samples_, samples_));
+    return RowRuns(std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]));
+  }
+
   // Edge sides that were ties, over all samples.
   [[nodiscard]] std::uint64_t ties() const { return ties_; }
 
  private:
-  // A crossing of one row.
-  struct Prefix {
-    std::uint32_t samples;  // counted by the first ones, so many
-    std::int32_t sigma;
-  };
-
   void take(std::vector<RowCrossing>& crossed);
   void make_dense();
   void add_to_samples(std::span<const RowCrossing> crossed);
   void add_degenerate(std::size_t row, const TriangleCrossing& crossing);
   std::uint8_t* on_surface();
   void sum_prefixes(std::size_t row);
+  void make_runs(std::size_t row);
 
   std::size_t rows_, samples_;
+  bool counts_;                        // whether anybody asks for n
+  std::vector<double> own_crossings_;  // where runs were asked for and there are too many
   std::span<double> crossings_;
   const Diagnostics* diagnostics_;
   std::mutex mutex_;
@@ -84,7 +142,7 @@ class LatticeSums {
   std::vector<std::vector<RowCrossing>> parts_;
   std::size_t kept_ = 0;
   std::vector<std::size_t> begin_;  // per row, into prefixes_; and the end
-  std::vector<Prefix> prefixes_;
+  std::vector<RowPrefix> prefixes_;
   // Many are added up: crossings_[i] is then what is said of the samples of its row up to i and no further.
   std::atomic<bool> dense_ = false;
   std::vector<std::uint8_t> own_on_surface_;  // where there are no diagnostics; empty as long as nothing is on it

@@ -1,6 +1,5 @@
 #include "core/evaluation/block_parts.h"
 
-#include <algorithm>
 #include <array>
 
 namespace raycone {
@@ -53,23 +52,12 @@ PartSamples::PartSamples(std::size_t count)
 
 void PartSamples::copy_to(const LatticeBlock& whole, const LatticeBlock& part, std::span<double> values,
                           const Diagnostics* diagnostics) const {
-  const auto offset = [&](std::size_t axis) { return part.first[axis] - whole.first[axis]; };
-  const std::ptrdiff_t length = part.counts[0];
-  for (std::int64_t k = 0; k < part.counts[2]; ++k) {
-    for (std::int64_t j = 0; j < part.counts[1]; ++j) {
-      const std::ptrdiff_t from = (k * part.counts[1] + j) * length;
-      const std::ptrdiff_t to = ((offset(2) + k) * whole.counts[1] + offset(1) + j) * whole.counts[0] + offset(0);
-      const auto copy = [&](const auto& source, const auto& target) {
-        std::copy_n(source.begin() + from, length, target.begin() + to);
-      };
-      copy(values_, values);
-      if (!diagnostics) continue;
-      copy(crossings_, diagnostics->crossings);
-      copy(degenerate_, diagnostics->degenerate);
-      copy(on_surface_, diagnostics->on_surface);
-      copy(error_bound_, diagnostics->error_bound);
-    }
-  }
+  copy_part<double>(whole, part, values_, values);
+  if (!diagnostics) return;
+  copy_part<std::int64_t>(whole, part, crossings_, diagnostics->crossings);
+  copy_part<std::int64_t>(whole, part, degenerate_, diagnostics->degenerate);
+  copy_part<std::uint8_t>(whole, part, on_surface_, diagnostics->on_surface);
+  copy_part<double>(whole, part, error_bound_, diagnostics->error_bound);
 }
 
 }  // namespace raycone

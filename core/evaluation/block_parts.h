@@ -1,6 +1,8 @@
 // A block of samples in parts that are evaluated apart.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -15,6 +17,20 @@ namespace raycone {
 // a property of intervals. Together the parts are the block; none where the block is empty.
 [[nodiscard]] std::vector<LatticeBlock> parts_alike(const Lattice& lattice, const LatticeBlock& block,
                                                     const std::function<bool(double)>& property);
+
+// Copies what was computed of a part, x fastest, to its place in a block `whole`.
+template <class Number>
+void copy_part(const LatticeBlock& whole, const LatticeBlock& part, std::span<const Number> from,
+               std::span<Number> to) {
+  const auto offset = [&](std::size_t axis) { return part.first[axis] - whole.first[axis]; };
+  for (std::int64_t k = 0; k < part.counts[2]; ++k) {
+    for (std::int64_t j = 0; j < part.counts[1]; ++j) {
+      const std::ptrdiff_t source = (k * part.counts[1] + j) * part.counts[0];
+      const std::ptrdiff_t place = ((offset(2) + k) * whole.counts[1] + offset(1) + j) * whole.counts[0] + offset(0);
+      std::copy_n(from.begin() + source, part.counts[0], to.begin() + place);
+    }
+  }
+}
 
 // Room for what is computed of a part before it finds its place in the whole.
 class PartSamples {

@@ -68,24 +68,23 @@ void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Latt
   }
   const bool counts = mesh.counts_crossings();
   const double doubt = mesh.doubt_of_blocks();
-  mesh.blocks().sums.for_each_row(axes, part,
-                                  [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
-                                    const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
-                                    const std::size_t first = row * part[0].size() + x - part[0].begin;
-                                    LatticeTile doubtful;
-                                    for (std::size_t i = 0; i < sums.size(); ++i) {
-                                      const std::size_t n = first + i;
-                                      const double w = (counts ? values[n] - cap_crossings[n] : 0.0) + sums[i];
-                                      if (gap_to_half_integer(w) > doubt) {
-                                        values[n] = w;
-                                        continue;
-                                      }
-                                      doubtful.add(n, {axes[0][x + i], axes[1][y], axes[2][z]});
-                                      if (doubtful.full()) doubtful.evaluate(mesh, values);
-                                    }
-                                    doubtful.evaluate(mesh, values);
-                                    if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
-                                  });
+  mesh.blocks().sums.for_each_row(
+      axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
+        const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
+        const std::size_t first = row * part[0].size() + x - part[0].begin;
+        LatticeTile doubtful(mesh, SetValue{values});
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+          const std::size_t n = first + i;
+          const double w = (counts ? values[n] - cap_crossings[n] : 0.0) + sums[i];
+          if (gap_to_half_integer(w) > doubt) {
+            values[n] = w;
+            continue;
+          }
+          doubtful.add(n, {axes[0][x + i], axes[1][y], axes[2][z]}, counts ? static_cast<std::int64_t>(values[n]) : 0);
+        }
+        doubtful.evaluate();
+        if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
+      });
 }
 
 }  // namespace raycone

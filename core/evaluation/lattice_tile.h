@@ -6,70 +6,76 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
-#include "core/boundary/sample_tile.h"
 #include "core/evaluation/scaled_mesh.h"
 
 namespace raycone {
 
-// With the places of their values.
+// With the places of their values. set(index, scaled query, w) takes each winding number.
+template <class Set>
 class LatticeTile {
  public:
-  [[nodiscard]] bool full() const { return samples_.count == kTile; }
+  LatticeTile(const ScaledMesh& mesh, Set set) : mesh_(mesh), set_(std::move(set)) {}
 
-  void add(std::size_t index, const Vec3& scaled_query) {
+  // `crossings`: of the sample's ray; any where the mesh does not count them. Evaluates all where the tile is full.
+  void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings) {
     indices_[samples_.count] = index;
+    crossings_[samples_.count] = crossings;
     samples_.add(scaled_query);
+    if (samples_.count == kTile) evaluate();
   }
 
-  // Turns the crossings of the samples, if any, into winding numbers, and forgets them.
-  void evaluate(const ScaledMesh& mesh, std::span<double> values) {
-    if (samples_.count == 0) return;
-    const std::span<const std::size_t> indices(indices_.data(), samples_.count);
-    std::array<std::int64_t, kTile> crossings{};
+  // Evaluates the samples, and forgets them.
+  void evaluate() {
+    const std::size_t count = samples_.count;
+    if (count == 0) return;
     std::array<double, kTile> w;
-    if (mesh.counts_crossings()) {
-      std::ranges::transform(indices, crossings.begin(),
-                             [&](std::size_t index) { return static_cast<std::int64_t>(values[index]); });
-    }
-    mesh.set_values(samples_, {crossings.data(), indices.size()}, {w.data(), indices.size()});
-    for (std::size_t i = 0; i < indices.size(); ++i) values[indices[i]] = w[i];
+    mesh_.set_values(samples_, {crossings_.data(), count}, {w.data(), count});
+    for (std::size_t i = 0; i < count; ++i) set_(indices_[i], samples_.query(i), w[i]);
     samples_.clear();
   }
 
  private:
+  const ScaledMesh& mesh_;
+  Set set_;
   std::array<std::size_t, kTile> indices_;
+  std::array<std::int64_t, kTile> crossings_;
   SampleTile samples_;
 };
 
 // Samples of rows, one row after the other. Those of one row share a ray, which saves work; where a row leaves fewer
 // than fill the lanes, those of several rows are taken together.
+template <class Set>
 class RowTiles {
  public:
-  RowTiles(const ScaledMesh& mesh, std::span<double> values) : mesh_(mesh), values_(values) {}
+  RowTiles(const ScaledMesh& mesh, const Set& set) : along_(mesh, set), across_(mesh, set) {}
 
   // The next `samples` samples that are added are of one row.
   void begin_row(std::size_t samples) { left_ = samples; }
 
-  // Turns the sample's crossings into its winding number, now or in finish() at last.
-  void add(std::size_t index, const Vec3& scaled_query) {
+  // Evaluates it, now or in finish() at last.
+  void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings) {
     constexpr std::size_t kAlone = 8;  // samples
     if (here_ == 0) here_ = std::min(left_, kTile), together_ = here_ >= kAlone;
-    LatticeTile& tile = together_ ? along_ : across_;
-    tile.add(index, scaled_query);
+    (together_ ? along_ : across_).add(index, scaled_query, crossings);
     --left_;
-    if (--here_ == 0 && together_) tile.evaluate(mesh_, values_);
-    if (tile.full()) tile.evaluate(mesh_, values_);
+    if (--here_ == 0 && together_) along_.evaluate();
   }
 
-  void finish() { across_.evaluate(mesh_, values_); }
+  void finish() { across_.evaluate(); }
 
  private:
-  const ScaledMesh& mesh_;
-  std::span<double> values_;
-  LatticeTile along_, across_;
+  LatticeTile<Set> along_, across_;
   std::size_t left_ = 0, here_ = 0;  // samples of the row, and of the tile, that are still to come
   bool together_ = false;
+};
+
+// Sets the value with the index.
+struct SetValue {
+  std::span<double> values;
+
+  void operator()(std::size_t index, const Vec3&, double w) const { values[index] = w; }
 };
 
 }  // namespace raycone

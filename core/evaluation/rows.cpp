@@ -11,49 +11,30 @@
 #include "core/evaluation/block_parts.h"
 #include "core/evaluation/lattice_far.h"
 #include "core/evaluation/lattice_tile.h"
-#include "core/evaluation/rule_blocks.h"
+#include "core/evaluation/row_crossings.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
 
-// ---- What the rays cross ---------------------------------------------------------------------------------------
-
-// By Embree, which looks at one row at a time.
-void cast_rays(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
-  parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-    LatticeSums::Collector collector(sums);
-    std::vector<std::uint32_t> candidates;
-    for (std::size_t number = begin; number < end; ++number) {
-      const Row row = rows.row(number);
-      mesh.rays().find_candidates(row.query(0), candidates);
-      for (const std::uint32_t triangle : candidates) collector.add(number, mesh.crossing(triangle, row));
-    }
-    collector.finish();
-  });
-}
-
-// The order of the triangles along the axis across which the block is a thin slab of the lattice, if it is.
-std::optional<OrderedSlab> ordered_slab(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block) {
-  constexpr std::int64_t kWorthSorting = 4;  // slabs
-  for (const int axis : {2, 1}) {
-    const auto a = static_cast<std::size_t>(axis);
-    if (block.counts[a] <= lattice.counts[a] / kWorthSorting) return OrderedSlab{mesh.slab_order(axis), axis};
-  }
-  return std::nullopt;
-}
-
 // ---- What the boundary adds ------------------------------------------------------------------------------------
+
+// Of a sample whose crossings are its value so far, where they are counted.
+std::int64_t crossings_at(const ScaledMesh& mesh, std::span<const double> values, std::size_t index) {
+  return mesh.counts_crossings() ? static_cast<std::int64_t>(values[index]) : 0;
+}
 
 // Turns crossings of the rows [begin, end) into winding numbers.
 void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
                        std::span<double> values) {
   const std::size_t samples = rows.xs.size();
-  RowTiles tiles(mesh, values);
+  RowTiles tiles(mesh, SetValue{values});
   for (std::size_t number = begin; number < end; ++number) {
     const Row row = rows.row(number);
     tiles.begin_row(samples);
-    for (std::size_t i = 0; i < samples; ++i) tiles.add(number * samples + i, row.query(i));
+    for (std::size_t n = number * samples, i = 0; i < samples; ++i, ++n) {
+      tiles.add(n, row.query(i), crossings_at(mesh, values, n));
+    }
   }
   tiles.finish();
 }
@@ -80,10 +61,10 @@ constexpr std::size_t kBrick = 4;  // samples along each side
 void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<std::size_t, 2> j_range,
                    std::array<std::size_t, 2> k_range, std::span<double> values) {
   const std::size_t nx = rows.xs.size(), ny = rows.ys.size();
-  LatticeTile tile;
+  LatticeTile tile(mesh, SetValue{values});
   const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
-    tile.add((k * ny + j) * nx + i, {rows.xs[i], rows.ys[j], rows.zs[k]});
-    if (tile.full()) tile.evaluate(mesh, values);
+    const std::size_t n = (k * ny + j) * nx + i;
+    tile.add(n, {rows.xs[i], rows.ys[j], rows.zs[k]}, crossings_at(mesh, values, n));
   };
   for (std::size_t i = 0; i < nx; i += kBrick) {
     // Eight samples of a cube follow one another, in one group of lanes.
@@ -96,7 +77,7 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<s
       }
     }
   }
-  tile.evaluate(mesh, values);
+  tile.evaluate();
 }
 
 void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<double> values,
@@ -118,8 +99,8 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<do
 
 // ---- The whole -------------------------------------------------------------------------------------------------
 
-// Sets the values of rows whose crossings are known; only the crossings where the rest is left to apply_rule()
-// or add_far_field(). Returns how many samples lie on the surface.
+// Sets the values of rows whose crossings are known; only the crossings where the rest is left to evaluate_blocks() or
+// add_far_field(). Returns how many samples lie on the surface.
 std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
                           std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, bool crossings_only) {
   std::atomic<std::uint64_t> on_surface = 0;
@@ -152,29 +133,16 @@ std::vector<double> crossings_of(const TriangleMesh& caps, const LatticeRows& ro
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
-                    const Rule* rule) {
-  const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
-  const bool scaled = meshes.scaled().can_take(Vec3{first(0), first(1), first(2)});
-  const ScaledMesh& mesh = meshes.of_query(scaled);
+                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
-  // Caps and their tree take about as long as so many edges at samples. Soups have hardly a block that is decided.
-  constexpr double kWorthCaps = 0x1p20;
-  const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
-  const bool by_rule = rule && !mesh.is_closed() && mesh.counts_crossings() && work > kWorthCaps;
   const bool counts = mesh.counts_crossings() || diagnostics;
-  const std::optional<LatticeAxes> axes = rule || !scaled ? std::nullopt : axes_for_blocks(mesh, lattice);
+  const bool scaled = &mesh == &meshes.scaled();
+  const std::optional<LatticeAxes> axes = scaled ? axes_for_blocks(mesh, lattice) : std::nullopt;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
-  if (mesh.options().ray_engine == RayEngine::kScan) {
-    scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
-  } else {
-    mesh.prepare_points();  // not within the loop over rows, whose threads would wait for one another
-    cast_rays(mesh, rows, sums);
-  }
-  sums.arrange();
-  const bool in_bricks = !by_rule && !axes && mesh.has_far_field();
-  const std::uint64_t on_surface =
-      finish_rows(mesh, rows, sums, values, done, diagnostics, by_rule || axes || in_bricks);
+  collect_crossings(mesh, lattice, block, rows, sums);
+  const bool in_bricks = !axes && mesh.has_far_field();
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, axes || in_bricks);
   if (axes) {
     const std::vector<double> cap_crossings =
         mesh.counts_crossings() ? crossings_of(mesh.blocks().caps, rows) : std::vector<double>();
@@ -182,23 +150,21 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
     if (diagnostics) bound_all_errors(mesh, rows, values, *diagnostics);
   }
   if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
-  if (by_rule) apply_rule(mesh, rows, *rule, values, crossings_of(mesh.changes().caps.mesh, rows), done);
   return {sums.ties(), on_surface};
 }
 
 }  // namespace
 
 Tally evaluate_block(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
-                     const Rule* rule) {
+                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   const std::vector<LatticeBlock> parts =
       parts_alike(lattice, block, [&](double x) { return meshes.scaled().can_take(x); });
-  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics, rule);
+  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics);
   Tally tally;
   for (const LatticeBlock& part : parts) {
     PartSamples samples(static_cast<std::size_t>(part.size()));
     const Diagnostics* part_diagnostics = diagnostics ? &samples.diagnostics() : nullptr;
-    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics, rule);
+    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics);
     samples.copy_to(block, part, values, diagnostics);
   }
   return tally;

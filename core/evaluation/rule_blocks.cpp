@@ -10,6 +10,7 @@
 
 #include "core/boundary/change_bound.h"
 #include "core/evaluation/lattice_tile.h"
+#include "core/evaluation/side_of.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -45,23 +46,6 @@ struct Candidate {
   double rest = 0.0;  // at the sample
 };
 
-// Distances of values from the rule's thresholds: neighbours mostly have the same value.
-class Margin {
- public:
-  explicit Margin(const Rule& rule) : rule_(rule), distance_(distance_to_threshold(rule, 0.0)) {}
-  [[nodiscard]] double operator()(double w) {
-    if (w != w_) {
-      w_ = w;
-      distance_ = distance_to_threshold(rule_, w);
-    }
-    return distance_ - kRounding * std::abs(w);
-  }
-
- private:
-  const Rule& rule_;
-  double w_ = 0.0, distance_;
-};
-
 bool overlap(const Box& a, const Box& b) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(a.lower[axis] <= b.upper[axis] && b.lower[axis] <= a.upper[axis])) return false;
@@ -71,13 +55,14 @@ bool overlap(const Box& a, const Box& b) {
 
 class RuleBlocks {
  public:
-  RuleBlocks(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, std::span<double> values,
-             std::span<const double> cap_crossings)
+  RuleBlocks(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
+             const LatticeSums& cap_crossings, std::span<std::uint8_t> sides)
       : mesh_(mesh),
         rows_(rows),
-        rule_(rule),
-        values_(values),
+        side_(mesh, rule),
+        crossings_(crossings),
         cap_crossings_(cap_crossings),
+        sides_(sides),
         changes_(mesh.changes().bound) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       blocks_[axis] = (coordinates(axis).size() + kSides[axis] - 1) / kSides[axis];
@@ -123,30 +108,38 @@ class RuleBlocks {
     }
     return box;
   }
-  [[nodiscard]] std::size_t index_of(const std::array<std::size_t, 3>& sample) const {
-    return (sample[2] * rows_.ys.size() + sample[1]) * rows_.xs.size() + sample[0];
-  }
+  [[nodiscard]] std::size_t row_of(std::size_t j, std::size_t k) const { return k * rows_.ys.size() + j; }
   [[nodiscard]] Vec3 query(const std::array<std::size_t, 3>& sample) const {
     return {rows_.xs[sample[0]], rows_.ys[sample[1]], rows_.zs[sample[2]]};
   }
 
   // Of the mesh less its caps, which is closed, or of the mesh.
-  [[nodiscard]] double crossings_of(std::size_t index, bool closed) const {
-    return closed ? values_[index] - cap_crossings_[index] : values_[index];
+  [[nodiscard]] double crossings_at(const std::array<std::size_t, 3>& sample, bool closed) const {
+    const std::size_t row = row_of(sample[1], sample[2]);
+    return crossings_.runs(row).at(sample[0]) - (closed ? cap_crossings_.runs(row).at(sample[0]) : 0.0);
   }
 
-  // visit(begin, end of the indices of a row), as long as it returns true
+  // visit(begin, end of the indices, crossings) for runs of samples whose crossings are the same, as long as it returns
+  // true. Returns whether it always did.
   template <class Visit>
-  void for_each_row(const Block& block, const Visit& visit) const {
+  bool for_each_run(const Block& block, bool closed, const Visit& visit) const {
     for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
       for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
-        const std::size_t begin = index_of({block.first[0], j, k});
-        if (!visit(begin, begin + block.count(0))) return;
+        const std::size_t row = row_of(j, k), index = row * rows_.xs.size();
+        const bool all = crossings_.runs(row).for_each(
+            block.first[0], block.last[0], [&](std::size_t begin, std::size_t end, double n) {
+              if (!closed) return visit(index + begin, index + end, n);
+              return cap_crossings_.runs(row).for_each(begin, end, [&](std::size_t from, std::size_t to, double caps) {
+                return visit(index + from, index + to, n - caps);
+              });
+            });
+        if (!all) return false;
       }
     }
+    return true;
   }
-  // Whether certificates are found often enough; where not, few blocks still look for them. Values depend on it, the
-  // sides that they are on do not.
+  // Whether certificates are found often enough; where not, few blocks still look for them. The work depends on it, the
+  // sides do not.
   [[nodiscard]] bool worth_it(std::size_t n) const {
     constexpr std::size_t kFewBlocks = 64;
     return n % kFewBlocks == 0 || in_vain_ <= tried_ - tried_ / 8;
@@ -163,9 +156,10 @@ class RuleBlocks {
 
   const ScaledMesh& mesh_;
   const LatticeRows& rows_;
-  const Rule& rule_;
-  std::span<double> values_;
-  std::span<const double> cap_crossings_;
+  const SideOf side_;
+  const LatticeSums& crossings_;
+  const LatticeSums& cap_crossings_;
+  std::span<std::uint8_t> sides_;
   const ChangeBound& changes_;
   std::atomic<std::size_t> tried_ = 0, in_vain_ = 0;  // samples
   std::array<std::size_t, 3> blocks_;                 // per axis
@@ -245,32 +239,25 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
     tile.clear();
     for (std::size_t i = 0; i < some.size(); ++i) {
       tile.add(query(some[i].sample));
-      crossings[i] = static_cast<std::int64_t>(values_[index_of(some[i].sample)]);
+      crossings[i] = static_cast<std::int64_t>(crossings_at(some[i].sample, false));
     }
     mesh_.set_values(tile, {crossings.data(), some.size()}, {w.data(), some.size()});
     for (std::size_t i = 0; i < some.size(); ++i) {
-      some[i].rest = w[i] - crossings_of(index_of(some[i].sample), some[i].closed);
+      some[i].rest = w[i] - crossings_at(some[i].sample, some[i].closed);
     }
   }
 }
 
-// Sets the values of the candidate's samples if they are certain to be on the right side.
+// Sets the sides of the candidate's samples if they are certain.
 bool RuleBlocks::decide(const Candidate& candidate) const {
   const double needed = candidate.change + mesh_.doubt() + kRounding * (1 + std::abs(candidate.rest));
-  Margin margin(rule_);
-  bool certain = true;
-  for_each_row(candidate.block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; certain && n < end; ++n) {
-      certain = margin(crossings_of(n, candidate.closed) + candidate.rest) > needed;
-    }
-    return certain;
-  });
-  if (!certain) return false;
-  for_each_row(candidate.block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) values_[n] = crossings_of(n, candidate.closed) + candidate.rest;
+  return for_each_run(candidate.block, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
+    const double w = n + candidate.rest;
+    if (!(distance_to_threshold(side_.rule(), w) - kRounding * std::abs(w) > needed)) return false;
+    std::fill(sides_.begin() + static_cast<std::ptrdiff_t>(begin), sides_.begin() + static_cast<std::ptrdiff_t>(end),
+              holds(side_.rule(), w) ? 1 : 0);
     return true;
   });
-  return true;
 }
 
 // Row by row: samples that share a ray are cheaper together.
@@ -284,14 +271,20 @@ void RuleBlocks::evaluate_each(const Block& whole, std::span<const Block> blocks
       }
     }
   }
-  RowTiles tiles(mesh_, values_);
+  RowTiles tiles(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const std::size_t j = whole.first[1] + n % whole.count(1), k = whole.first[2] + n / whole.count(1);
+    const std::size_t row = row_of(j, k);
     std::size_t samples = 0;
     for (const SampleRange& range : rows[n]) samples += range.size();
     tiles.begin_row(samples);
     for (const SampleRange& range : rows[n]) {
-      for (std::size_t i = range.begin; i < range.end; ++i) tiles.add(index_of({i, j, k}), query({i, j, k}));
+      crossings_.runs(row).for_each(range.begin, range.end, [&](std::size_t begin, std::size_t end, double crossed) {
+        for (std::size_t i = begin; i < end; ++i) {
+          tiles.add(row * rows_.xs.size() + i, query({i, j, k}), static_cast<std::int64_t>(crossed));
+        }
+        return true;
+      });
     }
   }
   tiles.finish();
@@ -319,9 +312,9 @@ void RuleBlocks::divide(Block block, std::vector<Block>& parts) const {
 
 }  // namespace
 
-void apply_rule(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, std::span<double> values,
-                std::span<const double> cap_crossings, std::atomic<std::uint64_t>* done) {
-  RuleBlocks blocks(mesh, rows, rule, values, cap_crossings);
+void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
+               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+  RuleBlocks blocks(mesh, rows, rule, crossings, cap_crossings, sides);
   parallel_for(blocks.blocks(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t samples = blocks.apply(n);

@@ -6,17 +6,17 @@
 #include <span>
 
 #include "core/crossings/lattice_rows.h"
+#include "core/crossings/lattice_sums.h"
 #include "core/data/rule.h"
 #include "core/evaluation/scaled_mesh.h"
 
 namespace raycone {
 
-// `values` are the crossings n of the samples of `rows`, x fastest; `cap_crossings` those of mesh.changes().caps. Turns
-// each value into a number for which the rule holds where it holds for the winding number w: w itself, or that of a
-// sample nearby but for the crossings between, where the two are certain to be on one side of each threshold
-// (docs/method.md). A number that may be as near to a threshold as mesh.doubt() is w as ScaledMesh::set_values() sets
-// it. `done`, where given, grows by one per sample. Needs DefaultFloatingPoint. Precondition: the mesh is open.
-void apply_rule(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, std::span<double> values,
-                std::span<const double> cap_crossings, std::atomic<std::uint64_t>* done);
+// Sets each side to 1 where the rule holds and to 0 where it does not; x fastest. `crossings` are the finished runs of
+// the mesh, `cap_crossings` those of mesh.changes().caps, both of `rows`. Blocks of samples that are certain to be on
+// one side of each threshold, but for the crossings between them, are evaluated at one sample (docs/method.md).
+// `done`, where given, grows by one per sample. Needs DefaultFloatingPoint. Precondition: the mesh is open.
+void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
+               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done);
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 #include "core/evaluation/points.h"
 #include "core/evaluation/rows.h"
 #include "core/evaluation/scaled_mesh.h"
+#include "core/evaluation/sides.h"
 #include "core/machine/floating_point.h"
 
 namespace raycone {
@@ -80,18 +81,22 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   const ScaledMeshes& meshes = *implementation_;
   if (!has_values(meshes.scaled().mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;
-  return evaluate_block(meshes, lattice, block, values, done, diagnostics, nullptr);
+  return evaluate_block(meshes, lattice, block, values, done, diagnostics);
 }
 
-Tally WindingNumberEvaluator::evaluate_for(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
-                                           std::span<double> values, std::atomic<std::uint64_t>* done) const {
+Tally WindingNumberEvaluator::evaluate_sides(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
+                                             std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) const {
   check_counts(block);
-  assert(values.size() == static_cast<std::size_t>(block.size()));
+  assert(sides.size() == static_cast<std::size_t>(block.size()));
   if (block.size() == 0) return {};
   const ScaledMeshes& meshes = *implementation_;
-  if (!has_values(meshes.scaled().mesh(), values, done, nullptr)) return {};
+  if (meshes.scaled().mesh().triangles.empty()) {
+    std::ranges::fill(sides, holds(rule, 0.0) ? 1 : 0);
+    if (done) done->fetch_add(sides.size(), std::memory_order_relaxed);
+    return {};
+  }
   const DefaultFloatingPoint guard;
-  return evaluate_block(meshes, lattice, block, values, done, nullptr, &rule);
+  return evaluate_block_sides(meshes, rule, lattice, block, sides, done);
 }
 
 Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<double> values,

@@ -98,11 +98,10 @@ class WindingNumberEvaluator {
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
-  // The same for who asks of the values only whether `rule` holds, which for open meshes takes a small part of the
-  // time. A value is then w, or a number that is certain to be on the same side of every threshold of the rule. Where
-  // such a threshold is no half-integer, values within doubt() of it must be settled, as ever.
-  Tally evaluate_for(const Rule& rule, const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
-                     std::atomic<std::uint64_t>* done = nullptr) const;
+  // Sets for the same samples only whether `rule` holds, 1, or not, 0: exactly, and in a small part of the time.
+  // Precondition: sides.size() == block.size().
+  Tally evaluate_sides(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
+                       std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done = nullptr) const;
 
   // |value - w| <= accuracy(), turns. This is the tolerance, or 1e-10 where that is less. From a million exterior edges
   // on, counted with multiplicity, it is 2^-53 times their number at least: doubles of such values can do no better.

@@ -21,26 +21,6 @@ LatticeBlock slab_of_nodes(const Lattice& lattice, std::int64_t first_layer) {
   return slab;
 }
 
-// Values that are so near to a threshold that the rule could be wrong.
-void settle_values(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
-                   const LatticeBlock& slab, std::span<double> values) {
-  const std::vector<double> thresholds = thresholds_to_settle(rule);
-  const double doubt = evaluator.doubt();
-  if (thresholds.empty() || doubt == 0.0) return;
-  parallel_for(values.size(), std::size_t{1} << 10, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const auto number = static_cast<std::int64_t>(n), row = number / slab.counts[0];
-      for (const double threshold : thresholds) {
-        if (std::abs(values[n] - threshold) > doubt) continue;
-        const Vec3 point{lattice.coordinate(0, slab.first[0] + number % slab.counts[0]),
-                         lattice.coordinate(1, slab.first[1] + row % slab.counts[1]),
-                         lattice.coordinate(2, slab.first[2] + row / slab.counts[1])};
-        values[n] = evaluator.settle(point, values[n], threshold);
-      }
-    }
-  });
-}
-
 }  // namespace
 
 NodeSet::NodeSet(const Lattice& lattice)
@@ -78,17 +58,16 @@ bool NodeSet::reaches_border() const {
 NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
                      std::atomic<std::uint64_t>* done) {
   NodeSet nodes(lattice);
-  std::vector<double> values;
+  std::vector<std::uint8_t> sides;
   for (std::int64_t layer = 0; layer < lattice.counts[2];) {
     const LatticeBlock slab = slab_of_nodes(lattice, layer);
-    values.resize(static_cast<std::size_t>(slab.size()));
-    evaluator.evaluate_for(rule, lattice, slab, values, done);
-    settle_values(evaluator, rule, lattice, slab, values);
+    sides.resize(static_cast<std::size_t>(slab.size()));
+    evaluator.evaluate_sides(rule, lattice, slab, sides, done);
     const auto rows = static_cast<std::size_t>(slab.counts[1] * slab.counts[2]);
     parallel_for(rows, 64, [&](std::size_t begin, std::size_t end) {
       for (auto row = static_cast<std::int64_t>(begin); row < static_cast<std::int64_t>(end); ++row) {
         for (std::int64_t i = 0; i < slab.counts[0]; ++i) {
-          if (!holds(rule, values[static_cast<std::size_t>(row * slab.counts[0] + i)])) continue;
+          if (sides[static_cast<std::size_t>(row * slab.counts[0] + i)] == 0) continue;
           nodes.insert(i, row % slab.counts[1], layer + row / slab.counts[1]);
         }
       }
@@ -103,8 +82,8 @@ double node_set_bytes(const Lattice& lattice) {
   const double layers = static_cast<double>(lattice.counts[2]);
   const double bits = (layer + 64.0 * static_cast<double>(lattice.counts[1])) * layers / 8.0;
   const double of_slab = std::max(layer, std::min(layer * layers, static_cast<double>(kSlabNodes)));
-  constexpr double kPerValue = 12.0;  // the value, and what finding it takes
-  return bits + kPerValue * of_slab;
+  constexpr double kPerSide = 20.0;  // the side, and what finding it takes at most
+  return bits + kPerSide * of_slab;
 }
 
 }  // namespace raycone

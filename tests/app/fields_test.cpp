@@ -50,7 +50,7 @@ TEST(FieldSamples, DeriveFieldsFromWindingNumbers) {
   options.fields = {Field::kDensity, Field::kInside, Field::kWinding};
   options.rule = {RuleKind::kAbs, 1.0};
   FieldSamples samples(options);
-  samples.resize(4);
+  samples.resize(4, FieldSamples::From::kWindingNumbers);
   const std::vector<double> w{-1.5, 0.25, 1.0, 7.0};
   std::ranges::copy(w, samples.winding_numbers().begin());
   samples.derive();
@@ -62,6 +62,20 @@ TEST(FieldSamples, DeriveFieldsFromWindingNumbers) {
   EXPECT_TRUE(std::ranges::equal(density, std::vector<double>{0.0, 0.25, 1.0, 1.0}));
   EXPECT_TRUE(std::ranges::equal(inside, std::vector<int>{1, 0, 1, 1}));
   EXPECT_TRUE(std::ranges::equal(winding, w));
+}
+
+TEST(FieldSamples, DeriveFieldsFromSides) {
+  FieldOptions options;
+  options.fields = {Field::kDistance, Field::kInside};
+  FieldSamples samples(options);
+  samples.resize(3, FieldSamples::From::kSides);
+  EXPECT_TRUE(samples.winding_numbers().empty());
+  std::ranges::copy(std::vector<std::uint8_t>{0, 1, 1}, samples.sides().begin());
+  std::ranges::copy(std::vector{0.5, 0.25, 0.0}, samples.distances().begin());
+  samples.derive();
+  EXPECT_TRUE(std::ranges::equal(samples.numbers().distance, std::vector{0.5, -0.25, 0.0}));
+  EXPECT_TRUE(std::ranges::equal(samples.numbers().inside, std::vector<int>{0, 1, 1}));
+  EXPECT_TRUE(std::ranges::equal(samples.shown(), std::vector{0.0, 1.0, 1.0}));
 }
 
 }  // namespace

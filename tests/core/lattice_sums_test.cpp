@@ -91,6 +91,32 @@ void expect_sums(const std::vector<Said>& said, std::size_t rows, std::size_t sa
   EXPECT_EQ(on_surface, expected.on_surface);
 }
 
+void expect_runs(const std::vector<Said>& said, std::size_t rows, std::size_t samples, test::Random& random) {
+  const std::vector<std::int64_t> expected = by_definition(said, rows, samples).n;
+  LatticeSums sums(rows, samples);
+  LatticeSums::Collector collector(sums);
+  for (const auto& [row, crossing] : said) collector.add(row, crossing);
+  collector.finish();
+  sums.arrange();
+  for (std::size_t row = 0; row < rows; ++row) {
+    sums.finish(row);
+    const RowRuns runs = sums.runs(row);
+    const auto n = [&](std::size_t i) { return static_cast<double>(expected[row * samples + i]); };
+    for (std::size_t i = 0; i < samples; ++i) ASSERT_EQ(runs.at(i), n(i));
+    const std::size_t begin = random() % samples, end = begin + random() % (samples - begin + 1);
+    std::size_t next = begin;
+    EXPECT_TRUE(runs.for_each(begin, end, [&](std::size_t first, std::size_t last, double sum) {
+      EXPECT_EQ(first, next);
+      EXPECT_LT(first, last);
+      for (std::size_t i = first; i < last; ++i) EXPECT_EQ(sum, n(i));
+      next = last;
+      return true;
+    }));
+    EXPECT_EQ(next, end);
+    EXPECT_EQ(runs.for_each(begin, end, [](std::size_t, std::size_t, double) { return false; }), begin == end);
+  }
+}
+
 TEST(LatticeSums, AreThoseOfTheDefinitionForFewAndForManyCrossings) {
   test::Random random(1);
   for (const std::size_t samples : {1U, 7U, 8U, 15U, 16U, 17U, 100U}) {
@@ -100,6 +126,7 @@ TEST(LatticeSums, AreThoseOfTheDefinitionForFewAndForManyCrossings) {
         SCOPED_TRACE(testing::Message() << samples << " samples, " << count << " crossings, " << with_diagnostics);
         expect_sums(said, 30, samples, with_diagnostics);
       }
+      expect_runs(said, 30, samples, random);
     }
   }
 }

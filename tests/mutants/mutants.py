@@ -321,8 +321,14 @@ MUTANTS = [
         ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.change + mesh_.doubt()",
          "const double needed = 0 * candidate.change + mesh_.doubt()")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
-        ("core/evaluation/rule_blocks.cpp", "return closed ? values_[index] - cap_crossings_[index] : values_[index];",
-         "return closed ? values_[index] : values_[index];")]),
+        ("core/evaluation/rule_blocks.cpp", "return visit(index + from, index + to, n - caps);",
+         "return visit(index + from, index + to, n);")]),
+    Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
+        ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
+         "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
+    Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
+        ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_)",
+         "if (std::abs(w - threshold) <= -doubt_)")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_bound.cpp", "sum += source.length / square;", "sum += 0.3 * source.length / square;")]),
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [

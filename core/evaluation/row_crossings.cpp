@@ -1,0 +1,56 @@
+#include "core/evaluation/row_crossings.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/crossings/lattice_scan.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// By Embree, which looks at one row at a time.
+void cast_rays(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
+  parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+    LatticeSums::Collector collector(sums);
+    std::vector<std::uint32_t> candidates;
+    for (std::size_t number = begin; number < end; ++number) {
+      const Row row = rows.row(number);
+      mesh.rays().find_candidates(row.query(0), candidates);
+      for (const std::uint32_t triangle : candidates) collector.add(number, mesh.crossing(triangle, row));
+    }
+    collector.finish();
+  });
+}
+
+// The order of the triangles along the axis across which the block is a thin slab of the lattice, if it is.
+std::optional<OrderedSlab> ordered_slab(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block) {
+  constexpr std::int64_t kWorthSorting = 4;  // slabs
+  for (const int axis : {2, 1}) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (block.counts[a] <= lattice.counts[a] / kWorthSorting) return OrderedSlab{mesh.slab_order(axis), axis};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+const ScaledMesh& mesh_for(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block) {
+  const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
+  return meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+}
+
+void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block,
+                       const LatticeRows& rows, LatticeSums& sums) {
+  if (mesh.options().ray_engine == RayEngine::kScan) {
+    scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
+  } else {
+    mesh.prepare_points();  // not within the loop over rows, whose threads would wait for one another
+    cast_rays(mesh, rows, sums);
+  }
+  sums.arrange();
+}
+
+}  // namespace raycone

@@ -1,0 +1,18 @@
+// What the rays of a block of a lattice cross.
+#pragma once
+
+#include "core/crossings/lattice_rows.h"
+#include "core/crossings/lattice_sums.h"
+#include "core/data/lattice.h"
+#include "core/evaluation/scaled_mesh.h"
+
+namespace raycone {
+
+// The scaled mesh where it can take the block's coordinates, the unscaled one where not: along each axis all or none.
+[[nodiscard]] const ScaledMesh& mesh_for(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block);
+
+// Collects and arranges the crossings of `rows`, those of the block, by the mesh's ray engine.
+void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block,
+                       const LatticeRows& rows, LatticeSums& sums);
+
+}  // namespace raycone

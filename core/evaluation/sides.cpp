@@ -1,0 +1,111 @@
+#include "core/evaluation/sides.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/crossings/lattice_rows.h"
+#include "core/crossings/lattice_scan.h"
+#include "core/crossings/lattice_sums.h"
+#include "core/evaluation/block_parts.h"
+#include "core/evaluation/row_crossings.h"
+#include "core/evaluation/rows.h"
+#include "core/evaluation/rule_blocks.h"
+#include "core/evaluation/side_of.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+// Returns how many samples lie on the surface.
+std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums) {
+  std::atomic<std::uint64_t> on_surface = 0;
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t here = 0;
+    for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
+    on_surface.fetch_add(here, std::memory_order_relaxed);
+  });
+  return on_surface;
+}
+
+// Of a closed mesh: crossings are winding numbers.
+void set_sides_of_runs(const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
+                       std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+  const std::size_t samples = rows.xs.size();
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::span<std::uint8_t> of_row = sides.subspan(row * samples, samples);
+      crossings.runs(row).for_each(0, samples, [&](std::size_t first, std::size_t last, double n) {
+        std::ranges::fill(of_row.subspan(first, last - first), static_cast<std::uint8_t>(holds(rule, n)));
+        return true;
+      });
+    }
+    if (done) done->fetch_add((end - begin) * samples, std::memory_order_relaxed);
+  });
+}
+
+// Where certificates do not pay: from the winding number of each sample.
+Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const Rule& rule, const Lattice& lattice,
+                      const LatticeBlock& block, const LatticeRows& rows, std::span<std::uint8_t> sides,
+                      std::atomic<std::uint64_t>* done) {
+  std::vector<double> values(sides.size());
+  const Tally tally = evaluate_block(meshes, lattice, block, values, done, nullptr);
+  const SideOf side(mesh, rule);
+  const std::size_t samples = rows.xs.size();
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin * samples; n < end * samples; ++n) {
+      sides[n] = side(rows.row(n / samples).query(n % samples), values[n]);
+    }
+  });
+  return tally;
+}
+
+// Whether certificates pay. Soups have hardly a block that is decided; caps and their tree take about as long as so
+// many edges at samples.
+bool certificates_pay(const ScaledMesh& mesh, const LatticeBlock& block) {
+  constexpr double kWorthCaps = 0x1p20;
+  const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
+  return mesh.counts_crossings() && work > kWorthCaps;
+}
+
+// Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
+Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
+                    std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+  const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
+  const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
+  if (!mesh.is_closed() && !certificates_pay(mesh, block)) {
+    return sides_by_values(meshes, mesh, rule, lattice, block, rows, sides, done);
+  }
+  LatticeSums crossings(rows.size(), rows.xs.size());
+  collect_crossings(mesh, lattice, block, rows, crossings);
+  const Tally tally{crossings.ties(), finish_all(rows, crossings)};
+  if (mesh.is_closed()) {
+    set_sides_of_runs(rows, rule, crossings, sides, done);
+    return tally;
+  }
+  LatticeSums of_caps(rows.size(), rows.xs.size());
+  scan_triangles(mesh.changes().caps.mesh, rows, std::nullopt, of_caps);
+  of_caps.arrange();
+  finish_all(rows, of_caps);
+  set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
+  return tally;
+}
+
+}  // namespace
+
+Tally evaluate_block_sides(const ScaledMeshes& meshes, const Rule& rule, const Lattice& lattice,
+                           const LatticeBlock& block, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+  const std::vector<LatticeBlock> parts =
+      parts_alike(lattice, block, [&](double x) { return meshes.scaled().can_take(x); });
+  if (parts.size() == 1) return evaluate_part(meshes, rule, lattice, block, sides, done);
+  Tally tally;
+  for (const LatticeBlock& part : parts) {
+    std::vector<std::uint8_t> of_part(static_cast<std::size_t>(part.size()));
+    tally += evaluate_part(meshes, rule, lattice, part, of_part, done);
+    copy_part<std::uint8_t>(block, part, of_part, sides);
+  }
+  return tally;
+}
+
+}  // namespace raycone

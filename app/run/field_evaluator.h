@@ -25,6 +25,11 @@ class FieldEvaluator {
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 
+  // What the winding numbers that it tells are off by at most, turns: 0 of closed meshes, and where it tells none.
+  [[nodiscard]] double accuracy() const {
+    return rule_ || winding_number_.exterior_edges() == 0 ? 0.0 : winding_number_.accuracy();
+  }
+
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(const TriangleMesh& surface) { solid_.emplace(surface, simd_); }
 

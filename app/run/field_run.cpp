@@ -83,8 +83,7 @@ void FieldRun::look_for_inside() {
 void FieldRun::finish(double band_width) {
   const WindingNumberEvaluator& evaluator = evaluator_.winding_number();
   run_.report.terms += evaluator.terms();
-  const bool open = evaluator.exterior_edges() > 0;
-  const double bound = field_.diagnostics ? largest_bound_ : open ? evaluator.accuracy() : 0.0;
+  const double bound = field_.diagnostics ? largest_bound_ : evaluator_.accuracy();
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
   run_.report.verification = timed(run_.report.seconds.verify, [&] {

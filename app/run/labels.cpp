@@ -162,11 +162,7 @@ void LabelledParts::found(bool inside, bool expected) {
 }
 
 void LabelledParts::spent(const FieldEvaluator& evaluator) {
-  const WindingNumberEvaluator& winding_number = evaluator.winding_number();
-  terms_ += winding_number.terms();
-  if (winding_number.exterior_edges() > 0) {
-    largest_error_bound_ = std::max(largest_error_bound_, winding_number.accuracy());
-  }
+  terms_ += evaluator.winding_number().terms();
 }
 
 void LabelledParts::finish(std::span<const std::uint64_t> samples) {
@@ -180,7 +176,6 @@ void LabelledParts::finish(std::span<const std::uint64_t> samples) {
                             "lattice where parts are thin"});
   }
   report.terms += terms_;
-  report.largest_error_bound = std::max(report.largest_error_bound, largest_error_bound_);
   if (!field_.labels_only()) return;
   report.exterior_edges = 0;
   for (const PartReport& part : report.parts) report.exterior_edges += part.exterior_edges;

@@ -60,7 +60,6 @@ class LabelledParts {
   std::uint64_t cut_edges_ = 0;
   // What the report is told when all has been evaluated.
   Terms terms_;
-  double largest_error_bound_ = 0.0;
 };
 
 // Labels by definition, of some samples.

@@ -129,7 +129,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   report.tally =
       timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, command.field, values, done); });
   report.terms = evaluator.winding_number().terms();
-  if (report.exterior_edges > 0) report.largest_error_bound = evaluator.winding_number().accuracy();
+  report.largest_error_bound = evaluator.accuracy();
   timed(report.seconds.write, [&] {
     const Image picture = slice_picture(slice.view, values, mesh, picture_field(command.field), command.framed);
     write_picture(run.output, picture, report.mesh, described(command.field) + " at " + slice.plane);

@@ -141,11 +141,13 @@ void ChangeBound::build(std::uint32_t begin, std::uint32_t end) {
   clusters_[here].next = static_cast<std::uint32_t>(clusters_.size());
 }
 
-double ChangeBound::in(const Box& box, double limit) const {
-  double sum = 0.0;
+ChangeBound::Bounds ChangeBound::in(const Box& box, double limit) const {
+  double sum = 0.0, second = 0.0;
   const auto add = [&](const Source& source, double square) {
+    const double cube = square * std::sqrt(square);
     sum += source.length / square;
-    if (source.area > 0.0) sum += source.area / (square * std::sqrt(square));
+    second += 2 * source.length / cube;
+    if (source.area > 0.0) sum += source.area / cube, second += 3 * source.area / (square * square);
   };
   for (std::size_t n = 0; n < clusters_.size() && sum <= limit;) {
     const Cluster& cluster = clusters_[n];
@@ -160,7 +162,8 @@ double ChangeBound::in(const Box& box, double limit) const {
     }
     ++n;  // of a leaf that is `next`
   }
-  return sum <= limit ? sum * (1 + kBoundError) : kInfinity;
+  if (!(sum <= limit)) return {kInfinity, kInfinity};
+  return {sum * (1 + kBoundError), second * (1 + kBoundError)};
 }
 
 }  // namespace raycone

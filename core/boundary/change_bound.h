@@ -14,15 +14,19 @@ namespace raycone {
 // The winding number of a mesh jumps by integers where its surface is. Beside that it changes as the solid angles of
 // its loops do. By the law of Biot and Savart a piece of an edge, of length L, adds at most L / (4 pi d^2) to the
 // length of the gradient at a distance d. A loop with caps of area A adds at most the integral of the gradients of
-// dipoles, 2 A / (4 pi d^3), d being the distance from the caps: less, if it is narrow. A tree gathers all.
-// Thread-safe.
+// dipoles, 2 A / (4 pi d^3), d being the distance from the caps: less, if it is narrow. Second derivatives, along any
+// direction, are at most 2 L / (4 pi d^3) and 6 A / (4 pi d^4). A tree gathers all. Thread-safe.
 class ChangeBound {
  public:
   explicit ChangeBound(const Caps& caps);
 
-  // The gradient is at most so long in the closed box, turns per unit; infinite where the box comes too close, or where
-  // the bound exceeds `limit`, beyond which it is of no use.
-  [[nodiscard]] double in(const Box& box, double limit) const;
+  struct Bounds {
+    double gradient;  // its length is at most this, turns per unit
+    double second;    // and second derivatives this, turns per square unit
+  };
+  // In the closed box. Infinite where the box comes too close, or where that of the gradient exceeds `limit`, beyond
+  // which they are of no use.
+  [[nodiscard]] Bounds in(const Box& box, double limit) const;
 
   // Boxes that contain the caps of wide loops, which are cut into pieces.
   [[nodiscard]] std::span<const Box> wide_caps() const { return wide_caps_; }

@@ -72,7 +72,7 @@ void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Latt
       axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
         const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
         const std::size_t first = row * part[0].size() + x - part[0].begin;
-        LatticeTile doubtful(mesh, SetValue{values});
+        LatticeTile doubtful(mesh, SetValue{values}, LatticeTile<SetValue>::Sum::kDirect);
         for (std::size_t i = 0; i < sums.size(); ++i) {
           const std::size_t n = first + i;
           const double w = (counts ? values[n] - cap_crossings[n] : 0.0) + sums[i];

@@ -16,7 +16,9 @@ namespace raycone {
 template <class Set>
 class LatticeTile {
  public:
-  LatticeTile(const ScaledMesh& mesh, Set set) : mesh_(mesh), set_(std::move(set)) {}
+  enum class Sum { kCheapest, kDirect };
+  LatticeTile(const ScaledMesh& mesh, Set set, Sum sum = Sum::kCheapest)
+      : mesh_(mesh), set_(std::move(set)), sum_(sum) {}
 
   // `crossings`: of the sample's ray; any where the mesh does not count them. Evaluates all where the tile is full.
   void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings) {
@@ -31,7 +33,11 @@ class LatticeTile {
     const std::size_t count = samples_.count;
     if (count == 0) return;
     std::array<double, kTile> w;
-    mesh_.set_values(samples_, {crossings_.data(), count}, {w.data(), count});
+    if (sum_ == Sum::kDirect) {
+      mesh_.set_direct_values(samples_, {crossings_.data(), count}, {w.data(), count});
+    } else {
+      mesh_.set_values(samples_, {crossings_.data(), count}, {w.data(), count});
+    }
     for (std::size_t i = 0; i < count; ++i) set_(indices_[i], samples_.query(i), w[i]);
     samples_.clear();
   }
@@ -39,6 +45,7 @@ class LatticeTile {
  private:
   const ScaledMesh& mesh_;
   Set set_;
+  Sum sum_;
   std::array<std::size_t, kTile> indices_;
   std::array<std::int64_t, kTile> crossings_;
   SampleTile samples_;

@@ -19,9 +19,14 @@ namespace {
 // In samples: the sides of the blocks that are begun with, blocks so small that no certificate is sought for them, and
 // rows that are worth one.
 constexpr std::array<std::size_t, 3> kSides{kTile, 32, 32};
-constexpr std::size_t kFew = 16;
+constexpr std::size_t kFew = 4;
 constexpr std::size_t kRow = 32;
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
+
+// Of interpolation between corners: the largest blocks, and by how much it may be off, turns. It leaves the more
+// samples undecided the larger a block is; of a smaller one, corners are too many of its samples.
+constexpr std::size_t kInterpolated = 1024;
+constexpr double kMostBend = 0.04;
 
 // Rounding of sums and differences of a few numbers of turns, beside the doubt of values; times their magnitude.
 constexpr double kRounding = 1e-12;
@@ -36,14 +41,15 @@ struct Block {
   [[nodiscard]] bool is_row() const { return count(1) == 1 && count(2) == 1; }
 };
 
-// A block in which `rest` is known well enough once it is known at one sample: w less the crossings of the closed mesh,
-// or, in a row, which does not pass through the cone, less those of the mesh.
+// A block in which the rest is smooth: w less the crossings of the closed mesh or, in a row, which does not pass
+// through the cone, less those of the mesh. It is known well enough once it is known at one sample, or at all corners.
 struct Candidate {
   Block block;
   bool closed;
-  std::array<std::size_t, 3> sample;
-  double change;      // from this sample to others at most, turns
-  double rest = 0.0;  // at the sample
+  double change;  // from the sample in the middle to others at most, turns
+  double bend;    // from what is interpolated between the corners, likewise
+  std::vector<std::array<std::size_t, 3>> samples;
+  std::array<double, 8> rest{};  // at each of them
 };
 
 bool overlap(const Box& a, const Box& b) {
@@ -85,9 +91,18 @@ class RuleBlocks {
       std::vector<Block> parts;
       for (Block& b : blocks) look_at(std::move(b), candidates, parts, undecided);
       evaluate(candidates);
+      std::vector<Candidate> interpolated;
       for (Candidate& candidate : candidates) {
-        if (!decide(candidate)) divide(std::move(candidate.block), parts);
+        if (decide(candidate)) continue;
+        if (candidate.block.size() <= kInterpolated && candidate.bend <= kMostBend) {
+          candidate.samples = corners_of(candidate.block);
+          interpolated.push_back(std::move(candidate));
+        } else {
+          divide(std::move(candidate.block), parts);
+        }
       }
+      evaluate(interpolated);
+      for (const Candidate& candidate : interpolated) interpolate(candidate, undecided);
       blocks = std::move(parts);
     }
     evaluate_each(whole, undecided);
@@ -145,13 +160,44 @@ class RuleBlocks {
     return n % kFewBlocks == 0 || in_vain_ <= tried_ - tried_ / 8;
   }
 
+  // Whether numbers of turns that are off by less than `needed` are on w's side.
+  [[nodiscard]] bool is_certain(double w, double needed) const {
+    return distance_to_threshold(side_.rule(), w) - kRounding * std::abs(w) > needed;
+  }
+
+  // A number for each corner: bit a is set on the upper side of axis a. visit(number, which of those that are told from
+  // others it is).
+  template <class Visit>
+  static void for_each_corner(const Block& block, const Visit& visit) {
+    std::size_t flat = 0, next = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) flat |= (block.count(axis) == 1 ? 1U : 0U) << axis;
+    std::array<std::size_t, 8> which{};
+    for (std::size_t n = 0; n < 8; ++n) {
+      which[n] = (n & flat) == 0 ? next++ : which[n & ~flat];
+      visit(n, which[n]);
+    }
+  }
+  [[nodiscard]] static std::vector<std::array<std::size_t, 3>> corners_of(const Block& block) {
+    std::vector<std::array<std::size_t, 3>> corners;
+    for_each_corner(block, [&](std::size_t n, std::size_t which) {
+      if (which < corners.size()) return;
+      corners.push_back(block.first);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if ((n >> axis & 1) != 0) corners.back()[axis] = block.last[axis] - 1;
+      }
+    });
+    return corners;
+  }
+
   [[nodiscard]] Block block(std::size_t n) const;
   void sort_caps();
   void look_at(Block block, std::vector<Candidate>& candidates, std::vector<Block>& parts,
                std::vector<Block>& undecided) const;
+  [[nodiscard]] Candidate candidate_of(Block block, const Box& box) const;
   void evaluate_each(const Block& whole, std::span<const Block> blocks) const;
   void evaluate(std::span<Candidate> candidates) const;
   [[nodiscard]] bool decide(const Candidate& candidate) const;
+  void interpolate(const Candidate& candidate, std::vector<Block>& undecided) const;
   void divide(Block block, std::vector<Block>& parts) const;
 
   const ScaledMesh& mesh_;
@@ -209,18 +255,7 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
   const Box box = box_of(block);
   std::erase_if(block.caps, [&](std::uint32_t piece) { return !overlap(box, changes_.wide_caps()[piece]); });
   if (block.caps.empty() || block.is_row()) {
-    Candidate candidate{std::move(block), false, {}, 0.0};
-    candidate.closed = candidate.block.caps.empty();
-    double square = 0.0;  // of the distance to the farthest corner
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::vector<double>& all = coordinates(axis);
-      candidate.sample[axis] = candidate.block.first[axis] + candidate.block.count(axis) / 2;
-      const double x = all[candidate.sample[axis]];
-      const double extent = std::max(x - all[candidate.block.first[axis]], all[candidate.block.last[axis] - 1] - x);
-      square += extent * extent;
-    }
-    const double radius = std::sqrt(square);
-    candidate.change = radius * changes_.in(box, kMostChange / radius) * (1 + kRounding);
+    Candidate candidate = candidate_of(std::move(block), box);
     if (candidate.change <= kMostChange) {
       candidates.push_back(std::move(candidate));
       return;
@@ -230,34 +265,95 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
   divide(std::move(block), parts);
 }
 
-void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
-  for (std::size_t begin = 0; begin < candidates.size(); begin += kTile) {
-    const std::span<Candidate> some = candidates.subspan(begin, std::min(kTile, candidates.size() - begin));
-    SampleTile tile;
-    std::array<std::int64_t, kTile> crossings{};
-    std::array<double, kTile> w;
-    tile.clear();
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      tile.add(query(some[i].sample));
-      crossings[i] = static_cast<std::int64_t>(crossings_at(some[i].sample, false));
-    }
-    mesh_.set_values(tile, {crossings.data(), some.size()}, {w.data(), some.size()});
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      some[i].rest = w[i] - crossings_at(some[i].sample, some[i].closed);
-    }
+// A multilinear interpolation is off by an eighth of the squares of the block's extents times the second derivatives.
+Candidate RuleBlocks::candidate_of(Block block, const Box& box) const {
+  Candidate candidate{std::move(block), false, 0.0, 0.0, {{}}};
+  candidate.closed = candidate.block.caps.empty();
+  double to_farthest = 0.0, extents = 0.0;  // squares
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double lower = box.lower[static_cast<int>(axis)], upper = box.upper[static_cast<int>(axis)];
+    std::size_t& middle = candidate.samples.front()[axis];
+    middle = candidate.block.first[axis] + candidate.block.count(axis) / 2;
+    const double x = coordinates(axis)[middle], extent = std::max(x - lower, upper - x);
+    to_farthest += extent * extent;
+    extents += (upper - lower) * (upper - lower);
   }
+  const double radius = std::sqrt(to_farthest);
+  const ChangeBound::Bounds bounds = changes_.in(box, kMostChange / radius);
+  candidate.change = radius * bounds.gradient * (1 + kRounding);
+  candidate.bend = extents / 8 * bounds.second * (1 + kRounding);
+  return candidate;
+}
+
+void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
+  struct Place {
+    Candidate* candidate;
+    std::size_t sample;
+  };
+  std::vector<Place> places;
+  for (Candidate& candidate : candidates) {
+    for (std::size_t n = 0; n < candidate.samples.size(); ++n) places.push_back({&candidate, n});
+  }
+  LatticeTile tile(mesh_, [&](std::size_t index, const Vec3&, double w) {
+    const auto [candidate, n] = places[index];
+    candidate->rest[n] = w - crossings_at(candidate->samples[n], candidate->closed);
+  });
+  for (std::size_t index = 0; index < places.size(); ++index) {
+    const std::array<std::size_t, 3>& sample = places[index].candidate->samples[places[index].sample];
+    tile.add(index, query(sample), static_cast<std::int64_t>(crossings_at(sample, false)));
+  }
+  tile.evaluate();
 }
 
 // Sets the sides of the candidate's samples if they are certain.
 bool RuleBlocks::decide(const Candidate& candidate) const {
-  const double needed = candidate.change + mesh_.doubt() + kRounding * (1 + std::abs(candidate.rest));
+  const double rest = candidate.rest[0];
+  const double needed = candidate.change + mesh_.doubt() + kRounding * (1 + std::abs(rest));
   return for_each_run(candidate.block, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
-    const double w = n + candidate.rest;
-    if (!(distance_to_threshold(side_.rule(), w) - kRounding * std::abs(w) > needed)) return false;
+    const double w = n + rest;
+    if (!is_certain(w, needed)) return false;
     std::fill(sides_.begin() + static_cast<std::ptrdiff_t>(begin), sides_.begin() + static_cast<std::ptrdiff_t>(end),
               holds(side_.rule(), w) ? 1 : 0);
     return true;
   });
+}
+
+// Sets the sides that are certain by interpolation between the corners. Adds the other samples, in runs.
+void RuleBlocks::interpolate(const Candidate& candidate, std::vector<Block>& undecided) const {
+  const Block& block = candidate.block;
+  std::array<double, 8> r;  // at all corners
+  for_each_corner(block, [&](std::size_t n, std::size_t which) { r[n] = candidate.rest[which]; });
+  double largest = 0.0;
+  for (const double rest : r) largest = std::max(largest, std::abs(rest));
+  const double needed = candidate.bend + mesh_.doubt() + 8 * kRounding * (1 + largest);
+  const auto fraction = [&](std::size_t axis, std::size_t i) {
+    const std::vector<double>& all = coordinates(axis);
+    const double first = all[block.first[axis]], last = all[block.last[axis] - 1];
+    return last > first ? (all[i] - first) / (last - first) : 0.0;
+  };
+  const auto between = [](double a, double b, double t) { return a + t * (b - a); };
+  for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
+    for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
+      const double y = fraction(1, j), z = fraction(2, k);
+      const double lower = between(between(r[0], r[2], y), between(r[4], r[6], y), z);
+      const double upper = between(between(r[1], r[3], y), between(r[5], r[7], y), z);
+      const std::size_t row = row_of(j, k) * rows_.xs.size();
+      const Block part{{block.first[0], j, k}, {block.last[0], j + 1, k + 1}, {}};
+      for_each_run(part, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
+        for (std::size_t i = begin - row; i < end - row; ++i) {
+          const double w = n + between(lower, upper, fraction(0, i));
+          if (is_certain(w, needed)) {
+            sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
+          } else if (i > begin - row && !undecided.empty() && undecided.back().last == std::array{i, j + 1, k + 1}) {
+            ++undecided.back().last[0];  // of the same run
+          } else {
+            undecided.push_back({{i, j, k}, {i + 1, j + 1, k + 1}, {}});
+          }
+        }
+        return true;
+      });
+    }
+  }
 }
 
 // Row by row: samples that share a ray are cheaper together.

@@ -39,13 +39,18 @@ std::unique_ptr<const FarField> far_field(const TriangleMesh& mesh, const Bounda
   const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
   // Many a sample lies in the plane of flat caps, which are ties then.
   if (sources == FarSources::kCaps && boundary.is_flat()) return nullptr;
-  const bool wanted =
-      options.summation == Summation::kFarField ||
-      (options.summation == Summation::kCheapest &&
-       far_field_pays(sources, mesh.triangles.size(), boundary.exterior_edges(), options.accuracy.samples, tolerance));
-  if (!wanted) return nullptr;
+  const bool forced = options.summation == Summation::kFarField;
+  constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
+  const bool may_pay = options.summation == Summation::kCheapest && boundary.exterior_edges() >= kTooFew &&
+                       far_field_may_pay(options.accuracy.samples);
+  if (!forced && !may_pay) return nullptr;
   auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
-  return far->has_repeated_faces() ? nullptr : std::move(far);
+  if (far->has_repeated_faces()) return nullptr;
+  constexpr double kTriangleSummed = 1.9;  // directly, in units of an exterior edge
+  constexpr double kSafety = 0.8;          // estimates are no better
+  const double of_direct = sources == FarSources::kCaps ? static_cast<double>(boundary.exterior_edges())
+                                                        : kTriangleSummed * static_cast<double>(mesh.triangles.size());
+  return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
 }
 
 double nearest_integer(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
@@ -61,8 +66,7 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
       options_{options.ray_engine, options.level, options.summation, options.accuracy},
       mesh_(in_scale(std::move(mesh), scale)),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, options)),
-      far_(far_field(mesh_, boundary_, term_.get(), options)) {}
+      term_(boundary_term(mesh_, boundary_, options)) {}
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
@@ -103,15 +107,31 @@ const Blocks& ScaledMesh::blocks() const {
   return *blocks_;
 }
 
+const FarField* ScaledMesh::far() const {
+  std::call_once(far_built_, [this] { far_ = far_field(mesh_, boundary_, term_.get(), options_); });
+  return far_.get();
+}
+
+// Whether there is one or not, which is not known before it is built.
+double ScaledMesh::doubt_of_far_field() const {
+  const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
+  const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
+  if (!wanted || !(tolerance >= kLeastTolerance)) return 0.0;
+  return std::min(FarField::doubt(kFarShare * tolerance, most_sources()), Boundary::kMostDoubt);
+}
+
 double ScaledMesh::doubt_of_blocks() const {
   if (!has_blocks()) return 0.0;
-  // A loop of n edges has n - 2 caps.
-  const double triangles =
-      counts_crossings() ? boundary_.total_multiplicity() : static_cast<double>(mesh_.triangles.size());
-  return std::min(LatticeBlocks::doubt(options_.accuracy.tolerance, triangles), Boundary::kMostDoubt);
+  return std::min(LatticeBlocks::doubt(options_.accuracy.tolerance, most_sources()), Boundary::kMostDoubt);
+}
+
+// A loop of n edges has n - 2 caps.
+double ScaledMesh::most_sources() const {
+  return counts_crossings() ? boundary_.total_multiplicity() : static_cast<double>(mesh_.triangles.size());
 }
 
 void ScaledMesh::prepare_points() const {
+  (void)far();
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();
   } else {
@@ -130,7 +150,7 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
-  if (!far_) {
+  if (!far()) {
     set_direct_values(samples, crossings, values);
     return;
   }

@@ -97,11 +97,11 @@ class ScaledMesh {
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
-  [[nodiscard]] bool has_far_field() const { return far_ != nullptr; }
+  [[nodiscard]] bool has_far_field() const { return far() != nullptr; }
 
   // No value is off by more.
   [[nodiscard]] double doubt() const {
-    return term_ ? std::max(far_ ? far_->doubt() : term_->doubt(), doubt_of_blocks()) : 0.0;
+    return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
   }
 
   // Whether blocks may be evaluated. Below this tolerance fits would round too much.
@@ -125,8 +125,14 @@ class ScaledMesh {
     return terms;
   }
 
- private:
+  // The same by the direct sum.
   void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
+
+ private:
+  // None where the direct sum is as good. Built when first needed.
+  [[nodiscard]] const FarField* far() const;
+  [[nodiscard]] double doubt_of_far_field() const;
+  [[nodiscard]] double most_sources() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values) const;
 
@@ -140,13 +146,13 @@ class ScaledMesh {
   TriangleMesh mesh_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
-  std::unique_ptr<const FarField> far_;       // none where the direct sum is as good
   mutable std::atomic<std::uint64_t> direct_terms_ = 0;
-  mutable std::once_flag rays_built_, grid_built_, changes_built_, blocks_built_;
+  mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
   mutable std::optional<Changes> changes_;
+  mutable std::unique_ptr<const FarField> far_;
   mutable std::unique_ptr<const Blocks> blocks_;
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };

@@ -1,6 +1,7 @@
 #include "core/far/far_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,17 +11,10 @@
 
 namespace raycone {
 
-// What a sample costs hardly grows with the number of sources, but with that of digits: of caps, which are a surface,
-// in proportion, of soups, which may fill space, with its square. Fitted to measurements of five meshes and soups.
-bool far_field_pays(FarSources sources, std::size_t triangles, std::size_t exterior_edges, double samples,
-                    double tolerance) {
-  // Samples per source. At 50^3 samples, a mesh of 10 556 edges would lose a quarter; at 80^3 it wins one.
-  constexpr double kPreparation = 80000;
-  const double digits = std::max(2.0, -std::log10(tolerance));
-  const bool soup = sources == FarSources::kTriangles;
-  const double least = soup ? 120 * digits * digits : 400 * digits;
-  const auto count = static_cast<double>(soup ? triangles : exterior_edges);
-  return samples * (count - least) > kPreparation * count;
+bool far_field_may_pay(double samples) {
+  constexpr double kPreparation = 12500;  // of a source, in units of an exterior edge at a sample
+  constexpr double kSmallPart = 0.04;
+  return kPreparation < kSmallPart * samples;
 }
 
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,
@@ -32,9 +26,32 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   }
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
-  doubt_ =
-      std::min(tolerance + doubt_of_factors(3 * static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
+  doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
   tree_.emplace(std::move(faces.triangles), tolerance);
+  cost_ = cost_in(bounding_box(mesh), tolerance);
+}
+
+double FarField::doubt(double tolerance, double sources) { return tolerance + doubt_of_factors(3 * sources); }
+
+double FarField::cost_in(const Box& box, double tolerance) const {
+  constexpr double kTriangle = 2.5;
+  const double expansion = 2.0 + 0.7 * std::max(2.0, -std::log10(tolerance));  // degrees grow with the digits
+  constexpr std::array kSteps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // of an even sequence
+  SampleTile places;
+  places.clear();
+  for (std::size_t n = 1; n <= kTile; ++n) {
+    Vec3 place;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double turns = static_cast<double>(n) * kSteps[static_cast<std::size_t>(axis)];
+      place[axis] = box.lower[axis] + (turns - std::floor(turns)) * (box.upper[axis] - box.lower[axis]);
+    }
+    places.add(place);
+  }
+  FarTile result;
+  kernel_.sum(*tree_, places, result);
+  const double sum =
+      kTriangle * static_cast<double>(result.near_terms) + expansion * static_cast<double>(result.far_terms);
+  return sum / static_cast<double>(kTile);
 }
 
 std::int64_t FarField::cap_crossings(const Vec3& q) const {

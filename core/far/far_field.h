@@ -19,10 +19,9 @@ namespace raycone {
 
 enum class FarSources { kTriangles, kCaps };
 
-// Whether a far field is estimated to take less time than the sum over all exterior edges or, of a soup, triangles,
-// preparation included. Rather no than yes.
-[[nodiscard]] bool far_field_pays(FarSources sources, std::size_t triangles, std::size_t exterior_edges, double samples,
-                                  double tolerance);
+// Whether preparing a far field takes no more than a small part of what direct sums at so many samples take: then its
+// cost() can be looked at.
+[[nodiscard]] bool far_field_may_pay(double samples);
 
 class FarField final : public BoundaryTerm {
  public:
@@ -37,9 +36,14 @@ class FarField final : public BoundaryTerm {
   void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                        std::span<double> w) const override;
   [[nodiscard]] double doubt() const override { return doubt_; }
+  // That of one with so many sources at most.
+  [[nodiscard]] static double doubt(double tolerance, double sources);
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const override {
     return enclosed_error(boundary_, q, w, crossings);
   }
+
+  // What a sample takes, about, in units of an exterior edge of a direct sum; counted at some places in the mesh's box.
+  [[nodiscard]] double cost() const { return cost_; }
 
   [[nodiscard]] const SourceTree& sources() const { return *tree_; }
 
@@ -49,6 +53,7 @@ class FarField final : public BoundaryTerm {
 
  private:
   [[nodiscard]] std::int64_t cap_crossings(const Vec3& q) const;
+  [[nodiscard]] double cost_in(const Box& box, double tolerance) const;
 
   const Boundary& boundary_;
   FarSources sources_;
@@ -58,6 +63,7 @@ class FarField final : public BoundaryTerm {
   std::optional<SourceTree> tree_;
   bool faces_repeat_ = false;
   double doubt_ = 0;
+  double cost_ = 0;
   mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;
 };
 

@@ -174,13 +174,18 @@ TEST(FarField, ATinyToleranceIsNone) {
 }
 
 TEST(FarField, IsTakenWhereItPays) {
-  constexpr auto kCaps = FarSources::kCaps, kTriangles = FarSources::kTriangles;
-  EXPECT_FALSE(far_field_pays(kCaps, 100000, 500, 1e9, 1e-10));    // few edges
-  EXPECT_FALSE(far_field_pays(kCaps, 100000, 20000, 1e3, 1e-10));  // few samples
-  EXPECT_TRUE(far_field_pays(kCaps, 100000, 20000, 1e6, 1e-10));
-  EXPECT_TRUE(far_field_pays(kCaps, 100000, 3000, 1e6, 1e-4));
-  EXPECT_TRUE(far_field_pays(kTriangles, 100000, 300000, 1e6, 1e-10));
-  EXPECT_FALSE(far_field_pays(kTriangles, 5000, 15000, 1e6, 1e-10));
+  const auto takes = [](const TriangleMesh& mesh, double tolerance, double samples) {
+    const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, nullptr,
+                                           {tolerance, samples});
+    (void)values_of(evaluator, some_points(10));
+    return evaluator.terms().far > 0;
+  };
+  TriangleMesh many = test::sphere(60);  // a hole in each of many places
+  std::erase_if(many.triangles, [](const Triangle& t) { return (t[0] * 7 + t[1] + t[2]) % 3 == 0; });
+  many = weld(std::move(many), {});
+  EXPECT_TRUE(takes(many, 1e-4, 1e6));
+  EXPECT_FALSE(takes(many, 1e-4, 1e5)) << "the tree takes longer than it spares";
+  EXPECT_FALSE(takes(test::open_box(), 1e-4, 1e9)) << "few edges";
 }
 
 // A narrow ribbon that winds up costs its own area, not that of the cylinder it winds about; a round hole is halved.

@@ -187,11 +187,12 @@ TEST(Caps, OfAStripTakeLittleMoreThanItsArea) {
   EXPECT_LT(area(make_caps(Boundary(ribbon), 0.1).mesh), 1.1 * area(ribbon));
 }
 
-// Between two places of a box the winding number changes by integers, and by what the bound says.
+// Between two places of a box the winding number changes by integers, and by what the bound says; in the middle it is
+// the mean, but for integers and what the bound of second derivatives says.
 TEST(ChangeBound, HoldsBetweenAllPlaces) {
   test::Random random(6);
   int tried = 0;
-  double largest = 0.0;  // part of the bound that was reached
+  double largest = 0.0, largest_bend = 0.0;  // part of the bound that was reached
   for (int i = 0; i < 40; ++i) {
     const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
     const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
@@ -199,17 +200,24 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
       const Vec3 a = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
       const double size = std::pow(10.0, test::uniform(random, -3, 0));
       const Vec3 b = a + size * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
-      const double most = bound.in({a, b}, 1e6) * std::sqrt(dot(b - a, b - a));
+      const ChangeBound::Bounds bounds = bound.in({a, b}, 1e6);
+      const double most = bounds.gradient * std::sqrt(dot(b - a, b - a));
       if (!(most < 0.5)) continue;
-      const double change = test::direct_winding_number(mesh, b) - test::direct_winding_number(mesh, a);
-      const double beside_integers = std::abs(change - std::nearbyint(change));
-      EXPECT_LE(beside_integers, most);
-      largest = std::max(largest, beside_integers / most);
+      const double at_a = test::direct_winding_number(mesh, a), at_b = test::direct_winding_number(mesh, b);
+      const auto beside_integers = [](double w) { return std::abs(w - std::nearbyint(w)); };
+      EXPECT_LE(beside_integers(at_b - at_a), most);
+      largest = std::max(largest, beside_integers(at_b - at_a) / most);
       ++tried;
+      const double most_bend = bounds.second * dot(b - a, b - a) / 4;
+      if (!(most_bend > 1e-6 && most_bend < 0.5)) continue;  // not rounding alone
+      const double bend = beside_integers(at_a + at_b - 2 * test::direct_winding_number(mesh, 0.5 * a + 0.5 * b));
+      EXPECT_LE(bend, most_bend);
+      largest_bend = std::max(largest_bend, bend / most_bend);
     }
   }
   EXPECT_GT(tried, 200);
   EXPECT_GT(largest, 0.2) << "the bound is far off";
+  EXPECT_GT(largest_bend, 0.1) << "that of second derivatives is";
 }
 
 }  // namespace

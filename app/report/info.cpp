@@ -10,12 +10,6 @@
 namespace raycone {
 namespace {
 
-// Cost model of a lattice on one thread, measured (docs/benchmarks.md): each face is scanned once, each sample written
-// once, and takes one complex factor per exterior edge.
-constexpr double kSecondsPerFace = 25e-9;
-constexpr double kSecondsPerSample = 3e-9;
-constexpr double kSecondsPerEdgeAndSample = 2.1e-9;
-
 // 1234567 as "1 234 567".
 std::string readable(std::uint64_t number) {
   std::string digits = std::to_string(number);
@@ -37,15 +31,10 @@ std::string readable_seconds(double seconds) {
   return text;
 }
 
-std::string cost_of(const Lattice& lattice, const MeshInfo& info, int threads) {
-  const auto [nx, ny, nz] = lattice.counts;
-  const double samples = static_cast<double>(nx) * static_cast<double>(ny) * static_cast<double>(nz);
-  const double edges = static_cast<double>(info.statistics.exterior_edges);
-  const double seconds = (static_cast<double>(info.faces) * kSecondsPerFace +
-                          samples * (kSecondsPerSample + edges * kSecondsPerEdgeAndSample)) /
-                         threads;
-  return readable_seconds(seconds) + " for " + std::to_string(nx) + " x " + std::to_string(ny) + " x " +
-         std::to_string(nz) + " samples";
+std::string cost_of(const CostedLattice& costed, int threads) {
+  const auto [nx, ny, nz] = costed.lattice.counts;
+  return readable_seconds(costed.seconds / threads) + " for " + std::to_string(nx) + " x " + std::to_string(ny) +
+         " x " + std::to_string(nz) + " samples";
 }
 
 std::string intersections_of(const IntersectionInfo& found) {
@@ -96,7 +85,9 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("warnings", names.empty() ? "none" : names);
   const std::string on_threads = counted(static_cast<std::uint64_t>(threads), "thread");
   std::string heading = "cost on " + on_threads;
-  for (const Lattice& lattice : costed.lattices) table.row(std::exchange(heading, ""), cost_of(lattice, info, threads));
+  for (const CostedLattice& lattice : costed.lattices) {
+    table.row(std::exchange(heading, ""), cost_of(lattice, threads));
+  }
   if (costed.no_more) table.row("no lattice", *costed.no_more);
   return plain_text(info.mesh, "?") + "\n" + table.text();
 }

@@ -32,9 +32,14 @@ struct MeshInfo {
   std::optional<IntersectionInfo> intersections;  // where asked for
 };
 
-// Lattices whose cost the text tells.
+struct CostedLattice {
+  Lattice lattice;
+  double seconds;  // of one thread, about
+};
+
+// Those that the text tells of.
 struct CostedLattices {
-  std::vector<Lattice> lattices;
+  std::vector<CostedLattice> lattices;
   std::optional<std::string> no_more;  // why there are no others
 };
 

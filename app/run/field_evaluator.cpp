@@ -10,15 +10,8 @@
 namespace raycone {
 namespace {
 
-// Rules do not depend on the tolerance: where nothing else is asked for, a rough one is cheaper. Values near a
-// threshold that is a half-integer are summed again, but near others they are settled, which takes long.
-double tolerance_of(const FieldOptions& options) {
-  if (!(options.tolerance > 0.0) || !options.rule_only()) return options.tolerance;
-  const double rough = thresholds_to_settle(options.rule).empty() ? 1e-3 : 1e-6;
-  return std::max(options.tolerance, rough);
-}
-
-// How many of them are evaluated: on lattices, where nothing but the rule is asked for, about one in so many.
+// Of so many samples about how many are evaluated: on lattices, where nothing but the rule is asked for, one in
+// sixteen.
 double samples_of(const FieldOptions& options, double samples) {
   constexpr double kCertified = 16;
   return options.rule_only() ? samples / kCertified : samples;
@@ -32,6 +25,12 @@ std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const Fi
 
 }  // namespace
 
+double tolerance_of_evaluation(const FieldOptions& options) {
+  if (!(options.tolerance > 0.0) || !options.rule_only()) return options.tolerance;
+  const double rough = thresholds_to_settle(options.rule).empty() ? 1e-3 : 1e-6;
+  return std::max(options.tolerance, rough);
+}
+
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,
                                double samples)
     : band_(options.band),
@@ -42,7 +41,7 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
                                               : std::nullopt),
       gradient_(gradient_for(mesh, options, edges)),
       winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges,
-                      Accuracy{tolerance_of(options), samples_of(options, samples)}) {}
+                      Accuracy{tolerance_of_evaluation(options), samples_of(options, samples)}) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

@@ -16,6 +16,11 @@
 
 namespace raycone {
 
+// The tolerance that winding numbers are evaluated with, turns. Rules do not depend on it: where nothing else is asked
+// for, a rough one is cheaper. Values near a threshold that is a half-integer are then summed again, but near others
+// they are settled, which takes long.
+[[nodiscard]] double tolerance_of_evaluation(const FieldOptions& options);
+
 class FieldEvaluator {
  public:
   // Prepares what `options` need, but for prepare_points(). `mesh` and `edges` as for

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/options/field_options.h"
 #include "app/process/messages.h"
 #include "app/process/usage_error.h"
 #include "app/report/info.h"
@@ -19,6 +20,7 @@
 #include "app/run/volume_input.h"
 #include "app/run/written_files.h"
 #include "core/data/warning.h"
+#include "core/evaluation/winding_number.h"
 #include "core/intersections/self_intersections.h"
 #include "core/mesh/mesh_statistics.h"
 #include "io/files/file_error.h"
@@ -29,14 +31,18 @@ namespace raycone {
 namespace {
 
 // The default, and what many go on to.
-CostedLattices costed_lattices(const Box& bounds) {
+CostedLattices costed_lattices(const MeshToEvaluate& input, const Box& bounds) {
+  constexpr double kMany = 1 << 24;  // samples
   CostedLattices costed;
+  const WindingNumberEvaluator evaluator(input.mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest,
+                                         &input.edges, {FieldOptions{}.tolerance, kMany});
   std::vector<Warning> warnings;  // of flat sides: none with one count for all axes
   try {
     for (const std::int64_t resolution : {std::int64_t{64}, std::int64_t{256}}) {
       LatticeRequest request;
       request.sampling = LongestSide{resolution};
-      costed.lattices.push_back(choose_lattice(bounds, request, warnings));
+      const Lattice lattice = choose_lattice(bounds, request, warnings);
+      costed.lattices.push_back({lattice, evaluator.estimated_seconds(lattice)});
     }
   } catch (const LimitError& error) {
     costed.no_more = error.what();
@@ -91,7 +97,9 @@ class InfoRun {
     info.opposite_duplicate_faces = input.defects.cancelling_pairs;
     const FoundIntersections intersections = find_intersections(mesh);
     if (wants_intersections()) info.intersections = {intersections.pairs};
-    print(listing_.entry(info, costed_lattices(info.bounds), limits_.threads()));
+    const bool costs = command_.format == InfoFormat::kText;
+    const CostedLattices costed = costs ? costed_lattices(input, info.bounds) : CostedLattices{};
+    print(listing_.entry(info, costed, limits_.threads()));
     return judge(options.path,
                  unmet_requirements(command_.required, mesh, info.statistics, input.defects, intersections));
   }

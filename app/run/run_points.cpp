@@ -3,9 +3,12 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -60,6 +63,18 @@ std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
   return reader;
 }
 
+// About how many there are, to prepare for. What comes through a pipe may be a few questions: preparing for many would
+// keep them waiting.
+double expected_points(const PointReader& reader, const std::string& path) {
+  constexpr double kInPipe = 1e4;
+  constexpr double kBytes = 25;  // of a line of text
+  if (const std::optional<std::uint64_t> size = reader.size()) return static_cast<double>(*size);
+  std::error_code error;
+  const bool is_file = path != "-" && std::filesystem::is_regular_file(path, error);
+  const std::uintmax_t bytes = is_file ? std::filesystem::file_size(path, error) : 0;
+  return is_file && !error ? static_cast<double>(bytes) / kBytes : kInPipe;
+}
+
 // The mesh as a whole, where something is asked about it or points are to be drawn from it; else one without triangles.
 TriangleMesh load(const PointsCommand& command, MeshRun& run, std::optional<LabelledParts>& parts) {
   if (!command.field.has(Field::kLabel)) return run.load_mesh(files_written(command));
@@ -85,8 +100,7 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
   }
 
   check_points_memory(command.mesh, report.faces, command.field, limits);
-  constexpr double kUnknown = 1e6;  // samples of a stream
-  const auto points = static_cast<double>(reader->size().value_or(kUnknown));
+  const double points = expected_points(*reader, command.sample ? "-" : command.points);
   std::optional<PointLabels> labels;
   if (parts) labels.emplace(*parts, asked.field, points, run);
   if (command.field.labels_only()) {

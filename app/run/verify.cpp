@@ -353,7 +353,7 @@ Verification verify(const std::string& name, const VerifiedMeshes& meshes, const
     check_repeated(name, complete[n], again);
   }
 
-  const double accuracy = accuracy_of(evaluator.winding_number(), meshes.mesh, options.tolerance);
+  const double accuracy = accuracy_of(evaluator.winding_number(), meshes.mesh, tolerance_of_evaluation(options));
   Verification verification =
       verify_by_definition(name, meshes, complete, {accuracy, options.rule, band_width, diagnostics.error_bound});
   for (std::size_t n = 0; n < samples.size(); ++n) {

@@ -25,6 +25,8 @@ double direct_cost(const ScaledMesh& mesh) {
                                  : kTriangle * static_cast<double>(mesh.mesh().triangles.size());
 }
 
+double once_cost(const ScaledMesh& mesh) { return kFit + kInTree * direct_cost(mesh); }
+
 double gap_to_half_integer(double w) { return 0.5 - std::abs(w - ((w + 0x1.8p52) - 0x1.8p52)); }
 
 }  // namespace
@@ -51,11 +53,25 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
     }
   }
   constexpr double kSafety = 0.75;  // estimates are no better
-  const double once = kFit + kInTree * direct;
   if (!mesh.blocks().are_sound) return std::nullopt;
   if (forced) return axes;
-  if (mesh.blocks().sums.cost(axes) * samples + once > kSafety * direct * samples) return std::nullopt;
+  if (mesh.blocks().sums.cost(axes) * samples + once_cost(mesh) > kSafety * direct * samples) return std::nullopt;
   return axes;
+}
+
+double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice) {
+  constexpr double kUnit = 5.2e-9;  // a triangle of blocks at a sample
+  constexpr double kSource = 3e-5;  // in the tree
+  if (mesh.is_closed()) return 0.0;
+  double samples = 1.0;
+  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
+  if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
+    return kUnit * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
+  }
+  if (const FarField* const far = mesh.far_field()) {
+    return kUnit * kEdge * far->cost() * samples + kSource * static_cast<double>(far->sources().triangles().size());
+  }
+  return kUnit * direct_cost(mesh) * samples;
 }
 
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,

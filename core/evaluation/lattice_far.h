@@ -17,6 +17,10 @@ namespace raycone {
 // the mesh and the lattice alone.
 [[nodiscard]] std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice& lattice);
 
+// What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
+// goes about it. Seconds of a machine that docs/benchmarks.md describes.
+[[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice);
+
 // `values` are the crossings of the samples of `block`, x fastest, and `cap_crossings` those of mesh.blocks().caps; of
 // no account where values do not depend on crossings. Turns each into the winding number within the tolerance. A value
 // that may be a half-integer, where rules have their thresholds, is as ScaledMesh::set_values() sets it. `done`, where

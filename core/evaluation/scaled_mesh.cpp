@@ -32,8 +32,8 @@ constexpr double kMostTolerance = 0x1p-4;  // more would not be settled at half-
 constexpr double kFarShare = 0.75;         // of the tolerance; near triangles round, too
 
 // The far field, where it is asked for and estimated to be cheaper. `direct` is what it stands in for.
-std::unique_ptr<const FarField> far_field(const TriangleMesh& mesh, const Boundary& boundary,
-                                          const BoundaryTerm* direct, const EvaluatorOptions& options) {
+std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const Boundary& boundary,
+                                               const BoundaryTerm* direct, const EvaluatorOptions& options) {
   const double tolerance = std::min(options.accuracy.tolerance, kMostTolerance);
   if (!direct || !(tolerance >= kLeastTolerance)) return nullptr;
   const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
@@ -107,8 +107,8 @@ const Blocks& ScaledMesh::blocks() const {
   return *blocks_;
 }
 
-const FarField* ScaledMesh::far() const {
-  std::call_once(far_built_, [this] { far_ = far_field(mesh_, boundary_, term_.get(), options_); });
+const FarField* ScaledMesh::far_field() const {
+  std::call_once(far_built_, [this] { far_ = make_far_field(mesh_, boundary_, term_.get(), options_); });
   return far_.get();
 }
 
@@ -131,7 +131,7 @@ double ScaledMesh::most_sources() const {
 }
 
 void ScaledMesh::prepare_points() const {
-  (void)far();
+  (void)far_field();
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();
   } else {
@@ -150,7 +150,7 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
-  if (!far()) {
+  if (!far_field()) {
     set_direct_values(samples, crossings, values);
     return;
   }

@@ -97,7 +97,9 @@ class ScaledMesh {
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
-  [[nodiscard]] bool has_far_field() const { return far() != nullptr; }
+  [[nodiscard]] bool has_far_field() const { return far_field() != nullptr; }
+  // None where the direct sum is as good. Built when first needed.
+  [[nodiscard]] const FarField* far_field() const;
 
   // No value is off by more.
   [[nodiscard]] double doubt() const {
@@ -129,8 +131,6 @@ class ScaledMesh {
   void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
 
  private:
-  // None where the direct sum is as good. Built when first needed.
-  [[nodiscard]] const FarField* far() const;
   [[nodiscard]] double doubt_of_far_field() const;
   [[nodiscard]] double most_sources() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,

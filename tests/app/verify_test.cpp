@@ -332,6 +332,23 @@ TEST(Verify, ComparesDistancesUpToTheBandOnly) {
   EXPECT_NE(error_of([&] { return verify("m", {mesh}, evaluator, options, 0.75, draw.samples()); }), "");
 }
 
+// Of a far field: winding numbers are rough where nothing but the rule is asked for.
+TEST(Verify, KnowsHowRoughWindingNumbersOfRulesAre) {
+  TriangleMesh mesh = sphere(60);
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return (t[0] * 7 + t[1] + t[2]) % 3 == 0; });
+  mesh = weld(std::move(mesh), {});
+  FieldOptions options;
+  options.fields = {Field::kInside};
+  const FieldEvaluator evaluator(mesh, options, nullptr, 1e9);
+  const std::vector<Vec3> points = random_points(30);
+  FieldSamples samples(options);
+  evaluator.evaluate(points, samples, nullptr);
+  EXPECT_GT(evaluator.winding_number().terms().far, 0U);
+  SampleDraw draw(points.size());
+  draw.offer(points, samples.numbers());
+  EXPECT_EQ(verify("m", {mesh}, evaluator, options, kInfinity, draw.samples()).samples, points.size());
+}
+
 TEST(Verify, WrongValuesAreInternalErrorsInOneLine) {
   testing::internal::CaptureStderr();
   ExitCode code{};

@@ -129,12 +129,16 @@ TEST(SourceTree, HoldsEachTriangleInEveryNodeAbove) {
   ASSERT_EQ(tree.nodes().front().next, tree.nodes().size());
   for (std::uint32_t number = 0; number < tree.nodes().size(); ++number) {
     const SourceNode& node = tree.nodes()[number];
+    double twice_area = 0.0;
     for (const SolidTriangle& t : triangles_of(tree, node)) {
+      const Vec3 normal = cross(t.b - t.a, t.c - t.a);
+      twice_area += std::sqrt(dot(normal, normal));
       for (const Vec3& v : {t.a, t.b, t.c}) {
         const Vec3 y = v - node.centre;
         EXPECT_LE(std::sqrt(dot(y, y)), node.radius);
       }
     }
+    EXPECT_LE(twice_area / 2, node.area);
     std::uint32_t covered = node.own_end;
     for (std::uint32_t child = number + 1; child < node.next; child = tree.nodes()[child].next) {
       EXPECT_EQ(tree.nodes()[child].begin, covered);

@@ -322,7 +322,7 @@ MUTANTS = [
          "const double needed = 0 * candidate.change + mesh_.doubt()")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
         ("core/evaluation/rule_blocks.cpp", "return visit(index + from, index + to, n - caps);",
-         "return visit(index + from, index + to, n);")]),
+         "return visit(index + from, index + to, n - 0 * caps);")]),
     Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
         ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
@@ -457,6 +457,29 @@ MUTANTS = [
     Mutant("nearly_an_axis", "an axis that is the world's but for a little is none of them", [
         ("core/data/placed_lattice.cpp", "if (step[static_cast<int>(a)] == 0.0) continue;",
          "if (std::abs(step[static_cast<int>(a)]) < 1e-12) continue;")]),
+
+    # --- The far field ---
+    Mutant("moments_off", "moments of triangles are integrals along their edges", [
+        ("core/far/multipole.cpp", "const double factor = -1 / (kFourPi * (n + 1));",
+         "const double factor = -1.01 / (kFourPi * (n + 1));")]),
+    Mutant("tail_too_small", "what is beyond the last degree is within its bound", [
+        ("core/far/multipole.cpp", "return kUp * area / kFourPi * power", "return 0.99 * area / kFourPi * power")]),
+    Mutant("norm_too_small", "a degree is within the norm of its moments", [
+        ("core/far/multipole.cpp", "bounds.size[i] = kUp * std::sqrt(square)",
+         "bounds.size[i] = 0.99 * std::sqrt(square)")]),
+    Mutant("shifts_off", "a node has the moments of its children, shifted to its centre", [
+        ("core/far/source_tree.cpp", "(1 / node.unit) * (part.centre - node.centre)",
+         "(1.01 / node.unit) * (part.centre - node.centre)")]),
+    Mutant("radius_too_small", "no point of a node is farther from its centre than its radius", [
+        ("core/far/source_tree.cpp", "  node.radius *= 1 + kRounding;", "  node.radius *= 0.99;")]),
+    Mutant("area_too_small", "a node has the area of its triangles", [
+        ("core/far/source_tree.cpp", "  node.area *= 1 + kRounding;", "  node.area *= 0.99;")]),
+    Mutant("bends_less", "second derivatives of a piece are at most 2 L / (4 pi d^3)", [
+        ("core/boundary/change_bound.cpp", "second += 2 * source.length / cube;",
+         "second += 0.2 * source.length / cube;")]),
+    Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
+        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.bend + mesh_.doubt()",
+         "const double needed = 0 * candidate.bend + mesh_.doubt()")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

@@ -13,57 +13,54 @@ namespace {
 
 constexpr DoubleDouble kZero{0.0}, kOne{1.0};
 
-// Edge i leads from corner i to the next; to_query[i] from corner i to the query.
-struct Differences {
-  std::array<DoubleDoubleVec3, 3> edges, to_query;
-
-  [[nodiscard]] std::size_t longest_edge() const {
-    const std::array<double, 3> squares{square(edges[0].rounded()), square(edges[1].rounded()),
-                                        square(edges[2].rounded())};
-    return static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
-  }
-};
-
 // An edge that short is a point: beyond, products would underflow.
 constexpr double kPoint = 1e-250;
 // A triangle that thin beside its longest edge, 2^-56, is the segments of its edges.
 constexpr double kThin = 0x1p-112;
 
-double square_to_segment(const DoubleDoubleVec3& to_query, const DoubleDoubleVec3& edge) {
-  const DoubleDouble edge_square = dot(edge, edge);
-  if (edge_square.high < kPoint) return square(to_query.rounded());
-  DoubleDouble along = dot(to_query, edge) / edge_square;
+}  // namespace
+
+AccurateTriangle::AccurateTriangle(const Vec3& a, const Vec3& b, const Vec3& c)
+    : corners_{a, b, c},
+      edges_{exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)},
+      edge_squares_{dot(edges_[0], edges_[0]), dot(edges_[1], edges_[1]), dot(edges_[2], edges_[2])} {
+  const std::array<double, 3> squares{square(edges_[0].rounded()), square(edges_[1].rounded()),
+                                      square(edges_[2].rounded())};
+  longest_ = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+  const DoubleDoubleVec3 to_apex = DoubleDouble{-1.0} * edges_[(longest_ + 2) % 3];
+  is_thin_ = edge_squares_[longest_].high < kPoint;
+  if (is_thin_) return;
+  apex_ = dot(to_apex, edges_[longest_]) / edge_squares_[longest_];
+  height_ = to_apex - apex_ * edges_[longest_];
+  height_square_ = dot(height_, height_);
+  is_thin_ = height_square_.high < kThin * edge_squares_[longest_].high;
+}
+
+double AccurateTriangle::square_to_segment(const DoubleDoubleVec3& to_query, std::size_t edge) const {
+  if (edge_squares_[edge].high < kPoint) return square(to_query.rounded());
+  DoubleDouble along = dot(to_query, edges_[edge]) / edge_squares_[edge];
   if (along < kZero) along = kZero;
   if (kOne < along) along = kOne;
-  return square((to_query - along * edge).rounded());
+  return square((to_query - along * edges_[edge]).rounded());
 }
 
 // Of the triangle's plane; infinity where its closest point is outside of the triangle.
-double square_to_plane(const Differences& d) {
-  const std::size_t longest = d.longest_edge();
-  const DoubleDoubleVec3 &edge = d.edges[longest], &to_query = d.to_query[longest];
-  const DoubleDoubleVec3 to_apex = DoubleDouble{-1.0} * d.edges[(longest + 2) % 3];
-  const DoubleDouble edge_square = dot(edge, edge);
-  if (edge_square.high < kPoint) return HUGE_VAL;
-  const DoubleDouble apex = dot(to_apex, edge) / edge_square;
-  const DoubleDoubleVec3 height = to_apex - apex * edge;
-  const DoubleDouble height_square = dot(height, height);
-  if (height_square.high < kThin * edge_square.high) return HUGE_VAL;
-  const DoubleDouble along = dot(to_query, edge) / edge_square;
-  const DoubleDoubleVec3 beside = to_query - along * edge;
-  const DoubleDouble up = dot(beside, height) / height_square;
-  const bool inside = !(up < kZero) && !(along < up * apex) && !(kOne - along < up * (kOne - apex));
-  return inside ? square((beside - up * height).rounded()) : HUGE_VAL;
+double AccurateTriangle::square_to_plane(const Edges& to_query) const {
+  if (is_thin_) return HUGE_VAL;
+  const DoubleDoubleVec3& edge = edges_[longest_];
+  const DoubleDouble along = dot(to_query[longest_], edge) / edge_squares_[longest_];
+  const DoubleDoubleVec3 beside = to_query[longest_] - along * edge;
+  const DoubleDouble up = dot(beside, height_) / height_square_;
+  const bool inside = !(up < kZero) && !(along < up * apex_) && !(kOne - along < up * (kOne - apex_));
+  return inside ? square((beside - up * height_).rounded()) : HUGE_VAL;
 }
 
-}  // namespace
-
-double accurate_squared_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  const Differences d{{exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)},
-                      {exact_difference(p, a), exact_difference(p, b), exact_difference(p, c)}};
-  double least = square_to_plane(d);
+double AccurateTriangle::squared_distance(const Vec3& p) const {
+  const Edges to_query{exact_difference(p, corners_[0]), exact_difference(p, corners_[1]),
+                       exact_difference(p, corners_[2])};
+  double least = square_to_plane(to_query);
   if (least == HUGE_VAL) {
-    for (std::size_t i = 0; i < 3; ++i) least = std::min(least, square_to_segment(d.to_query[i], d.edges[i]));
+    for (std::size_t i = 0; i < 3; ++i) least = std::min(least, square_to_segment(to_query[i], i));
   }
   return least;
 }

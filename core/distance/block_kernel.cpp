@@ -241,10 +241,11 @@ void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, La
   alignas(64) std::array<double, kWidth> is_sure;
   hn::Store(hn::IfThenElseZero(sure, hn::Set(d, 1.0)), d, is_sure.data());
   const TriangleDistance triangle = pack.triangle(slot);
+  std::optional<AccurateTriangle> accurate;
   for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
     if (is_sure[lane] != 0.0) continue;
     const std::size_t n = first + lane;
-    group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}));
+    group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}, accurate));
   }
 }
 
@@ -385,7 +386,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace raycone {
-
 BlockKernel block_kernel([[maybe_unused]] SimdLevel level) {
 #if HWY_ARCH_X86
   const SimdLevel available = available_level(level);

@@ -1,7 +1,6 @@
 #include "core/mesh/triangle_runs.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "core/machine/threads.h"
@@ -9,15 +8,23 @@
 namespace raycone {
 namespace {
 
+// Centres go along with triangles: what is looked at one after the other then lies in memory so.
+struct CenteredTriangle {
+  Vec3 center;
+  std::uint32_t number;
+};
+
 // Sorts triangles into the tree's order.
 class RunOrder {
  public:
-  explicit RunOrder(const TriangleMesh& mesh) : centers_(mesh.triangles.size()), triangles_(mesh.triangles.size()) {
-    std::iota(triangles_.begin(), triangles_.end(), std::uint32_t{0});
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-      const Box box = box_of_triangle(mesh, i);
-      centers_[i] = 0.5 * box.lower + 0.5 * box.upper;
-    }
+  explicit RunOrder(const TriangleMesh& mesh) : triangles_(mesh.triangles.size()) {
+    parallel_for(triangles_.size(), kWorthATask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const auto number = static_cast<std::uint32_t>(n);
+        const Box box = box_of_triangle(mesh, number);
+        triangles_[n] = {0.5 * box.lower + 0.5 * box.upper, number};
+      }
+    });
   }
 
   // The triangles in runs of `width` that are close together, these in runs of `width` runs, and so on.
@@ -25,22 +32,30 @@ class RunOrder {
     std::size_t run = width;
     while (run < triangles_.size()) run *= width;
     split(0, triangles_.size(), run / width, width);
-    return std::move(triangles_);
+    std::vector<std::uint32_t> numbers(triangles_.size());
+    std::ranges::transform(triangles_, numbers.begin(), &CenteredTriangle::number);
+    return numbers;
   }
 
  private:
+  static constexpr std::size_t kWorthATask = 4096;
+
   // Arranges [begin, end), the start of which is one of a run of `run`, into runs of that and of shorter ones.
   void split(std::size_t begin, std::size_t end, std::size_t run, std::size_t width) {
     while (run >= width && end - begin <= run) run /= width;
     if (run < width) return;
     const std::size_t runs = (end - begin + run - 1) / run;
     const std::size_t middle = begin + (runs + 1) / 2 * run;
-    const int axis = longest_axis(begin, end);
-    const auto at = [this](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(n); };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-      return centers_[a][axis] != centers_[b][axis] ? centers_[a][axis] < centers_[b][axis] : a < b;
-    });
-    constexpr std::size_t kWorthATask = 4096;
+    switch (longest_axis(begin, end)) {
+      case 0:
+        halve<&Vec3::x>(begin, middle, end);
+        break;
+      case 1:
+        halve<&Vec3::y>(begin, middle, end);
+        break;
+      default:
+        halve<&Vec3::z>(begin, middle, end);
+    }
     if (end - begin < kWorthATask) {
       split(begin, middle, run, width);
       split(middle, end, run, width);
@@ -53,21 +68,27 @@ class RunOrder {
     });
   }
 
+  template <double Vec3::*coordinate>
+  void halve(std::size_t begin, std::size_t middle, std::size_t end) {
+    const auto at = [this](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(n); };
+    std::nth_element(at(begin), at(middle), at(end), [](const CenteredTriangle& a, const CenteredTriangle& b) {
+      const double x = a.center.*coordinate, y = b.center.*coordinate;
+      return x != y ? x < y : a.number < b.number;
+    });
+  }
+
   [[nodiscard]] int longest_axis(std::size_t begin, std::size_t end) const {
-    Box box{centers_[triangles_[begin]], centers_[triangles_[begin]]};
+    Vec3 lower = triangles_[begin].center, upper = lower;
     for (std::size_t n = begin; n < end; ++n) {
-      const Vec3& center = centers_[triangles_[n]];
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lower[axis] = std::min(box.lower[axis], center[axis]);
-        box.upper[axis] = std::max(box.upper[axis], center[axis]);
-      }
+      const Vec3& center = triangles_[n].center;
+      lower = {std::min(lower.x, center.x), std::min(lower.y, center.y), std::min(lower.z, center.z)};
+      upper = {std::max(upper.x, center.x), std::max(upper.y, center.y), std::max(upper.z, center.z)};
     }
-    const Vec3 sides = box.upper - box.lower;
+    const Vec3 sides = upper - lower;
     return sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
   }
 
-  std::vector<Vec3> centers_;
-  std::vector<std::uint32_t> triangles_;
+  std::vector<CenteredTriangle> triangles_;
 };
 
 }  // namespace

@@ -95,7 +95,8 @@ TriangleMesh MeshParts::read(std::size_t file) {
   transform_ = transformed.transform;
   if (options_.parts.by == PartsBy::kGroup && names_.empty()) {
     if (read.parsed.groups.runs.empty()) {
-      throw InputError(known.read.path + ": its format has no groups, expected OBJ, STL, glTF or 3MF, or --parts component");
+      throw InputError(known.read.path +
+                       ": its format has no groups, expected OBJ, STL, glTF or 3MF, or --parts component");
     }
     groups_ = std::move(read.parsed.groups);
   }

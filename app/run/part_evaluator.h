@@ -19,8 +19,8 @@ class PartEvaluator {
   // `samples`: about how many it is for.
   PartEvaluator(MeshToEvaluate part, const FieldOptions& options, double samples);
 
-  // The samples of `lattice` that may be inside: those of the part's box where it is closed, outside is outside, and the
-  // lattice lies along the axes.
+  // The samples of `lattice` that may be inside: those of the part's box where it is closed, outside is outside, and
+  // the lattice lies along the axes.
   [[nodiscard]] static LatticeBlock reach(const PlacedLattice& lattice, const MeshToEvaluate& part, const Rule& rule);
 
   // What is asked of the part: whether the rule holds.

@@ -384,8 +384,11 @@ MUTANTS = [
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
         ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kUnderflow)", "(std::abs(forth) + std::abs(back))")]),
-    Mutant("signatures_drop_out", "a vertex of more faces than signatures may have twins", [
-        ("core/mesh/vertex_links.h", "const bool no_place = _mm_extract_epi16(before, 7) != 0;", "const bool no_place = false;")]),
+    Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
+        ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
+    Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [
+        ("core/mesh/exterior_edges.cpp", "if ((next_meets | next_waits) == 0) crowd_.push_back({t.lowest, t.next, 1});",
+         "")]),
     Mutant("labels_are_components", "labels that a triangle joins are one component", [
         ("core/mesh/components.cpp", "    sets.join(a, c);\n", "")]),
     Mutant("surface_is_not_the_mean", "on its own samples an open piece counts with the mean of both sides", [

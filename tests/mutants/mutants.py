@@ -361,6 +361,9 @@ MUTANTS = [
          "first = found_first;")]),
 
     # --- Orientation ---
+    Mutant("copies_with_marks_of_their_order", "faces of the same corners mark the same bits, whatever their order", [
+        ("core/orientation/unique_faces.cpp", "square(t[0]) + square(t[1]) + square(t[2])",
+         "square(t[0]) + 3 * square(t[1]) + square(t[2])")]),
     Mutant("closed_relation_not_kept", "patches that agree as stored keep their relation", [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),

@@ -60,8 +60,8 @@ td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space:
 td.name { overflow-wrap: anywhere; min-width: 9rem; }
 td.message { overflow-wrap: anywhere; min-width: 9rem; }
 .filter { display: flex; flex-wrap: wrap; gap: .4rem; }
-.filter button { font: inherit; font-size: 13px; color: inherit; background: var(--panel); border: 1px solid var(--line);
-  border-radius: 1rem; padding: .15rem .7rem; cursor: pointer; }
+.filter button { font: inherit; font-size: 13px; color: inherit; background: var(--panel);
+  border: 1px solid var(--line); border-radius: 1rem; padding: .15rem .7rem; cursor: pointer; }
 .filter button[aria-pressed=true] { color: var(--paper); background: var(--mark); border-color: var(--mark); }
 td img { display: block; width: 48px; height: 48px; object-fit: contain; image-rendering: pixelated; }
 )";

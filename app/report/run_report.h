@@ -59,7 +59,7 @@ struct RunReport {
   std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
   std::vector<FileRead> companions;     // what the mesh refers to
   std::string sha256;
-  std::string unit;  // of the mesh file's coordinates, where its format has one
+  std::string unit;               // of the mesh file's coordinates, where its format has one
   std::vector<FileRead> meshes;   // all of them, where there are labels
   std::vector<PartReport> parts;  // likewise
   std::string output;

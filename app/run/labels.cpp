@@ -150,7 +150,7 @@ void LabelledParts::note(const MeshToEvaluate& part) {
 // Where the meshes are one mesh, too, the warnings are about that.
 void LabelledParts::warn_about_file() {
   if (cut_edges_ > 0) warnings_.push_back(unorientable(cut_edges_));
-  for (const Warning& warning : warnings_about(defects_)) warnings_.push_back(warning);
+  for (const Warning& warning : warnings_about(defects_, mesh_.orient)) warnings_.push_back(warning);
   if (!whole_) run_.warn_about(parts_.files()[parts_.file_of(next_ - 1)].read.path, warnings_);
   warnings_.clear();
   defects_ = {};

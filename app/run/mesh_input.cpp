@@ -95,15 +95,15 @@ MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options) {
   VertexLinks links(result.mesh.vertices.size());
   result.edges = exterior_edges(result.mesh, &links);
   result.defects = mesh_defects(result.mesh, result.edges, links);
-  // What faces inward then is a cavity of an open body.
-  if (options.orient == Orient::kAuto) result.defects.reversed_components = 0;
+  // What faces inward then beside open edges may be a cavity of an open body.
+  if (options.orient == Orient::kAuto && !result.edges.empty()) result.defects.reversed_components = 0;
   return result;
 }
 
 MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
   MeshToEvaluate result = oriented_mesh(welded_mesh(std::move(as_read), options, warnings), options);
   if (const std::uint64_t cut = result.orientation.cut_edges) warnings.push_back(unorientable(cut));
-  std::ranges::move(warnings_about(result.defects), std::back_inserter(warnings));
+  std::ranges::move(warnings_about(result.defects, options.orient), std::back_inserter(warnings));
   return result;
 }
 

@@ -13,31 +13,36 @@ std::string counted_as(std::uint64_t count, const char* one, const char* several
   return std::to_string(count) + " " + (count == 1 ? one : several);
 }
 
-Warning reversed_warning(const MeshDefects& defects) {
-  const std::string help = "; --orient auto turns ";
+// What --orient auto would do, where it has not been done.
+std::string help(Orient orient, const char* what) {
+  return orient == Orient::kAuto ? "" : std::string("; --orient auto ") + what;
+}
+
+Warning reversed_warning(const MeshDefects& defects, Orient orient) {
   if (defects.negative_volume) {
-    return {"reversed", "the mesh is closed, but its volume is negative" + help + "it outward"};
+    return {"reversed", "the mesh is closed, but its volume is negative" + help(orient, "turns it outward")};
   }
+  const bool one = defects.reversed_components == 1;
   return {"reversed", counted_as(defects.reversed_components, "closed component that no other surrounds has",
                                  "closed components that no other surrounds have") +
-                          " a negative volume" + help + (defects.reversed_components == 1 ? "it" : "them") +
-                          " outward"};
+                          " a negative volume" + help(orient, one ? "turns it outward" : "turns them outward")};
 }
 
 }  // namespace
 
-std::vector<Warning> warnings_about(const MeshDefects& defects) {
+std::vector<Warning> warnings_about(const MeshDefects& defects, Orient orient) {
   std::vector<Warning> warnings;
-  if (defects.negative_volume || defects.reversed_components > 0) warnings.push_back(reversed_warning(defects));
+  if (defects.negative_volume || defects.reversed_components > 0) warnings.push_back(reversed_warning(defects, orient));
   if (const std::uint64_t edges = defects.inconsistent_edges) {
     warnings.push_back({"inconsistent", counted_as(edges, "edge", "edges") +
-                                            " between two faces that run along it in the same direction; --orient "
-                                            "auto turns faces to agree"});
+                                            " between two faces that run along it in the same direction" +
+                                            help(orient, "turns faces to agree")});
   }
   if (const std::uint64_t pairs = defects.cancelling_pairs) {
     warnings.push_back({"opposite-duplicates", counted_as(pairs, "pair", "pairs") +
                                                    " of faces with the same corners and opposite orientations, which "
-                                                   "cancel; --orient auto keeps one of each"});
+                                                   "cancel" +
+                                                   help(orient, "keeps one of each")});
   }
   return warnings;
 }

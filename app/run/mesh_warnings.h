@@ -9,11 +9,12 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "core/mesh/mesh_defects.h"
+#include "core/orientation/orient.h"
 
 namespace raycone {
 
-// `reversed`, `inconsistent`, `opposite-duplicates`, in this order, those that apply.
-[[nodiscard]] std::vector<Warning> warnings_about(const MeshDefects& defects);
+// `reversed`, `inconsistent`, `opposite-duplicates`, in this order, those that apply to a mesh that was turned so.
+[[nodiscard]] std::vector<Warning> warnings_about(const MeshDefects& defects, Orient orient);
 
 // The number of triangles that have three corners at different positions: less of it after welding is what a distance
 // took away.

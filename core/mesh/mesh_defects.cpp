@@ -1,5 +1,7 @@
 #include "core/mesh/mesh_defects.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -70,7 +72,11 @@ struct Volume {
 // Of the prism between a face and the plane x = from.x: the sum over a closed surface does not depend on the plane.
 Volume volume_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) {
   const double x1 = a.x - from.x, x2 = b.x - from.x, x3 = c.x - from.x;
-  const double forth = (b.y - a.y) * (c.z - a.z), back = (b.z - a.z) * (c.y - a.y);
+  // y and z together: this is most of what it costs to tell what is reversed
+  const __m128d first = _mm_loadu_pd(&a.y), second = _mm_sub_pd(_mm_loadu_pd(&b.y), first),
+                third = _mm_sub_pd(_mm_loadu_pd(&c.y), first);
+  const __m128d products = _mm_mul_pd(second, _mm_shuffle_pd(third, third, 1));
+  const double forth = _mm_cvtsd_f64(products), back = _mm_cvtsd_f64(_mm_unpackhi_pd(products, products));
   constexpr double kUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
   return {(x1 + x2 + x3) * (forth - back),
           (std::abs(x1) + std::abs(x2) + std::abs(x3)) * (std::abs(forth) + std::abs(back) + kUnderflow), 1};

@@ -18,15 +18,12 @@ std::size_t hash_of(const Triangle& t) {
 
 // The faces of which another one may have the same vertices, nearly all of which have.
 std::vector<std::uint32_t> candidates(const TriangleMesh& mesh, const VertexLinks& links) {
-  std::vector<bool> twins(mesh.vertices.size(), false);
-  bool any = false;
-  for (std::size_t v = 0; v < twins.size(); ++v) {
-    if (links.may_have_twins(v)) any = twins[v] = true;
-  }
-  if (!any) return {};
+  if (links.twins().empty()) return {};
+  std::vector<std::uint8_t> twins(mesh.vertices.size(), 0);
+  for (const std::uint32_t v : links.twins()) twins[v] = 1;
   std::vector<std::uint32_t> faces;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (twins[VertexLinks::lowest_of(mesh.triangles[i])]) faces.push_back(static_cast<std::uint32_t>(i));
+    if (twins[VertexLinks::lowest_of(mesh.triangles[i])] != 0) faces.push_back(static_cast<std::uint32_t>(i));
   }
   constexpr std::size_t kPlaces = 32;  // per face: more would leave the cache
   const std::size_t mask = std::bit_ceil(kPlaces * faces.size()) - 1;

@@ -40,6 +40,9 @@ struct CanonicalFace {
                                                         const std::vector<Vec3>& vertices) {
   CanonicalFace first = canonical_face(faces.front(), vertices);
   for (const Triangle& t : faces) {
+    // Nearly none begins as far in front.
+    const double x = first.corners[0].x;
+    if (vertices[t[0]].x > x && vertices[t[1]].x > x && vertices[t[2]].x > x) continue;
     const CanonicalFace face = canonical_face(t, vertices);
     if (face < first) first = face;
   }

@@ -24,9 +24,9 @@ std::vector<int> outward_signs(const std::vector<ClosedPatch>& patches, const st
   return signs;
 }
 
-std::vector<ClosedSurface> surfaces_of(const std::vector<ClosedPatch>& patches) {
-  std::vector<ClosedSurface> surfaces;
-  for (const ClosedPatch& patch : patches) surfaces.push_back(patch.surface);
+std::vector<const ClosedSurface*> surfaces_of(const std::vector<ClosedPatch>& patches) {
+  std::vector<const ClosedSurface*> surfaces;
+  for (const ClosedPatch& patch : patches) surfaces.push_back(&patch.surface);
   return surfaces;
 }
 

@@ -69,7 +69,7 @@ std::vector<std::uint32_t> vertices_of(const ClosedSurface& surface, std::uint32
 // Which surfaces lie within which, as far as the vertices tell that have been looked at.
 class NestingCandidates {
  public:
-  NestingCandidates(const std::vector<ClosedSurface>& surfaces, const std::vector<Vec3>& vertices,
+  NestingCandidates(const std::vector<const ClosedSurface*>& surfaces, const std::vector<Vec3>& vertices,
                     std::vector<std::vector<std::uint32_t>> around)
       : surfaces_(surfaces), vertices_(vertices), around_(std::move(around)) {}
 
@@ -100,7 +100,7 @@ class NestingCandidates {
     std::vector<std::uint32_t> seen_by(vertices_.size(), kNoSurface);
     std::vector<std::vector<std::uint32_t>> used(surfaces_.size());
     for (std::uint32_t i = 0; i < surfaces_.size(); ++i) {
-      if (!around_[i].empty()) used[i] = vertices_of(surfaces_[i], i, most, seen_by);
+      if (!around_[i].empty()) used[i] = vertices_of(*surfaces_[i], i, most, seen_by);
     }
     return used;
   }
@@ -113,7 +113,7 @@ class NestingCandidates {
     for (const std::uint32_t i : inner) {
       for (const std::uint32_t v : used[i]) points.push_back(vertices_[v]);
     }
-    const std::vector<RaySum> sums = ray_sums(surfaces_[outer].faces, vertices_, points);
+    const std::vector<RaySum> sums = ray_sums(surfaces_[outer]->faces, vertices_, points);
     std::vector<std::uint32_t> dropped;
     auto sum = sums.begin();
     for (const std::uint32_t i : inner) {
@@ -127,17 +127,17 @@ class NestingCandidates {
     return dropped;
   }
 
-  const std::vector<ClosedSurface>& surfaces_;
+  const std::vector<const ClosedSurface*>& surfaces_;
   const std::vector<Vec3>& vertices_;
   std::vector<std::vector<std::uint32_t>> around_;
 };
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<ClosedSurface>& surfaces,
+std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<const ClosedSurface*>& surfaces,
                                                         const std::vector<Vec3>& vertices) {
   std::vector<Box> boxes;
-  for (const ClosedSurface& surface : surfaces) boxes.push_back(box_of(surface, vertices));
+  for (const ClosedSurface* surface : surfaces) boxes.push_back(box_of(*surface, vertices));
   NestingCandidates candidates(surfaces, vertices, boxes_around(boxes));
   constexpr std::size_t kFew = 16, kAll = std::numeric_limits<std::size_t>::max();
   candidates.look_at(kFew);  // enough nearly always where one is not around

@@ -7,7 +7,6 @@
 #include "core/machine/threads.h"
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
-#include "core/orientation/unit_box.h"
 
 namespace raycone {
 namespace {
@@ -21,7 +20,7 @@ struct OutermostPatch {
 };
 
 std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& patches, const ClosedTurns& turns,
-                                              const std::vector<Vec3>& vertices) {
+                                              const NumberedVertices& vertices) {
   std::vector<OutermostPatch> all;
   for (std::uint32_t i = 0; i < patches.size(); ++i) {
     if (turns.outermost[i] == i) all.push_back({i, {}});
@@ -65,16 +64,15 @@ std::vector<int> winding_around(const std::vector<OutermostPatch>& patches, cons
 }  // namespace
 
 bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const OpenBodies& bodies,
-                             const std::vector<Vec3>& vertices, ClosedTurns& turns) {
+                             const NumberedVertices& vertices, ClosedTurns& turns) {
   if (patches.empty() || bodies.turned.empty()) return false;
-  std::vector<const std::vector<Triangle>*> faces{&bodies.turned};
-  for (const ClosedPatch& patch : patches) faces.push_back(&patch.surface.faces);
-  const std::vector<Vec3> moved = in_unit_box(vertices, faces);
-  const std::vector<OutermostPatch> outermost = outermost_patches(patches, turns, moved);
-  const std::vector<int> around = winding_around(outermost, bodies.turned, moved);
+  const std::vector<OutermostPatch> outermost = outermost_patches(patches, turns, vertices);
+  const std::vector<int> around = winding_around(outermost, bodies.turned, vertices.at);
   if (std::ranges::count(around, 0) == std::ssize(around)) return false;
 
-  const std::vector<int> around_as_stored = winding_around(outermost, bodies.as_stored, moved);
+  std::vector<int> around_as_stored = around;
+  for (int& winding : around_as_stored) winding *= bodies.relation;
+  if (bodies.relation == 0) around_as_stored = winding_around(outermost, bodies.as_stored, vertices.at);
   std::vector<std::uint8_t> reversed(patches.size(), 0);
   for (std::size_t n = 0; n < outermost.size(); ++n) {
     if (around[n] == 0) continue;

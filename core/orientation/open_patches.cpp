@@ -1,6 +1,8 @@
 #include "core/orientation/open_patches.h"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -12,7 +14,6 @@
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
 #include "core/orientation/turn_problem.h"
-#include "core/orientation/unit_box.h"
 
 namespace raycone {
 namespace {
@@ -31,17 +32,23 @@ struct TurningSurface {
   double weight = 0.0;  // of its samples
 };
 
-class OpenSurfaceTurner {
+}  // namespace
+
+class OpenSurfaceTurner::Search {
  public:
-  OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
-                    const std::vector<Vec3>& vertices)
-      : vertices_(vertices), closed_(closed) {
+  Search(const std::vector<OpenSurface>& surfaces, const NumberedVertices& vertices)
+      : numbered_(vertices), vertices_(vertices.at) {
     set_order(surfaces);
-    set_samples();
+    for (const TurningSurface& surface : surfaces_) {
+      first_sample_.push_back(samples_.size());
+      samples_.insert(samples_.end(), surface.samples.begin(), surface.samples.end());
+    }
+    first_sample_.push_back(samples_.size());
   }
 
   // Per surface, in the order given.
-  std::vector<int> turn() {
+  std::vector<int> turn(const std::vector<Triangle>& closed) {
+    set_closed(closed);
     const std::vector<int> best = surfaces_.size() <= kFewSurfaces ? turn_few() : turn_many();
     std::vector<int> result(surfaces_.size());
     for (std::size_t i = 0; i < surfaces_.size(); ++i) result[surfaces_[i].number] = best[i] * surfaces_[i].first.sign;
@@ -58,7 +65,7 @@ class OpenSurfaceTurner {
       for (std::size_t i = begin; i < end; ++i) {
         const std::vector<Triangle>& faces = surfaces[i].faces;
         TurningSurface& turning = surfaces_[i];
-        turning = {&faces, i, first_canonical_face(faces, vertices_), sample_surface(faces, vertices_, each), 0.0};
+        turning = {&faces, i, first_canonical_face(faces, vertices_), sample_surface(faces, numbered_, each), 0.0};
         for (SurfaceSample& sample : turning.samples) {
           sample.side *= turning.first.sign;
           sample.face.sign *= turning.first.sign;
@@ -71,22 +78,21 @@ class OpenSurfaceTurner {
     });
   }
 
-  void set_samples() {
+  // Their samples are at the same places, however they are turned.
+  void set_closed(const std::vector<Triangle>& closed) {
     constexpr std::size_t kOfClosed = 64;
-    for (const TurningSurface& surface : surfaces_) {
-      first_sample_.push_back(samples_.size());
-      samples_.insert(samples_.end(), surface.samples.begin(), surface.samples.end());
-    }
-    first_sample_.push_back(samples_.size());
-    const std::vector<SurfaceSample> of_closed = sample_surface(closed_, vertices_, kOfClosed);
+    closed_ = &closed;
+    samples_.resize(first_sample_.back());
+    weight_.clear();
+    const std::vector<SurfaceSample> of_closed = sample_surface(closed, numbered_, kOfClosed);
     samples_.insert(samples_.end(), of_closed.begin(), of_closed.end());
     for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
     constant_.assign(samples_.size(), -0.5);
-    if (closed_.empty()) return;
+    if (closed.empty()) return;
     std::vector<Vec3> points;
     for (const SurfaceSample& sample : samples_) points.push_back(sample.at);
     // There is no boundary: crossings are all. On the faces themselves it is the mean of both sides.
-    const std::vector<RaySum> sums = ray_sums(closed_, vertices_, points);
+    const std::vector<RaySum> sums = ray_sums(closed, vertices_, points);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       constant_[k] += static_cast<double>(sums[k].winding) + (k < first_sample_.back() ? 0.0 : 0.5 * samples_[k].side);
     }
@@ -129,12 +135,12 @@ class OpenSurfaceTurner {
     return result;
   }
 
-  [[nodiscard]] std::vector<int> turn_few() const {
-    const TurnProblem few = problem(std::vector<std::vector<std::uint32_t>>(surfaces_.size(), all_samples()));
+  [[nodiscard]] std::vector<int> turn_few() {
+    if (!few_) few_ = problem(std::vector<std::vector<std::uint32_t>>(surfaces_.size(), all_samples()));
     std::vector<int> best(surfaces_.size(), 1);
-    double least = few.improve(constant_, best);
-    std::vector<int> other = few.one_after_the_other(constant_);
-    if (few.improve(constant_, other) < least) best = other;
+    double least = few_->improve(constant_, best);
+    std::vector<int> other = few_->one_after_the_other(constant_);
+    if (few_->improve(constant_, other) < least) best = other;
     return best;
   }
 
@@ -217,7 +223,7 @@ class OpenSurfaceTurner {
   }
 
   [[nodiscard]] std::vector<int> voted() const {
-    std::vector<Triangle> all(closed_);
+    std::vector<Triangle> all(*closed_);
     for (const TurningSurface& surface : surfaces_) all.insert(all.end(), surface.faces->begin(), surface.faces->end());
     const std::vector<double> votes = crossing_votes(all, vertices_, samples_);
     std::vector<int> turn;
@@ -229,22 +235,22 @@ class OpenSurfaceTurner {
     return turn;
   }
 
-  const std::vector<Vec3>& vertices_;
-  const std::vector<Triangle>& closed_;
+  const NumberedVertices& numbered_;
+  const std::vector<Vec3>& vertices_;  // its positions
+  const std::vector<Triangle>* closed_ = nullptr;
   std::vector<TurningSurface> surfaces_;
   std::vector<SurfaceSample> samples_;  // by surface, then those of the closed faces
   std::vector<std::size_t> first_sample_;
   std::vector<double> weight_;
-  std::vector<double> constant_;  // per sample: of the closed faces, less 1/2
+  std::vector<double> constant_;    // per sample: of the closed faces, less 1/2
+  std::optional<TurnProblem> few_;  // of all surfaces
 };
 
-}  // namespace
+OpenSurfaceTurner::OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const NumberedVertices& vertices)
+    : search_(std::make_unique<Search>(surfaces, vertices)) {}
 
-std::vector<int> turn_open_surfaces(const std::vector<OpenSurface>& surfaces, const std::vector<Triangle>& closed,
-                                    const std::vector<Vec3>& vertices) {
-  std::vector<const std::vector<Triangle>*> faces{&closed};
-  for (const OpenSurface& surface : surfaces) faces.push_back(&surface.faces);
-  return OpenSurfaceTurner(surfaces, closed, in_unit_box(vertices, faces)).turn();
-}
+OpenSurfaceTurner::~OpenSurfaceTurner() = default;
+
+std::vector<int> OpenSurfaceTurner::turn(const std::vector<Triangle>& closed) { return search_->turn(closed); }
 
 }  // namespace raycone

@@ -1,10 +1,11 @@
 // How open patches are turned.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/orientation/surface_samples.h"
 
 namespace raycone {
 
@@ -13,12 +14,26 @@ struct OpenSurface {
   std::vector<Triangle> faces;
 };
 
-// For each open surface 1 where it stays as it is, -1 where it is reversed. With `closed`, faces that stay as they are,
-// the winding number should come closest to 1/2 on the surfaces: as the mean of both sides of a face, squared distance
-// from 1/2, weighted by area. docs/method.md, "Orientation", says which samples stand for the surfaces and how the
-// least sum is sought. Depends on coordinates only. Uses the threads that ThreadLimit allows.
-[[nodiscard]] std::vector<int> turn_open_surfaces(const std::vector<OpenSurface>& surfaces,
-                                                  const std::vector<Triangle>& closed,
-                                                  const std::vector<Vec3>& vertices);
+// Turns open surfaces beside closed ones. What does not depend on how the closed ones are turned is found once.
+class OpenSurfaceTurner {
+ public:
+  // `surfaces`, not empty, and `vertices`, in_unit_box(), must outlive this. Uses the threads that ThreadLimit allows,
+  // as turn() does.
+  OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const NumberedVertices& vertices);
+  ~OpenSurfaceTurner();
+  OpenSurfaceTurner(const OpenSurfaceTurner&) = delete;
+  OpenSurfaceTurner& operator=(const OpenSurfaceTurner&) = delete;
+
+  // For each open surface 1 where it stays as it is, -1 where it is reversed. With `closed`, faces that stay as they
+  // are, the winding number should come closest to 1/2 on the surfaces: as the mean of both sides of a face, squared
+  // distance from 1/2, weighted by area. docs/method.md, "Orientation", says which samples stand for the surfaces and
+  // how the least sum is sought. Depends on coordinates only. Precondition: `closed` are the same faces at each call,
+  // in any orientation.
+  [[nodiscard]] std::vector<int> turn(const std::vector<Triangle>& closed);
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+};
 
 }  // namespace raycone

@@ -13,7 +13,9 @@
 #include "core/orientation/open_patches.h"
 #include "core/orientation/patches.h"
 #include "core/orientation/pieces.h"
+#include "core/orientation/surface_samples.h"
 #include "core/orientation/unique_faces.h"
+#include "core/orientation/unit_box.h"
 
 namespace raycone {
 namespace {
@@ -38,6 +40,7 @@ std::vector<PieceFaces> faces_of_pieces(const UniqueFaces& unique, const Patches
   for (std::size_t patch = 0; patch < patches.size(); ++patch) {
     const std::uint32_t piece = pieces.of_patch[patch];
     PieceFaces& its = all[piece];
+    if (its.faces.empty()) its.faces.reserve(patches[patch].size());
     for (const std::uint32_t face : patches[patch]) {
       const int sign = patches.sign[face] * pieces.sign[patch];
       its.faces.push_back(unique.corners[face]);
@@ -89,10 +92,14 @@ class PieceTurner {
   std::vector<int> turn() {
     ClosedTurns of_closed = turn_closed_patches(closed_, vertices_);
     if (!open_.empty()) {
-      std::vector<int> of_open = turn_open_surfaces(open_, settled(of_closed.turn), vertices_);
+      std::vector<Triangle> closed = settled(of_closed.turn);
+      const NumberedVertices moved(moved_vertices());
+      OpenSurfaceTurner turner(open_, moved);
+      std::vector<int> of_open = turner.turn(closed);
       // What lies in a cavity may have to be turned, too.
-      if (turn_within_open_bodies(closed_, bodies(of_open), vertices_, of_closed)) {
-        of_open = turn_open_surfaces(open_, settled(of_closed.turn), vertices_);
+      if (turn_within_open_bodies(closed_, bodies(of_open), moved, of_closed)) {
+        closed = settled(of_closed.turn);
+        of_open = turner.turn(closed);
       }
       for (std::size_t i = 0; i < open_.size(); ++i) turn_[open_numbers_[i]] = of_open[i];
     }
@@ -107,9 +114,18 @@ class PieceTurner {
     return faces;
   }
 
+  [[nodiscard]] std::vector<Vec3> moved_vertices() const {
+    std::vector<const std::vector<Triangle>*> faces;
+    for (const ClosedPatch& patch : closed_) faces.push_back(&patch.surface.faces);
+    for (const OpenSurface& surface : open_) faces.push_back(&surface.faces);
+    return in_unit_box(vertices_, faces);
+  }
+
   [[nodiscard]] OpenBodies bodies(const std::vector<int>& turn) const {
     OpenBodies bodies;
+    bodies.relation = turn[0] * open_stored_[0];
     for (std::size_t i = 0; i < open_.size(); ++i) {
+      if (turn[i] * open_stored_[i] != bodies.relation) bodies.relation = 0;
       append(open_[i].faces, turn[i], bodies.turned);
       if (open_stored_[i] != 0) append(open_[i].faces, open_stored_[i], bodies.as_stored);
     }

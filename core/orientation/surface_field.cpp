@@ -57,10 +57,30 @@ TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>
   return mesh;
 }
 
+Box box_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices) {
+  Box box{vertices[faces.front()[0]], vertices[faces.front()[0]]};
+  for (const Triangle& t : faces) {
+    for (const std::uint32_t v : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
+        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
+      }
+    }
+  }
+  return box;
+}
+
+// Without its area.
+SurfaceDipole dipole_about(const Box& box) {
+  SurfaceDipole dipole;
+  dipole.centre = 0.5 * box.lower + 0.5 * box.upper;
+  dipole.radius = 0.5 * length(box.upper - box.lower);
+  return dipole;
+}
+
 }  // namespace
 
 SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
-  Box box{vertices[faces.front()[0]], vertices[faces.front()[0]]};
   std::array<__int128, 3> area{};
   for (const Triangle& t : faces) {
     const CanonicalFace face = canonical_face(t, vertices);
@@ -68,17 +88,11 @@ SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Ve
     for (int axis = 0; axis < 3; ++axis) {
       area[static_cast<std::size_t>(axis)] +=
           (reversed ? -face.sign : face.sign) * in_units(0.5 * twice[axis], kAreaUnits);
-      for (const Vec3& corner : face.corners) {
-        box.lower[axis] = std::min(box.lower[axis], corner[axis]);
-        box.upper[axis] = std::max(box.upper[axis], corner[axis]);
-      }
     }
   }
-  SurfaceDipole dipole;
-  dipole.centre = 0.5 * box.lower + 0.5 * box.upper;
+  SurfaceDipole dipole = dipole_about(box_of(faces, vertices));
   dipole.area = {static_cast<double>(area[0]) / kAreaUnits, static_cast<double>(area[1]) / kAreaUnits,
                  static_cast<double>(area[2]) / kAreaUnits};
-  dipole.radius = 0.5 * length(box.upper - box.lower);
   return dipole;
 }
 
@@ -102,12 +116,22 @@ std::vector<double> SurfaceField::Large::winding_numbers(std::span<const Vec3> p
   return values;
 }
 
-SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed)
-    : dipole_(dipole_of(faces, vertices, reversed)) {
+// The vector area of a surface is that of any other one with its boundary, such as the cone over that.
+SurfaceDipole SurfaceField::Large::dipole() const {
+  SurfaceDipole dipole = dipole_about(box_of(mesh.triangles, mesh.vertices));
+  for (const DirectedEdge& edge : boundary.directed_edges()) {
+    dipole.area = dipole.area + 0.5 * edge.multiplicity * cross(edge.from - dipole.centre, edge.to - dipole.centre);
+  }
+  return dipole;
+}
+
+SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
   if (faces.size() >= kLargeSurface) {
     large_ = std::make_unique<const Large>(mesh_of(faces, vertices, reversed));
+    dipole_ = large_->dipole();
     return;
   }
+  dipole_ = dipole_of(faces, vertices, reversed);
   for (const Triangle& t : faces) {
     const CanonicalFace face = canonical_face(t, vertices);
     faces_.push_back(face.corners);

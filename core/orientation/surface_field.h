@@ -62,6 +62,7 @@ class SurfaceField {
     Large(const Large&) = delete;  // cone refers to boundary
     Large& operator=(const Large&) = delete;
     [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
+    [[nodiscard]] SurfaceDipole dipole() const;
 
     TriangleMesh mesh;
     Boundary boundary;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "core/exact/predicates.h"
 #include "core/machine/threads.h"
@@ -26,8 +27,8 @@ std::uint64_t hash_of(const Vec3& p) {
 }
 
 // In (0, 1], as if random (splitmix64 over the coordinates; Steele, Lea, Flood 2014), whatever the order of corners.
-double number_of(const Vec3& p, const Vec3& q, const Vec3& r) {
-  return static_cast<double>((mixed(hash_of(p) + hash_of(q) + hash_of(r)) >> 11) + 1) * 0x1p-53;
+double number_of(const Triangle& t, const std::vector<std::uint64_t>& numbers) {
+  return static_cast<double>((mixed(numbers[t[0]] + numbers[t[1]] + numbers[t[2]]) >> 11) + 1) * 0x1p-53;
 }
 
 double area_of(const Vec3& p, const Vec3& q, const Vec3& r) {
@@ -50,14 +51,14 @@ class FirstRanked {
  public:
   explicit FirstRanked(std::size_t count) : count_(count) {}
 
-  void add(const Triangle& t, const std::vector<Vec3>& vertices) {
-    const Vec3 &p = vertices[t[0]], &q = vertices[t[1]], &r = vertices[t[2]];
-    const double number = number_of(p, q, r);
+  void add(const Triangle& t, const NumberedVertices& vertices) {
+    const Vec3 &p = vertices.at[t[0]], &q = vertices.at[t[1]], &r = vertices.at[t[2]];
+    const double number = number_of(t, vertices.number);
     // What the order of corners changes is less; exactly that decides which faces come near being taken.
     constexpr double kRounding = 1e-14;
     const double most = area_of(p, q, r) + kRounding * (dot(q - p, q - p) + dot(r - p, r - p));
     if (most < least_ * number) return;
-    const CanonicalFace face = canonical_face(t, vertices);
+    const CanonicalFace face = canonical_face(t, vertices.at);
     const double area = area_of(face.corners[0], face.corners[1], face.corners[2]);
     if (!(area > 0.0 && std::isfinite(area))) return;
     ranked_.push_back({area / number, area, face});
@@ -101,7 +102,14 @@ int side_of_perturbed(const CanonicalFace& face, const Vec3& q) {
 
 }  // namespace
 
-std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+NumberedVertices::NumberedVertices(std::vector<Vec3> vertices) : at(std::move(vertices)), number(at.size()) {
+  constexpr std::size_t kGrain = 4096;
+  parallel_for(at.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) number[v] = hash_of(at[v]);
+  });
+}
+
+std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, const NumberedVertices& vertices,
                                           std::size_t count) {
   constexpr std::size_t kGrain = 4096;
   std::vector<RankedFace> ranked;

@@ -1,6 +1,7 @@
 // Points that stand for surfaces.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,11 +18,19 @@ struct SurfaceSample {
   int side = 0;         // where the perturbed point is (core/exact/predicates.h): 1 before the face, -1 behind it
 };
 
+// Vertices, each with a number of its own that its coordinates give, as if random.
+struct NumberedVertices {
+  explicit NumberedVertices(std::vector<Vec3> vertices);
+
+  std::vector<Vec3> at;
+  std::vector<std::uint64_t> number;
+};
+
 // At most `count` samples, the middles of faces. Larger faces are taken rather than smaller ones: those whose area,
 // divided by a number in (0, 1) that the corners' coordinates give, is largest (priority sampling; Duffield, Lund,
 // Thorup 2007). Their order depends on coordinates only. None where all areas are 0. Uses the threads that ThreadLimit
 // allows; needs DefaultFloatingPoint.
 [[nodiscard]] std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces,
-                                                        const std::vector<Vec3>& vertices, std::size_t count);
+                                                        const NumberedVertices& vertices, std::size_t count);
 
 }  // namespace raycone

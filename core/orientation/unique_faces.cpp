@@ -60,12 +60,30 @@ void add_repeated(std::span<FiledFace> bucket, std::vector<SameFaces>& repeated)
   }
 }
 
+// Per vertex 1 where faces that have it as their lowest corner may be the same, which marks tell: four bits of 64.
+std::vector<std::uint8_t> may_repeat(const std::vector<Triangle>& corners, std::size_t vertices) {
+  std::vector<std::uint64_t> marks(vertices, 0);
+  std::vector<std::uint8_t> repeats(vertices, 0);
+  for (const Triangle& t : corners) {
+    const std::uint32_t lowest = std::min(std::min(t[0], t[1]), t[2]);
+    // The same in any order of corners.
+    const auto square = [](std::uint64_t v) { return v * v; };
+    const std::uint64_t hash = (square(t[0]) + square(t[1]) + square(t[2])) * 0x9E3779B97F4A7C15U;
+    std::uint64_t mark = 0;
+    for (const int shift : {58, 52, 46, 40}) mark |= std::uint64_t{1} << (hash >> shift & 63);
+    repeats[lowest] |= static_cast<std::uint8_t>((~marks[lowest] & mark) == 0);
+    marks[lowest] |= mark;
+  }
+  return repeats;
+}
+
 std::vector<SameFaces> repeated_faces(const std::vector<Triangle>& corners, std::size_t vertices) {
+  const std::vector<std::uint8_t> repeats = may_repeat(corners, vertices);
   const std::size_t count = (vertices >> kVerticesPerBucketLog2) + 1;
   const Buckets<FiledFace> buckets(corners.size(), count, [&](std::size_t begin, std::size_t end, auto emit) {
     for (std::size_t i = begin; i < end; ++i) {
       Triangle t = corners[i];
-      if (is_collapsed(t)) continue;
+      if (repeats[std::min(std::min(t[0], t[1]), t[2])] == 0 || is_collapsed(t)) continue;
       std::sort(t.begin(), t.end());
       emit(t[0] >> kVerticesPerBucketLog2, FiledFace{t[0], t[1], t[2], static_cast<std::uint32_t>(i)});
     }

@@ -170,7 +170,8 @@ TEST_F(FieldOption, LargeLatticesOfAClosedMeshTakeMemoryOfItsSurface) {
 
 TEST_F(FieldOption, RefusesWhatItDoesNotKnow) {
   const std::map<std::vector<std::string>, std::string> refused{
-      {{"--field", "colour"}, "--field colour: expected one or more of winding, inside, density, sdf, solid, gradient, label"},
+      {{"--field", "colour"},
+       "--field colour: expected one or more of winding, inside, density, sdf, solid, gradient, label"},
       {{"--field", "inside,"},
        "--field inside,: expected one or more of winding, inside, density, sdf, solid, gradient, label"},
       {{"--field", "inside,winding,inside"}, "--field inside,winding,inside: expected each field once"},

@@ -103,6 +103,37 @@ TEST_F(OrientCommand, WarnsWhereNoOrientationIsConsistent) {
   EXPECT_EQ(run_raycone({"points", mesh_, points_, "--orient", "auto", "--strict"}).status, 2);
 }
 
+// The closed box [low, low + size]^3, its vertices counted from `first` + 1, its sides outward but maybe the first.
+std::string box_at(double low, double size, int first, bool agrees) {
+  std::ostringstream obj;
+  for (const int v : {0, 1, 3, 2, 4, 5, 7, 6}) {
+    obj << "v " << low + size * (v & 1) << ' ' << low + size * (v >> 1 & 1) << ' ' << low + size * (v >> 2) << '\n';
+  }
+  for (const char* const face :
+       {agrees ? "4 3 2 1" : "1 2 3 4", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"}) {
+    std::istringstream corners(face);
+    obj << 'f';
+    for (int corner = 0; corners >> corner;) obj << ' ' << first + corner;
+    obj << '\n';
+  }
+  return obj.str();
+}
+
+// Two cavities that overlap take more from a box than it has, and touch it, so that all are one component. What is
+// reversed is counted in the result, also where it follows from the rules and not from a mistake.
+TEST_F(OrientCommand, OutwardIsJudgedByTheResult) {
+  const auto judged = [&](bool agrees) {
+    write_text(mesh_, box_at(0, 16, 0, true) + box_at(0, 15, 8, agrees) + box_at(1, 15, 16, agrees) +
+                          box_at(100, 32, 24, true));
+    return run_raycone({"info", mesh_, "--require", "closed,outward", "--orient", "auto"});
+  };
+  EXPECT_EQ(judged(true).status, 0) << "their relation is kept";
+  const CommandResult result = judged(false);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("outward: 1 outermost component of negative volume"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("--orient auto turns"), std::string::npos) << "it has been asked for: " << result.err;
+}
+
 TEST_F(OrientCommand, RefusesOtherWords) {
   const CommandResult result = run_raycone({"points", mesh_, points_, "--orient", "outward"});
   EXPECT_EQ(result.status, 1);

@@ -152,7 +152,7 @@ TEST(MeshDefects, SignOfAVolumeIsExactWhereProductsUnderflow) {
   EXPECT_GT(reversed_ones, 60);
 }
 
-// The signatures of a vertex have eight places; every second triangle of a larger fan is there the other way round.
+// The marks of a vertex of many faces are all set; every second triangle of a fan is there the other way round.
 TEST(MeshDefects, OppositeFacesAreFoundAtVerticesOfManyFaces) {
   Random random(37);
   for (const std::uint32_t faces : {1U, 7U, 8U, 9U, 40U}) {

@@ -415,7 +415,7 @@ TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
   // Within the unit box; without its last faces it has a boundary.
   TriangleMesh bowl = test::moved(test::sphere(8), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
   bowl.triangles.resize(bowl.triangles.size() * 2 / 3);
-  const std::vector<SurfaceSample> samples = sample_surface(bowl.triangles, bowl.vertices, 20);
+  const std::vector<SurfaceSample> samples = sample_surface(bowl.triangles, NumberedVertices(bowl.vertices), 20);
   ASSERT_EQ(samples.size(), 20U);
   std::vector<FieldPoint> points;
   for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});

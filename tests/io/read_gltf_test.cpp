@@ -117,24 +117,24 @@ TEST(ReadGltf, GlbOfOneSquareGivesItsTwoTriangles) {
 TEST(ReadGltf, IndicesOfEveryWidthGiveTheSameTriangles) {
   Asset bytes;
   bytes.binary = bytes_of(kSquare) + bytes_of<std::uint8_t>({0, 1, 2, 0, 2, 3}) + "......";
-  bytes.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}])";
+  bytes.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                    R"({"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}])";
   EXPECT_EQ(triangles_of(parse(bytes).mesh), kSquareTriangles);
 
   Asset words;
   words.binary = bytes_of(kSquare) + bytes_of<std::uint32_t>({0, 1, 2, 0, 2, 3});
   words.buffers = R"([{"byteLength":72}])";
   words.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}])";
-  words.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":6,"type":"SCALAR"}])";
+  words.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                    R"({"bufferView":1,"componentType":5125,"count":6,"type":"SCALAR"}])";
   EXPECT_EQ(triangles_of(parse(words).mesh), kSquareTriangles);
 }
 
 TEST(ReadGltf, StripTurnsEveryOtherTriangleSoThatAllFaceOneSide) {
   Asset asset;
   asset.binary = bytes_of(kSquare) + bytes_of<std::uint16_t>({0, 1, 3, 2, 2, 2});
-  asset.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":4,"type":"SCALAR"}])";
+  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                    R"({"bufferView":1,"componentType":5123,"count":4,"type":"SCALAR"}])";
   asset.meshes = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":5}]}])";
   const auto triangles = triangles_of(parse(asset).mesh);
   ASSERT_EQ(triangles.size(), 2u);
@@ -159,8 +159,8 @@ TEST(ReadGltf, TriangleListWithoutIndicesSkipsTheIncompleteFace) {
 
 TEST(ReadGltf, PointsAndLinesAreIgnoredWithAWarning) {
   Asset asset;
-  asset.meshes =
-      R"([{"primitives":[{"attributes":{"POSITION":0},"mode":0},{"attributes":{"POSITION":0},"mode":3},{"attributes":{"POSITION":0},"indices":1}]}])";
+  asset.meshes = R"([{"primitives":[{"attributes":{"POSITION":0},"mode":0},{"attributes":{"POSITION":0},"mode":3},)"
+                 R"({"attributes":{"POSITION":0},"indices":1}]}])";
   const ParsedMesh parsed = parse(asset);
   EXPECT_EQ(parsed.mesh.triangles.size(), 2u);
   ASSERT_EQ(parsed.warnings.size(), 1u);
@@ -185,11 +185,11 @@ TEST(ReadGltf, SparseElementsReplaceThoseOfTheView) {
   Asset asset;
   asset.binary = square_data() + bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({5, 6, 7});
   asset.buffers = R"([{"byteLength":76}])";
-  asset.views =
-      R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":2},{"buffer":0,"byteOffset":64,"byteLength":12}])";
-  asset.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
-      R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+  asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},)"
+                R"({"buffer":0,"byteOffset":60,"byteLength":2},{"buffer":0,"byteOffset":64,"byteLength":12}])";
+  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,)"
+                    R"("indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
+                    R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
   const TriangleMesh mesh = parse(asset).mesh;
   EXPECT_EQ(mesh.vertices[2], (Vec3{5, 6, 7}));
   EXPECT_EQ(mesh.vertices[3], (Vec3{0, 1, 0}));
@@ -199,11 +199,11 @@ TEST(ReadGltf, SparseElementsWithoutAViewReplaceZeros) {
   Asset asset;  // indices 0 0 0 0 0 0, but for the three in the middle
   asset.binary = square_data() + bytes_of<std::uint8_t>({1, 2, 3, 0}) + bytes_of<std::uint16_t>({1, 2, 3});
   asset.buffers = R"([{"byteLength":70}])";
-  asset.views =
-      R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":60,"byteLength":3},{"buffer":0,"byteOffset":64,"byteLength":6}])";
-  asset.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
-      R"({"componentType":5123,"count":6,"type":"SCALAR","sparse":{"count":3,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}])";
+  asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":60,"byteLength":3},)"
+                R"({"buffer":0,"byteOffset":64,"byteLength":6}])";
+  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                    R"({"componentType":5123,"count":6,"type":"SCALAR","sparse":{"count":3,"indices":{"bufferView":1,)"
+                    R"("componentType":5121},"values":{"bufferView":2}}}])";
   const TriangleMesh mesh = parse(asset).mesh;
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 0, 0}}));
 }
@@ -244,8 +244,8 @@ TEST(ReadGltf, PrimitivesThatShareAnAccessorShareItsVertices) {
 
 TEST(ReadGltf, NodeTransformsAreComposedFromTheRoot) {
   Asset asset;
-  asset.nodes =
-      R"([{"children":[1],"scale":[2,2,2],"translation":[10,0,0]},{"mesh":0,"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,1,2,3,1]}])";
+  asset.nodes = R"([{"children":[1],"scale":[2,2,2],"translation":[10,0,0]},)"
+                R"({"mesh":0,"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,1,2,3,1]}])";
   // The matrix turns (x, y, z) into (-y, x, z) + (1, 2, 3); its parent doubles and moves by 10.
   EXPECT_EQ(parse(asset).mesh.vertices[1], (Vec3{12, 6, 6}));
 }
@@ -450,8 +450,8 @@ TEST(ReadGltf, ImagesMaterialsAndAnimationsAreNeverLookedAt) {
 
 TEST(ReadGltf, RequiredExtensionsOfAppearanceAreIgnored) {
   Asset asset;
-  asset.rest +=
-      R"(,"extensionsRequired":["KHR_materials_unlit","KHR_texture_transform","KHR_lights_punctual","EXT_texture_webp"])";
+  asset.rest += R"(,"extensionsRequired":["KHR_materials_unlit","KHR_texture_transform","KHR_lights_punctual",)"
+                R"("EXT_texture_webp"])";
   EXPECT_EQ(triangles_of(parse(asset).mesh), kSquareTriangles);
 }
 
@@ -474,8 +474,8 @@ TEST(ReadGltf, DracoThatIsMerelyUsedNeedsUncompressedData) {
   asset.meshes =
       R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{}}}]}])";
   EXPECT_EQ(triangles_of(parse(asset).mesh), kSquareTriangles);
-  asset.accessors =
-      R"([{"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+  asset.accessors = R"([{"componentType":5126,"count":4,"type":"VEC3"},)"
+                    R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
   EXPECT_TRUE(contains(error_of(asset), "KHR_draco_mesh_compression"));
 }
 
@@ -647,11 +647,11 @@ TEST(ReadGltf, FlippedBytesNeverDoMoreThanThrow) {
   Asset asset;
   asset.binary = square_data() + bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({5, 6, 7});
   asset.buffers = R"([{"byteLength":76}])";
-  asset.views =
-      R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":2},{"buffer":0,"byteOffset":64,"byteLength":12}])";
-  asset.accessors =
-      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
-      R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+  asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},)"
+                R"({"buffer":0,"byteOffset":60,"byteLength":2},{"buffer":0,"byteOffset":64,"byteLength":12}])";
+  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,)"
+                    R"("indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
+                    R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
   asset.nodes = R"([{"mesh":0,"children":[1]},{"mesh":0,"scale":[1,2,-3],"rotation":[0,0,1,0]}])";
   const std::string whole = asset.bytes();
   ASSERT_EQ(parse(whole).mesh.triangles.size(), 4u);

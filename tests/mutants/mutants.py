@@ -367,6 +367,9 @@ MUTANTS = [
          "first = found_first;")]),
 
     # --- Orientation ---
+    Mutant("copies_with_marks_of_their_order", "faces of the same corners mark the same bits, whatever their order", [
+        ("core/orientation/unique_faces.cpp", "square(t[0]) + square(t[1]) + square(t[2])",
+         "square(t[0]) + 3 * square(t[1]) + square(t[2])")]),
     Mutant("closed_relation_not_kept", "patches that agree as stored keep their relation", [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),
@@ -390,8 +393,11 @@ MUTANTS = [
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
         ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kUnderflow)", "(std::abs(forth) + std::abs(back))")]),
-    Mutant("signatures_drop_out", "a vertex of more faces than signatures may have twins", [
-        ("core/mesh/vertex_links.h", "const bool no_place = _mm_extract_epi16(before, 7) != 0;", "const bool no_place = false;")]),
+    Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
+        ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
+    Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [
+        ("core/mesh/exterior_edges.cpp", "if ((next_meets | next_waits) == 0) crowd_.push_back({t.lowest, t.next, 1});",
+         "")]),
     Mutant("labels_are_components", "labels that a triangle joins are one component", [
         ("core/mesh/components.cpp", "    sets.join(a, c);\n", "")]),
     Mutant("surface_is_not_the_mean", "on its own samples an open piece counts with the mean of both sides", [
@@ -411,6 +417,9 @@ MUTANTS = [
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),
+    Mutant("outward_by_construction", "what faces inward after auto is counted from the result where that is closed", [
+        ("app/run/mesh_input.cpp", "options.orient == Orient::kAuto && !result.edges.empty()",
+         "options.orient == Orient::kAuto")]),
 
     # --- Surfaces ---
     Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [

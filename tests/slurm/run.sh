@@ -2,7 +2,8 @@
 # Batches on a real Slurm: sh tests/slurm/run.sh [RAYCONE]
 # Starts a Slurm of its own on this machine (one controller, one node; as root, since Slurm wants that), submits
 # app/slurm/raycone-array.sbatch over 30 meshes, kills one task half-way, requeues it, and compares with a single run;
-# then the same shards by GNU parallel. Packages: slurm-wlm munge parallel.
+# then an array with a broken mesh and a job behind it, and the same shards by GNU parallel.
+# Packages: slurm-wlm munge parallel.
 set -eu
 cd "$(dirname "$0")/../.."
 root=$PWD
@@ -134,10 +135,32 @@ job=$(RAYCONE=$raycone sbatch --parsable --array=1,2,5 --cpus-per-task=1 --mem-p
 wait_for 120 sh -c "! squeue --noheader --array --job $job | grep -q ."
 grep -q 'have gaps' "$work/gap-1.log" || fail 'an array with gaps was not refused'
 
+# --- A broken mesh: its task fails, and the job behind the array never starts; with --exit-zero it does
+
+echo 'no mesh' >"$work/meshes/broken.obj"
+# chain NAME OPTIONS: an array of three tasks into a directory of that name, and the job behind it of docs/cluster.md.
+# Sets `behind`.
+chain() {
+  array=$(RAYCONE=$raycone sbatch --parsable --array=1-3 --cpus-per-task=1 --mem-per-cpu=0 \
+    --output="$work/$1-%a.log" "$root/app/slurm/raycone-array.sbatch" "$work/meshes" "$work/$1" $options $2)
+  behind=$(sbatch --parsable --dependency="afterok:$array" --mem-per-cpu=0 --output="$work/$1.log" \
+    --wrap "'$raycone' batch '$work/meshes' --out-dir '$work/$1' $options $2 && '$raycone' report '$work/$1'")
+}
+chain strict ''
+wait_for 120 sh -c "scontrol show job $behind | grep -q DependencyNeverSatisfied"
+[ ! -e "$work/strict/report.html" ] || fail 'the job behind an array with a failed task ran'
+scancel "$behind"
+chain zero --exit-zero
+wait_for 120 sh -c "! squeue --noheader --job $behind | grep -q ."
+[ -s "$work/zero/report.html" ] || fail 'the job behind the array did not run'
+[ "$(grep -c '^broken.obj,invalid,2,' "$work/zero/results.csv")" -eq 1 ] || fail 'the broken mesh has no row'
+[ "$(grep -c ',ok,0,' "$work/zero/results.csv")" -eq 30 ] || fail 'the other meshes are not ok'
+rm "$work/meshes/broken.obj"
+
 # --- The same shards by GNU parallel
 
 parallel --will-cite -j 2 "$raycone" batch "$work/meshes" --out-dir "$work/parallel" --threads 1 --shard '{}/5' $options \
   ::: 1 2 3 4 5
 "$raycone" batch "$work/meshes" --out-dir "$work/parallel" $options
 compare "$work/parallel"
-echo 'slurm: array with a requeued task, array with gaps, and GNU parallel: as a single run'
+echo 'slurm: a requeued task, gaps, broken meshes with and without --exit-zero, and GNU parallel: all as they should be'

@@ -1,5 +1,5 @@
-// Signs of determinants in integer arithmetic of any length: the oracle of core/exact/predicates.h, with which it shares
-// no code. Exact for all finite doubles, given denormal numbers (DefaultFloatingPoint). Microseconds each.
+// Signs of determinants in integer arithmetic of any length: the oracle of core/exact/predicates.h, with which it
+// shares no code. Exact for all finite doubles, given denormal numbers (DefaultFloatingPoint). Microseconds each.
 #pragma once
 
 #include "core/data/vec3.h"

@@ -1,5 +1,6 @@
-// core/machine/threads.h on standard threads, in place of core/machine/threads.cpp in builds for ThreadSanitizer: Debian's TBB is not
-// built for it, so that every hand-over between TBB's threads looks like a race and the real ones drown.
+// core/machine/threads.h on standard threads, in place of core/machine/threads.cpp in builds for ThreadSanitizer:
+// Debian's TBB is not built for it, so that every hand-over between TBB's threads looks like a race and the real ones
+// drown.
 #include <algorithm>
 #include <atomic>
 #include <exception>

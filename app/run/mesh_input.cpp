@@ -90,7 +90,7 @@ TriangleMesh welded_mesh(TriangleMesh as_read, const MeshOptions& options, std::
 }
 
 MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options) {
-  OrientedMesh oriented = orient(std::move(welded), options.orient);
+  OrientedMesh oriented = orient(std::move(welded), options.orient, options.weld.mode != WeldMode::kNone);
   MeshToEvaluate result{std::move(oriented.mesh), oriented.counts, {}, {}, std::move(oriented.places)};
   VertexLinks links(result.mesh.vertices.size());
   result.edges = exterior_edges(result.mesh, &links);

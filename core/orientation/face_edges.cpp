@@ -28,6 +28,22 @@ namespace {
 
 std::size_t corner_of(const Triangle& t, std::uint32_t from) { return t[0] == from ? 0 : t[1] == from ? 1 : 2; }
 
+// Few nearly always: six edges meet at a vertex of a large mesh.
+template <class FiledEdge>
+void sort_by_key(std::span<FiledEdge> edges) {
+  constexpr std::size_t kFew = 24;
+  if (edges.size() > kFew) {
+    std::ranges::sort(edges, {}, &FiledEdge::key);
+    return;
+  }
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const FiledEdge edge = edges[i];
+    std::size_t place = i;
+    for (; place > 0 && edges[place - 1].key() > edge.key(); --place) edges[place] = edges[place - 1];
+    edges[place] = edge;
+  }
+}
+
 // By lower vertex, then higher one, then face: a counting sort, then one sort per lower vertex.
 template <class FiledEdge>
 std::vector<FiledEdge> sorted_traversals(std::span<const FiledEdge> bucket) {
@@ -37,9 +53,7 @@ std::vector<FiledEdge> sorted_traversals(std::span<const FiledEdge> bucket) {
   std::vector<FiledEdge> all(bucket.size());
   for (const FiledEdge& t : bucket) all[begin[(t.low & kEdgeBucketMask) + 1]++] = t;
   for (std::size_t v = 0; v <= kEdgeBucketMask; ++v) {
-    std::sort(all.begin() + static_cast<std::ptrdiff_t>(begin[v]),
-              all.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]),
-              [](const FiledEdge& a, const FiledEdge& b) { return a.key() < b.key(); });
+    sort_by_key(std::span(all).subspan(begin[v], begin[v + 1] - begin[v]));
   }
   return all;
 }

@@ -1,6 +1,7 @@
 #include "core/orientation/orient.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/crossings/check_counts.h"
@@ -109,7 +110,10 @@ class PieceTurner {
 
  private:
   [[nodiscard]] std::vector<Triangle> settled(const std::vector<int>& turn) const {
+    std::size_t count = 0;
+    for (const ClosedPatch& patch : closed_) count += patch.surface.faces.size();
     std::vector<Triangle> faces;
+    faces.reserve(count);
     for (std::size_t i = 0; i < closed_.size(); ++i) append(closed_[i].surface.faces, turn[i], faces);
     return faces;
   }
@@ -185,9 +189,17 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
   return {std::move(mesh), counts, std::move(places)};
 }
 
-OrientedMesh turned_to_agree(TriangleMesh mesh) {
+// For each vertex the first one at its position.
+std::vector<std::uint32_t> positions(const TriangleMesh& mesh, bool is_welded) {
+  if (!is_welded) return first_equal_vertices(mesh.vertices);
+  std::vector<std::uint32_t> positions(mesh.vertices.size());
+  std::iota(positions.begin(), positions.end(), 0U);
+  return positions;
+}
+
+OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   const DefaultFloatingPoint guard;
-  const UniqueFaces unique = unique_faces(mesh, first_equal_vertices(mesh.vertices));
+  const UniqueFaces unique = unique_faces(mesh, positions(mesh, is_welded));
   const FaceEdges edges(unique.corners, mesh.vertices.size());
   const Patches patches = find_patches(unique.corners, edges, mesh.vertices);
   const Pieces pieces = find_pieces(patches, edges, unique.vote);
@@ -207,10 +219,10 @@ OrientedMesh turned_to_agree(TriangleMesh mesh) {
 
 }  // namespace
 
-OrientedMesh orient(TriangleMesh mesh, Orient how) {
+OrientedMesh orient(TriangleMesh mesh, Orient how, bool is_welded) {
   check_counts(mesh);
   if (how == Orient::kKeep || mesh.triangles.empty()) return {std::move(mesh), {}};
-  return how == Orient::kFlip ? flipped(std::move(mesh)) : turned_to_agree(std::move(mesh));
+  return how == Orient::kFlip ? flipped(std::move(mesh)) : turned_to_agree(std::move(mesh), is_welded);
 }
 
 }  // namespace raycone

@@ -40,7 +40,7 @@ struct OrientedMesh {
 // docs/method.md, "Orientation", has the rules. The result does not depend on the order of faces and vertices, nor on
 // the number of threads; it uses those that ThreadLimit allows. Preconditions: the vertices that triangles use are
 // finite, and no coordinate is -0 (core/mesh/weld.h). Throws std::bad_alloc, and std::length_error for more than
-// kMaxTriangles.
-[[nodiscard]] OrientedMesh orient(TriangleMesh mesh, Orient how);
+// kMaxTriangles. `is_welded`: no two vertices are at the same position, which saves looking for them.
+[[nodiscard]] OrientedMesh orient(TriangleMesh mesh, Orient how, bool is_welded = false);
 
 }  // namespace raycone

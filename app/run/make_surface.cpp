@@ -66,7 +66,7 @@ std::vector<Warning> warnings_about(const FinishedSurface& closed, const Surface
 
 // What is dropped, though it is a part of the solid.
 std::optional<Warning> warning_about(const ThinParts& thin) {
-  if (!(thin.area > 0.0)) return std::nullopt;
+  if (!(thin.of_all > 0.0)) return std::nullopt;
   char percent[32];
   std::snprintf(percent, sizeof percent, "%.3g", 100.0 * thin.of_all);
   std::string text = std::string(percent) + " % of the mesh's area is of parts too thin for the lattice, and left out";
@@ -87,7 +87,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   const SurfaceMeasures measures = measure_surface(made.surface, mesh, lattice, options.thickness);
   made.report = report_of(made.surface, measures);
-  if (measures.dropped_area > 0.0) {
+  if (measures.drops) {
     const ThinParts thin =
         thin_parts(made.surface, mesh, RuleAlong(evaluator, options.rule), inside, options.thickness);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);

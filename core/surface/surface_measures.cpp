@@ -41,7 +41,7 @@ double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh) {
 // The centres of n^2 equal parts of each triangle, and what area each of them stands for.
 struct AreaSamples {
   std::vector<Vec3> points;
-  std::vector<double> areas;
+  std::vector<double> areas;  // in squares of sample_step()
   std::vector<std::uint32_t> triangles;
 };
 
@@ -51,7 +51,7 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
   const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a;
   const double longest = std::max({length_of_vector(u), length_of_vector(v), length_of_vector(v - u)});
   const double parts = std::clamp(std::ceil(longest / step), 1.0, kMost);
-  const double area = area_of_triangle(mesh, t) / (parts * parts);
+  const double area = length_of_vector(cross((1.0 / step) * u, (1.0 / step) * v)) / 2.0 / (parts * parts);
   const auto n = static_cast<int>(parts);
   const auto add = [&](double s, double r) {
     samples.points.push_back(a + (s / parts) * u + (r / parts) * v);
@@ -66,6 +66,8 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
   }
 }
 
+double sample_step(const Lattice& lattice) { return 2.0 * length_of_vector(lattice.spacing); }
+
 // Calls visit(samples, is_dropped) for the points of some triangles at a time.
 template <class Visit>
 void for_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice, double thickness,
@@ -76,7 +78,7 @@ void for_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lat
   for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += kTrianglesAtOnce) {
     AreaSamples samples;
     for (std::size_t i = begin; i < std::min(begin + kTrianglesAtOnce, mesh.triangles.size()); ++i) {
-      add_samples(samples, mesh, static_cast<std::uint32_t>(i), 2.0 * diagonal);
+      add_samples(samples, mesh, static_cast<std::uint32_t>(i), sample_step(lattice));
     }
     std::vector<double> distances(samples.points.size());
     distance.evaluate(samples.points, distances);
@@ -141,6 +143,7 @@ class MissedBy {
   double thickness_, step_ = 0.0;
 };
 
+// In squares of sample_step().
 double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice, double thickness) {
   double area = 0.0;
   for_samples(surface, mesh, lattice, thickness, [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
@@ -159,7 +162,9 @@ SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& 
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }
-  measures.dropped_area = dropped_area_of(surface, mesh, lattice, thickness);
+  const double step = sample_step(lattice), dropped = dropped_area_of(surface, mesh, lattice, thickness);
+  measures.dropped_area = dropped * step * step;
+  measures.drops = dropped > 0.0;
   return measures;
 }
 
@@ -182,7 +187,9 @@ ThinParts thin_parts(const SurfaceMesh& surface, const TriangleMesh& mesh, const
   };
   for_samples(surface, mesh, inside.lattice(), thickness, add);
   for (std::size_t c = 0; c < components.count; ++c) thin.lost += is_missed[c] && !is_left[c] ? 1 : 0;
-  thin.of_all = std::isfinite(whole) ? thin.area / whole : 0.0;
+  const double step = sample_step(inside.lattice());
+  if (whole > 0.0) thin.of_all = thin.area / whole;
+  thin.area *= step * step;
   return thin;
 }
 

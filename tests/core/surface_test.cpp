@@ -417,6 +417,8 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   const auto [surface, lattice] = surface_of(box, 20);
   EXPECT_NEAR(measure_surface(surface, wall, lattice).dropped_area, 0.18, 1e-12);
   EXPECT_EQ(measure_surface(surface, box, lattice).dropped_area, 0.0);
+  EXPECT_TRUE(measure_surface(surface, wall, lattice).drops);
+  EXPECT_FALSE(measure_surface(surface, box, lattice).drops);
 }
 
 // A box beside a plate of a tenth of a voxel, which lies between nodes.

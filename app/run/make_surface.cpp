@@ -1,6 +1,9 @@
 #include "app/run/make_surface.h"
 
+#include <cstdio>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "app/options/field_options.h"
@@ -50,11 +53,25 @@ std::vector<Warning> warnings_about(const FinishedSurface& closed, const Surface
                         "faces of one plane are not merged: each try made faces that intersect, or that "
                         "have samples on the wrong side"});
   }
-  if (!closed.simplified) {
+  if (closed.bound_too_small) {
+    warnings.push_back({"not-simplified",
+                        "--simplify left all faces: the distance is within what rounding of vertices may move, "
+                        "some billionths of a voxel, or more far from the origin and in single precision"});
+  } else if (!closed.simplified) {
     warnings.push_back({"not-simplified", "--simplify left all faces: " + std::to_string(options.rounds) +
                                               " tries made faces that intersect, expected a smaller distance"});
   }
   return warnings;
+}
+
+// What is dropped, though it is a part of the solid.
+std::optional<Warning> warning_about(const ThinParts& thin) {
+  if (!(thin.of_all > 0.0)) return std::nullopt;
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.3g", 100.0 * thin.of_all);
+  std::string text = std::string(percent) + " % of the mesh's area is of parts too thin for the lattice, and left out";
+  if (thin.lost > 0) text += ", " + std::to_string(thin.lost) + (thin.lost == 1 ? " part" : " parts") + " as a whole";
+  return Warning{"thin-parts", text + "; see --resolution, and --thicken of half a voxel's diagonal or more"};
 }
 
 }  // namespace
@@ -68,7 +85,13 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   check_inside(name, inside, options.rule);
   FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
-  made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice, options.thickness));
+  const SurfaceMeasures measures = measure_surface(made.surface, mesh, lattice, options.thickness);
+  made.report = report_of(made.surface, measures);
+  if (measures.drops) {
+    const ThinParts thin =
+        thin_parts(made.surface, mesh, RuleAlong(evaluator, options.rule), inside, options.thickness);
+    if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
+  }
   return made;
 }
 

@@ -18,7 +18,7 @@ namespace raycone {
 struct MadeSurface {
   SurfaceMesh surface;
   SurfaceReport report;
-  std::vector<Warning> warnings;  // `not-merged`, `not-simplified`: those that apply
+  std::vector<Warning> warnings;  // `not-merged`, `not-simplified`, `thin-parts`: those that apply
 };
 
 // The surface between the inside and the outside nodes of `lattice`, by `evaluator` of `mesh`; it has been checked.

@@ -180,6 +180,10 @@ TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) 
     MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, solid_lattice(*run.report.lattice),
                                     SurfaceOptions{rule}, run.limits().memory());
     run.report.surface = made.report;
+    // How its faces are merged does not concern distances.
+    for (const Warning& warning : made.warnings) {
+      if (warning.name == "thin-parts") run.warn(warning);
+    }
     return std::move(made.surface.mesh);
   });
 }

@@ -79,7 +79,7 @@ class Merger {
     kGone,
   };
 
-  using Target = std::optional<std::uint32_t> (Merger::*)(std::uint32_t) const;
+  using Target = std::optional<std::uint32_t> (Merger::*)(std::uint32_t);
 
   // In each pass no vertex is pulled that a neighbour was pulled into, so that faces grow evenly.
   void pull_all(Target target_of) {
@@ -127,8 +127,8 @@ class Merger {
     return dot(normal, normal) < needle_ * needle_ * std::max({dot(u, u), dot(v, v), dot(w, w)});
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
-    std::vector<std::uint32_t> all;
+  void find_neighbours(std::uint32_t v, std::vector<std::uint32_t>& all) const {
+    all.clear();
     for (const std::uint32_t face : star_[v]) {
       for (const std::uint32_t corner : triangle(face)) {
         if (corner != v) all.push_back(corner);
@@ -136,7 +136,6 @@ class Merger {
     }
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());  // clang 14 knows no subranges
-    return all;
   }
 
   [[nodiscard]] double quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) const {
@@ -144,10 +143,13 @@ class Merger {
     return dot(cross(u, v), normal) / 2.0 / std::max({dot(u, u), dot(v, v), dot(w, w)});
   }
 
-  // The worst of the faces around v; with v pulled into `target`, of those that are left.
-  [[nodiscard]] double worst_quality(std::uint32_t v, std::uint32_t target, bool with_needles) const {
+  // The worst of the faces around v; with v pulled into `target`, of those that are left. The search ends at one that
+  // is not above `needed`.
+  [[nodiscard]] double worst_quality(std::uint32_t v, std::uint32_t target, bool with_needles,
+                                     double needed = -std::numeric_limits<double>::infinity()) const {
     double worst = std::numeric_limits<double>::infinity();
     for (const std::uint32_t face : star_[v]) {
+      if (!(worst > needed)) break;
       const Triangle& t = triangle(face);
       if ((v != target && has(t, target)) || (needles_[face] && !with_needles)) continue;
       std::array<Vec3, 3> corners;
@@ -159,19 +161,19 @@ class Merger {
 
   // A vertex at the same node of the lattice that v can be pulled into: of those in most planes there the nearest.
   // Needles have no say; they vanish as all points at a node become one.
-  [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v) const {
+  [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v) {
     constexpr double kMayLose = 0.25;
     const auto is_needle = [&](std::uint32_t face) { return needles_[face]; };
     if (std::ranges::none_of(star_[v], is_needle)) return std::nullopt;
-    const std::vector<std::uint32_t> around = neighbours(v);
-    const std::vector<std::uint32_t> faces = faces_at_node(v, around);
+    find_neighbours(v, around_);
+    const std::vector<std::uint32_t> faces = faces_at_node(v, around_);
     const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, worst_quality(v, v, false)));
     std::optional<std::uint32_t> best;
     std::pair best_rank(planes_through(v, faces), -needle_);
-    for (const std::uint32_t target : around) {
+    for (const std::uint32_t target : around_) {
       const std::pair rank(planes_through(target, faces), -distance(v, target));
       if (!(rank > best_rank) || !is_at_node(v, target) || !stays_in_planes(v, target, false)) continue;
-      if (!(worst_quality(v, target, false) > needed) || !keeps_topology(target, around)) continue;
+      if (!(worst_quality(v, target, false, needed) > needed) || !keeps_topology(target)) continue;
       best = target;
       best_rank = rank;
     }
@@ -202,14 +204,15 @@ class Merger {
   }
 
   // The vertex that v can be pulled into with the best faces around.
-  [[nodiscard]] std::optional<std::uint32_t> best_target(std::uint32_t v) const {
-    const std::vector<std::uint32_t> around = neighbours(v);
+  [[nodiscard]] std::optional<std::uint32_t> best_target(std::uint32_t v) {
+    find_neighbours(v, around_);
     std::optional<std::uint32_t> best;
-    double best_quality = std::max(0.0, std::min(kLeastQuality, worst_quality(v, v, true)));
-    for (const std::uint32_t target : around) {
+    std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
+    for (const std::uint32_t target : around_) {
       if (!stays_in_planes(v, target, true)) continue;
-      const double worst = worst_quality(v, target, true);
-      if (worst > best_quality && keeps_topology(target, around)) {
+      if (!best_quality) best_quality = std::max(0.0, std::min(kLeastQuality, worst_quality(v, v, true)));
+      const double worst = worst_quality(v, target, true, *best_quality);
+      if (worst > *best_quality && keeps_topology(target)) {
         best = target;
         best_quality = worst;
       }
@@ -224,17 +227,16 @@ class Merger {
   }
 
   // The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): two vertices have no neighbours in common but those of
-  // their two faces.
-  [[nodiscard]] bool keeps_topology(std::uint32_t target, const std::vector<std::uint32_t>& around) const {
-    std::size_t common = 0;
-    for (const std::uint32_t neighbour : neighbours(target)) {
-      common += std::ranges::binary_search(around, neighbour) ? 1 : 0;
-    }
-    return common == 2;
+  // their two faces. Of `target` and the vertex that around_ is around.
+  [[nodiscard]] bool keeps_topology(std::uint32_t target) {
+    find_neighbours(target, around_target_);
+    const auto is_common = [&](std::uint32_t neighbour) { return std::ranges::binary_search(around_, neighbour); };
+    return std::ranges::count_if(around_target_, is_common) == 2;
   }
 
   void pull(std::uint32_t v, std::uint32_t target) {
-    for (const std::uint32_t neighbour : neighbours(v)) {
+    find_neighbours(v, around_);
+    for (const std::uint32_t neighbour : around_) {
       if (state_[neighbour] != State::kKept) state_[neighbour] = State::kNext;
     }
     for (const std::uint32_t face : star_[v]) {
@@ -265,6 +267,7 @@ class Merger {
   std::vector<std::vector<std::uint32_t>> star_;  // faces
   std::vector<State> state_;
   std::vector<std::uint32_t> into_;
+  std::vector<std::uint32_t> around_, around_target_;  // neighbours in increasing order, of what is looked at
 };
 
 }  // namespace

@@ -90,7 +90,11 @@ class SurfaceMaker {
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
     if (!is_right_.value_or(true)) return std::nullopt;
-    if (options_.simplify > 0.0) made.simplified = simplify_surface(made.surface, margins);
+    if (options_.simplify > 0.0) {
+      const double most = farthest_pull(margins);
+      made.bound_too_small = !(most > 0.0);
+      made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
+    }
     return made;
   }
 
@@ -165,14 +169,16 @@ class SurfaceMaker {
     return false;
   }
 
-  // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
-  bool simplify_surface(SurfaceMesh& surface, const SurfaceMargins& margins) {
+  // What is left of `simplify` for pulls. Merging has moved points by a few margins already.
+  [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargins = 16.0, kMargin = 1.0 - 1e-6;
     const Vec3& h = inside_.lattice().spacing;
-    // Merging has moved points by a few margins already.
-    const double most = kMargin * options_.simplify - kMargins * margins.inner * std::max({h.x, h.y, h.z});
+    return kMargin * options_.simplify - kMargins * margins.inner * std::max({h.x, h.y, h.z});
+  }
+
+  // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
+  bool simplify_surface(SurfaceMesh& surface, double most) {
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    if (!(most > 0.0)) return true;
     for (int round = 0; round < options_.rounds; ++round) {
       MergedSurface result = simplify(surface, inside_, kept, most);
       TriangleMesh compact = result.surface.mesh;

@@ -27,6 +27,7 @@ struct FinishedSurface {
   // Whether that was done as asked. Else too many rounds of undoing what intersects, or has nodes on the wrong side,
   // left faults still: the surface is the one before.
   bool merged = true, simplified = true;
+  bool bound_too_small = false;  // why it is not simplified: `simplify` is within what rounding needs
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.

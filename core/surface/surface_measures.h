@@ -6,6 +6,8 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/contour.h"
+#include "core/surface/edge_roots.h"
+#include "core/surface/node_set.h"
 
 namespace raycone {
 
@@ -16,9 +18,23 @@ struct SurfaceMeasures {
   // Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
   // set, as judged at points two cells apart. It separates nothing, or is of parts thinner than the lattice sees.
   double dropped_area = 0.0;
+  bool drops = false;  // whether there is such area, even if world units make it 0 or infinite
+};
+
+// What a lattice is too coarse for.
+struct ThinParts {
+  double area = 0.0;       // of the mesh: dropped, though it separates or was to be thickened
+  double of_all = 0.0;     // that area as a part of the mesh's
+  std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,
                                               const Lattice& lattice, double thickness = 0.0);
+
+// Of a surface of `inside` that drops area. A point of that separates where the rule differs a margin before
+// and behind the triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is
+// outside of the lattice does not count. Judged at the points that dropped_area is.
+[[nodiscard]] ThinParts thin_parts(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& rule,
+                                   const NodeSet& inside, double thickness);
 
 }  // namespace raycone

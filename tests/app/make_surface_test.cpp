@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
@@ -32,6 +33,39 @@ TEST(MakeSurface, TellsThatNothingIsSimplified) {
   ASSERT_EQ(left.warnings.size(), 1U);
   EXPECT_EQ(left.warnings[0].name, "not-simplified");
   EXPECT_EQ(left.surface.mesh.triangles, merged.surface.mesh.triangles);
+}
+
+TEST(MakeSurface, TellsThatADistanceIsTooSmallToSimplify) {
+  SurfaceOptions options;
+  options.simplify = 1e-9;  // 16 margins of 2^-30 voxels of 0.25 are 3.7e-9
+  const MadeSurface left = made(options);
+  ASSERT_EQ(left.warnings.size(), 1U);
+  EXPECT_EQ(left.warnings[0].name, "not-simplified");
+  EXPECT_NE(left.warnings[0].text.find("rounding"), std::string::npos);
+  options.simplify = 1e-8;
+  EXPECT_TRUE(made(options).warnings.empty());
+}
+
+// A sphere and, beside it, a plate between the nodes, closed or a sheet.
+TEST(MakeSurface, TellsThatPartsAreTooThin) {
+  const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 30}};
+  const auto names = [&](double height, double thickness) {
+    TriangleMesh mesh = weld(sphere(8), {});
+    const TriangleMesh plate = box_mesh({-0.9, -0.9, 4.05}, {0.9, 0.9, 4.05 + height});
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());
+    for (const Triangle& t : plate.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    SurfaceOptions options;
+    options.thickness = thickness;
+    const MadeSurface made = make_surface("m", mesh, WindingNumberEvaluator(mesh), lattice, options, kAllMemory);
+    return made.warnings.empty() ? std::string() : line_of(made.warnings.at(0));
+  };
+  EXPECT_EQ(names(0.5, 0.0), "");
+  const std::string thin = names(0.1, 0.0);
+  EXPECT_TRUE(thin.starts_with("thin-parts: ")) << thin;
+  EXPECT_NE(thin.find(", 1 part as a whole"), std::string::npos) << thin;
+  EXPECT_TRUE(names(0.01, 0.01).starts_with("thin-parts: "));  // grown, and too thin still
+  EXPECT_EQ(names(0.01, 0.22), "");                            // half of the diagonal of a voxel is 0.217
 }
 
 }  // namespace

@@ -417,6 +417,36 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   const auto [surface, lattice] = surface_of(box, 20);
   EXPECT_NEAR(measure_surface(surface, wall, lattice).dropped_area, 0.18, 1e-12);
   EXPECT_EQ(measure_surface(surface, box, lattice).dropped_area, 0.0);
+  EXPECT_TRUE(measure_surface(surface, wall, lattice).drops);
+  EXPECT_FALSE(measure_surface(surface, box, lattice).drops);
+}
+
+// A box beside a plate of a tenth of a voxel, which lies between nodes.
+TEST(SurfaceMeasures, TellWhatIsTooThin) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto [surface, lattice] = surface_of(box, 20);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  const auto thin = [&, &surface = surface](const TriangleMesh& other, double thickness) {
+    TriangleMesh mesh = box;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    const WindingNumberEvaluator evaluator(mesh);
+    return thin_parts(surface, mesh, RuleAlong(evaluator, Rule{}), inside, thickness);
+  };
+  const double h = lattice.spacing.x;
+  // A gap within the box, and the same faces the other way round, which separate nothing there.
+  const TriangleMesh plate = test::box_mesh({0.3, 0.3, 0.5}, {0.7, 0.7, 0.5 + 0.1 * h});
+  TriangleMesh gap = plate;
+  for (Triangle& t : gap.triangles) std::swap(t[1], t[2]);
+  EXPECT_EQ(thin(plate, 0.0).area, 0.0);
+  EXPECT_EQ(thin(plate, 0.0).lost, 0U);
+  EXPECT_NEAR(thin(gap, 0.0).area, 2 * 0.16 + 4 * 0.4 * 0.1 * h, 1e-12);
+  EXPECT_EQ(thin(gap, 0.0).lost, 1U);
+  EXPECT_EQ(thin(gap, h / 4).area, 0.0);  // within the set
+  // Beyond the lattice, nothing counts.
+  EXPECT_EQ(thin(test::moved(gap, {1, 1, 1}, {5, 0, 0}), 0.0).area, 0.0);
+  EXPECT_EQ(thin(test::moved(plate, {1, 1, 1}, {5, 0, 0}), h / 4).area, 0.0);
 }
 
 }  // namespace

@@ -442,6 +442,8 @@ MUTANTS = [
 
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
         ("core/surface/surface.cpp", " || is_beside(from, misplaced);", ";")]),
+    Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
+        ("core/surface/surface_measures.cpp", "std::signbit(values[2 * i]) != std::signbit(values[2 * i + 1])", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [
         ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [

@@ -10,13 +10,6 @@
 namespace raycone {
 namespace {
 
-// Of so many samples about how many are evaluated: on lattices, where nothing but the rule is asked for, one in
-// sixteen.
-double samples_of(const FieldOptions& options, double samples) {
-  constexpr double kCertified = 16;
-  return options.rule_only() ? samples / kCertified : samples;
-}
-
 std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const FieldOptions& options,
                                               const std::vector<ExteriorEdge>* edges) {
   if (!options.has(Field::kGradient)) return std::nullopt;
@@ -41,7 +34,7 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
                                               : std::nullopt),
       gradient_(gradient_for(mesh, options, edges)),
       winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges,
-                      Accuracy{tolerance_of_evaluation(options), samples_of(options, samples)}) {}
+                      Accuracy{tolerance_of_evaluation(options), samples, options.rule_only()}) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

@@ -68,7 +68,8 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice) {
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
     return kUnit * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
   }
-  if (const FarField* const far = mesh.far_field()) {
+  if (mesh.has_far_field()) {
+    const FarField* const far = mesh.far_field();
     return kUnit * kEdge * far->cost() * samples + kSource * static_cast<double>(far->sources().triangles().size());
   }
   return kUnit * direct_cost(mesh) * samples;

@@ -41,8 +41,7 @@ std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const B
   if (sources == FarSources::kCaps && boundary.is_flat()) return nullptr;
   const bool forced = options.summation == Summation::kFarField;
   constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
-  const bool may_pay = options.summation == Summation::kCheapest && boundary.exterior_edges() >= kTooFew &&
-                       far_field_may_pay(options.accuracy.samples);
+  const bool may_pay = options.summation == Summation::kCheapest && boundary.exterior_edges() >= kTooFew;
   if (!forced && !may_pay) return nullptr;
   auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
   if (far->has_repeated_faces()) return nullptr;
@@ -112,6 +111,19 @@ const FarField* ScaledMesh::far_field() const {
   return far_.get();
 }
 
+// Where nobody knows how many samples certificates leave, they are counted: so many take seven times as long as the
+// tree.
+bool ScaledMesh::takes_far_field(std::size_t samples) const {
+  constexpr std::uint64_t kEnough = 100'000;
+  const bool forced = options_.summation == Summation::kFarField;
+  if (forced) return far_field() != nullptr;
+  if (options_.accuracy.sides_only && samples_.load(std::memory_order_relaxed) < kEnough) {
+    samples_.fetch_add(samples, std::memory_order_relaxed);
+    return false;
+  }
+  return options_.accuracy.sides_only ? far_field() != nullptr : has_far_field();
+}
+
 // Whether there is one or not, which is not known before it is built.
 double ScaledMesh::doubt_of_far_field() const {
   const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
@@ -131,7 +143,7 @@ double ScaledMesh::most_sources() const {
 }
 
 void ScaledMesh::prepare_points() const {
-  (void)far_field();
+  if (!options_.accuracy.sides_only) (void)has_far_field();
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();
   } else {
@@ -150,7 +162,7 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
-  if (!far_field()) {
+  if (!takes_far_field(values.size())) {
     set_direct_values(samples, crossings, values);
     return;
   }

@@ -97,8 +97,11 @@ class ScaledMesh {
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
-  [[nodiscard]] bool has_far_field() const { return far_field() != nullptr; }
-  // None where the direct sum is as good. Built when first needed.
+  [[nodiscard]] bool has_far_field() const {
+    const bool may_pay = options_.summation == Summation::kFarField || far_field_may_pay(options_.accuracy.samples);
+    return may_pay && far_field() != nullptr;
+  }
+  // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 
   // No value is off by more.
@@ -132,6 +135,7 @@ class ScaledMesh {
 
  private:
   [[nodiscard]] double doubt_of_far_field() const;
+  [[nodiscard]] bool takes_far_field(std::size_t samples) const;
   [[nodiscard]] double most_sources() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values) const;
@@ -146,7 +150,7 @@ class ScaledMesh {
   TriangleMesh mesh_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
-  mutable std::atomic<std::uint64_t> direct_terms_ = 0;
+  mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;

@@ -59,6 +59,8 @@ struct Accuracy {
   double tolerance = 0.0;
   // About how many samples the evaluator is for: preparing a far field must pay.
   double samples = 1e6;
+  // Whether values only serve to tell sides of rules, which are exact: engines may then change as samples go on.
+  bool sides_only = false;
 };
 
 // What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.

@@ -33,8 +33,11 @@ bool memory_limit_changed(const RowOrigin& origin, const PlanOptions& options) {
 
 bool output_missing(const BatchMesh& mesh, const ResultRow& row, const PlanOptions& options) {
   if (!options.writes) return false;
-  std::error_code error;
-  return row.output != mesh.output || !std::filesystem::exists(options.directory + '/' + mesh.output, error);
+  const auto is_missing_file = [](const std::string& path) {
+    std::error_code error;
+    return !std::filesystem::exists(path, error);
+  };
+  return row.output != mesh.output || std::ranges::any_of(options.written(mesh), is_missing_file);
 }
 
 // Why a mesh with a row that holds is done again; empty where it is not.

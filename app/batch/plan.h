@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@
 namespace raycone {
 
 struct PlanOptions {
-  std::string directory;  // of outputs
-  bool writes = true;     // outputs, not just measurements
+  // Paths of all files that a job writes for this mesh: none where it only measures.
+  std::function<std::vector<std::string>(const BatchMesh&)> written;
+  bool writes = true;  // outputs, not just measurements
   bool retry_failed = false;
   // What is done to a mesh, as rows remember it.
   std::string version;

@@ -29,6 +29,7 @@
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
+#include "app/run/written_files.h"
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
@@ -61,6 +62,18 @@ std::vector<std::string> other_inputs(const BatchCommand& command) {
   return inputs;
 }
 
+// All that a job writes for a mesh, its output first.
+std::vector<std::string> paths_written(const BatchCommand& command, const BatchMesh& mesh) {
+  if (!command.writes) return {};
+  std::vector<std::string> paths{command.directory + '/' + mesh.output};
+  const auto* const for_each = std::get_if<LatticeCommand>(&command.for_each);
+  if (!for_each || !for_each->field.has(Field::kLabel)) return paths;
+  LatticeCommand one = *for_each;
+  one.output.path = paths.front();
+  if (const std::optional<std::string> names = label_names_path(one)) paths.push_back(*names);
+  return paths;
+}
+
 // No output may replace an input of this or another mesh, nor go where links lead another output.
 void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>& meshes) {
   std::map<std::pair<dev_t, ino_t>, std::string> inputs;  // their names
@@ -70,10 +83,9 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
   for (const BatchMesh& mesh : meshes) add(mesh.path);
   for (const std::string& path : other_inputs(command)) add(path);
   std::map<std::string, std::string> outputs;  // by the path where links lead
-  for (const BatchMesh& mesh : meshes) {
-    const std::string path = command.directory + '/' + mesh.output;
+  const auto check = [&](const BatchMesh& mesh, const std::string& path) {
     const std::optional<FileIdentity> file = identity_of_output(path);
-    if (!file) continue;
+    if (!file) return;
     const auto input = inputs.find({file->device, file->inode});
     const bool is_input = file->new_name.empty() && input != inputs.end();
     const fs::path target = follow_links(path);
@@ -82,6 +94,9 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
     const auto [other, is_free] = outputs.emplace(target_path.string(), mesh.path);
     if (is_input) throw UsageError(mesh.path + ": its output " + path + " would replace the input " + input->second);
     if (!is_free) throw UsageError(mesh.path + ": its output " + path + " would replace that of " + other->second);
+  };
+  for (const BatchMesh& mesh : meshes) {
+    for (const std::string& path : paths_written(command, mesh)) check(mesh, path);
   }
 }
 
@@ -141,7 +156,7 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
 }
 
 PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& limits) {
-  return {.directory = command.directory,
+  return {.written = [&command](const BatchMesh& mesh) { return paths_written(command, mesh); },
           .writes = command.writes,
           .retry_failed = command.retry_failed,
           .version = kVersion,

@@ -109,6 +109,38 @@ TEST_F(Batch, AgainDoesNothingButWhatIsMissingOrOutOfDate) {
   EXPECT_EQ(listed(), "");
 }
 
+// NIfTI has no place for them: a.json beside a.nii.gz.
+TEST_F(Batch, NamesOfLabelsAreMissedLikeTheOutput) {
+  put("a.obj");
+  put("sub/b.obj");
+  const std::vector<std::string> labels{"--field", "label", "--parts", "component", "--format", "nii.gz"};
+  const auto listed = [&] {
+    std::vector<std::string> words = labels;
+    words.push_back("--dry-run");
+    return run(words).out;
+  };
+  ASSERT_EQ(run(labels).status, 0);
+  EXPECT_EQ(listed(), "");
+  const std::string names = read_text(out_ + "/sub/b.json");
+  ASSERT_TRUE(fs::remove(out_ + "/sub/b.json"));
+  EXPECT_EQ(listed(), meshes_ + "/sub/b.obj\toutput missing\n");
+  ASSERT_EQ(run(labels).status, 0);
+  EXPECT_EQ(read_text(out_ + "/sub/b.json"), names);
+  EXPECT_EQ(listed(), "");
+}
+
+TEST_F(Batch, NamesOfLabelsReplaceNoInput) {
+  const std::string mesh = put("a.obj");
+  const std::string list = out_ + "/a.json";
+  fs::create_directories(out_);
+  write_text(list, mesh + '\n');
+  const CommandResult result = run_raycone({"batch", '@' + list, "--out-dir", out_, "--field", "label", "--parts",
+                                            "component", "--format", "nii", "--resolution", "4"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("a.json would replace the input"), std::string::npos) << result.err;
+  EXPECT_EQ(read_text(list), mesh + '\n');
+}
+
 TEST_F(Batch, FailuresAreTriedAgainWhereTheirCauseMayBeGone) {
   put("bad.obj", "v 0 0 0\n");
   put("big.obj", open_cube(5000));

@@ -38,7 +38,7 @@ class FieldEvaluator {
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(const TriangleMesh& surface) { solid_.emplace(surface, simd_); }
 
-  // Builds the search structures that points need and lattices do not.
+  // Builds the search structures of points. Lattices need that of distances alone, which evaluate() builds without this.
   void prepare_points() const;
 
   // Fills `samples`, made for the options of this, with all fields of a block or of finite points. On lattices, which

@@ -28,7 +28,7 @@ class FieldRun {
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(TriangleMesh surface);
 
-  // Builds the search structures that points need and lattices do not.
+  // Builds the search structures of points.
   void prepare_points();
 
   // Evaluates a block or some finite points: values() are theirs then. Those that verification wants are kept.

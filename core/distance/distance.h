@@ -26,8 +26,7 @@ class DistanceEvaluator {
   // Throws std::length_error for more than kMaxBlockSide samples along an axis.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
-  // Builds the search tree that points need and lattices do not. Without this call, the first evaluation of points
-  // builds it.
+  // Builds the search tree. Without this call, the first evaluation does.
   void prepare_points() const;
 
   // Sets the distances (world units) of finite points, in their order. Precondition: distances.size() == points.size().

@@ -33,8 +33,9 @@ std::string readable_seconds(double seconds) {
 
 std::string cost_of(const CostedLattice& costed, int threads) {
   const auto [nx, ny, nz] = costed.lattice.counts;
-  return readable_seconds(costed.seconds / threads) + " for " + std::to_string(nx) + " x " + std::to_string(ny) +
-         " x " + std::to_string(nz) + " samples";
+  std::string time = readable_seconds(costed.seconds / threads);
+  if (costed.at_most && time.starts_with("about ")) time.replace(0, 6, "at most ");
+  return time + " for " + std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz) + " samples";
 }
 
 std::string intersections_of(const IntersectionInfo& found) {

@@ -35,6 +35,7 @@ struct MeshInfo {
 struct CostedLattice {
   Lattice lattice;
   double seconds;  // of one thread, about
+  bool at_most;
 };
 
 // Those that the text tells of.

@@ -42,7 +42,8 @@ CostedLattices costed_lattices(const MeshToEvaluate& input, const Box& bounds) {
       LatticeRequest request;
       request.sampling = LongestSide{resolution};
       const Lattice lattice = choose_lattice(bounds, request, warnings);
-      costed.lattices.push_back({lattice, evaluator.estimated_seconds(lattice)});
+      const auto [seconds, at_most] = evaluator.estimated_seconds(lattice);
+      costed.lattices.push_back({lattice, seconds, at_most});
     }
   } catch (const LimitError& error) {
     costed.no_more = error.what();

@@ -59,12 +59,13 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   return axes;
 }
 
-double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice) {
+double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   constexpr double kUnit = 5.2e-9;  // a triangle of blocks at a sample
   constexpr double kSource = 3e-5;  // in the tree
   if (mesh.is_closed()) return 0.0;
   double samples = 1.0;
   for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
+  if (!by_far_field) return kUnit * direct_cost(mesh) * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
     return kUnit * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
   }

@@ -18,8 +18,9 @@ namespace raycone {
 [[nodiscard]] std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice& lattice);
 
 // What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
-// goes about it. Seconds of a machine that docs/benchmarks.md describes.
-[[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice);
+// goes about it. Seconds of a machine that docs/benchmarks.md describes. `by_far_field`: whether blocks and far field
+// are looked at, which takes their trees; without, what a direct sum takes.
+[[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field);
 
 // `values` are the crossings of the samples of `block`, x fastest, and `cap_crossings` those of mesh.blocks().caps; of
 // no account where values do not depend on crossings. Turns each into the winding number within the tolerance. A value

@@ -109,6 +109,9 @@ class ScaledMesh {
     return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
   }
 
+  // Triangles that a far field sums, at most.
+  [[nodiscard]] double most_sources() const;
+
   // Whether blocks may be evaluated. Below this tolerance fits would round too much.
   [[nodiscard]] bool has_blocks() const { return term_ && options_.accuracy.tolerance >= 1e-11; }
 
@@ -136,7 +139,6 @@ class ScaledMesh {
  private:
   [[nodiscard]] double doubt_of_far_field() const;
   [[nodiscard]] bool takes_far_field(std::size_t samples) const;
-  [[nodiscard]] double most_sources() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values) const;
 

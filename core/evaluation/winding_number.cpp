@@ -60,14 +60,16 @@ double WindingNumberEvaluator::accuracy() const {
 }
 
 // Each face is scanned once, and each sample written once.
-double WindingNumberEvaluator::estimated_seconds(const Lattice& lattice) const {
+WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const Lattice& lattice) const {
   constexpr double kPerFace = 25e-9, kPerSample = 3e-9;
+  constexpr double kMany = 8192;  // sources
   const DefaultFloatingPoint guard;
   const ScaledMesh& mesh = implementation_->scaled();
   double samples = 1.0;
   for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
-  return kPerFace * static_cast<double>(mesh.mesh().triangles.size()) + kPerSample * samples +
-         boundary_seconds(mesh, lattice);
+  const bool many = !mesh.is_closed() && mesh.most_sources() > kMany;
+  const double once = kPerFace * static_cast<double>(mesh.mesh().triangles.size());
+  return {once + kPerSample * samples + boundary_seconds(mesh, lattice, !many), many};
 }
 
 Terms WindingNumberEvaluator::terms() const { return implementation_->terms(); }

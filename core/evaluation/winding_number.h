@@ -106,8 +106,13 @@ class WindingNumberEvaluator {
                        std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done = nullptr) const;
 
   // What evaluate() takes for a whole lattice on one thread, about, what is prepared included: seconds of a machine
-  // that docs/benchmarks.md describes. Builds what it is estimated from, as an evaluation does.
-  [[nodiscard]] double estimated_seconds(const Lattice& lattice) const;
+  // that docs/benchmarks.md describes. Builds what it is estimated from, as an evaluation does; where that would take
+  // seconds, because boundary edges or triangles are too many, it is what a direct sum takes (`at_most`).
+  struct Estimate {
+    double seconds;
+    bool at_most;
+  };
+  [[nodiscard]] Estimate estimated_seconds(const Lattice& lattice) const;
 
   // |value - w| <= accuracy(), turns. This is the tolerance, or 1e-10 where that is less. From a million exterior edges
   // on, counted with multiplicity, it is 2^-53 times their number at least: doubles of such values can do no better.

@@ -60,14 +60,15 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
 }
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  constexpr double kUnit = 5.2e-9;  // a triangle of blocks at a sample
-  constexpr double kSource = 3e-5;  // in the tree
+  constexpr double kUnit = 5.2e-9;    // of a direct sum
+  constexpr double kInBlocks = 9e-9;  // of blocks, with all that they take beside triangles; of five meshes at 256
+  constexpr double kSource = 3e-5;    // in the tree
   if (mesh.is_closed()) return 0.0;
   double samples = 1.0;
   for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
   if (!by_far_field) return kUnit * direct_cost(mesh) * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kUnit * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
+    return kInBlocks * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
   }
   if (mesh.has_far_field()) {
     const FarField* const far = mesh.far_field();

@@ -41,7 +41,10 @@ PointsCommand expanded(PointsCommand command) {
   if (command.field.has(Field::kLabel)) command.mesh = with_listed_meshes(command.mesh, command.points);
   return command;
 }
-const SliceCommand& expanded(const SliceCommand& command) { return command; }
+SliceCommand expanded(SliceCommand command) {
+  if (command.field.has(Field::kLabel)) command.mesh = with_listed_meshes(command.mesh);
+  return command;
+}
 const SurfaceCommand& expanded(const SurfaceCommand& command) { return command; }
 
 // From a mesh to files about it: lattice, points, slice, surface.

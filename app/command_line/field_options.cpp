@@ -69,9 +69,8 @@ OptionGroup field_group() {
         "distance to the surface that raycone surface makes, gradient of the winding number, number of the part that a "
         "sample is inside of",
         true},
-       {"--parts", "file|group|component",
-        "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"},
-       {"--priority", "", "Where parts overlap, label is the first of them, not the last"},
+       parts_option(),
+       priority_option(),
        {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
        {"--band", "B",
         "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not "
@@ -81,6 +80,15 @@ OptionGroup field_group() {
        {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
        {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
        {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
+}
+
+OptionSpec parts_option() {
+  return {"--parts", "file|group|component",
+          "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"};
+}
+
+OptionSpec priority_option() {
+  return {"--priority", "", "Where parts overlap, label is the first of them, not the last"};
 }
 
 OptionGroup points_field_group() {

@@ -15,6 +15,8 @@ namespace raycone {
 // --field solid, where there is no lattice.
 [[noreturn]] void refuse_solid();
 
+[[nodiscard]] OptionSpec parts_option();
+[[nodiscard]] OptionSpec priority_option();
 [[nodiscard]] OptionSpec tolerance_option();
 // What --tolerance says. Precondition: it is given.
 [[nodiscard]] double parse_tolerance(const Values& values);

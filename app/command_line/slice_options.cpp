@@ -96,8 +96,8 @@ FieldOptions parse_slice_field(const Values& values) {
   const std::string name = values.given("--field") ? values.text("--field") : "winding";
   const std::optional<Field> field = field_from_name(name);
   if (field == Field::kSolid) refuse_solid();
-  if (!field || field == Field::kDensity || field == Field::kGradient || field == Field::kLabel)
-    invalid("--field", name, "winding, inside or sdf");
+  if (!field || field == Field::kDensity || field == Field::kGradient)
+    invalid("--field", name, "winding, inside, sdf or label");
   if (field == Field::kWinding && values.given("--rule")) {
     throw UsageError("--rule " + values.text("--rule") + ": has no effect on --field winding");
   }
@@ -140,7 +140,7 @@ CommandSpec slice_spec() {
   output.options.push_back({"--no-legend", "", "Draw the plane alone, pixel by pixel: no axes, no legend"});
   return {.name = "slice",
           .description = "Draw a picture of one cross-section",
-          .operands = {mesh_operand()},
+          .operands = {meshes_operand()},
           .groups = {mesh_group_with_both_ups(),
                      {"Plane",
                       {{"--axis", "x|y|z", "Axis that is perpendicular to the plane (default: z)"},
@@ -151,7 +151,10 @@ CommandSpec slice_spec() {
                        {"--padding", "P|Nv", "Widen the box by P, or the picture by N pixels, on every side"},
                        {"--size", "N", "Pixels along the longer side, with axes and legend (default: 1024)"}}},
                      {"Field",
-                      {{"--field", "winding|inside|sdf", "Winding number (default), inside, or signed distance"},
+                      {{"--field", "winding|inside|sdf|label",
+                        "Winding number (default), inside, signed distance, or number of the part"},
+                       parts_option(),
+                       priority_option(),
                        {"--rule", "threshold=T|abs=T|nonzero|positive|odd",
                         "What counts as inside (default: threshold=0.5)"},
                        tolerance_option()}},
@@ -161,6 +164,7 @@ CommandSpec slice_spec() {
                        "raycone slice bunny.obj -o foot.png --axis y --at 10% --padding 0.02",
                        "raycone slice part.stl -o cut.png --normal 1,1,0 --origin 0,0,5 --up 0,0,1",
                        "raycone slice part.stl -o thickness.png --field sdf",
+                       "raycone slice femur.stl tibia.stl -o knee.png --field label --axis y",
                        "raycone slice part.stl -o part.png --size 4096 --values part.npy"}};
 }
 
@@ -168,9 +172,10 @@ Command parse_slice(const Values& values) {
   if (!values.given("--output")) throw UsageError("no output given, expected -o OUT.png" + help_hint("slice"));
   const UpOptions up = split_up_options(values);
   SliceCommand command;
-  command.mesh = parse_mesh(up.mesh);
   command.run = parse_run(values);
   command.field = parse_slice_field(values);
+  refuse_idle_parts(values, command.field);
+  command.mesh = parse_meshes(up.mesh, command.field);
   command.slice = parse_request(values, up.picture);
   command.output = parse_output_files(values);
   refuse_idle_depfile(values, command.output);

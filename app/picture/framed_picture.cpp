@@ -161,7 +161,7 @@ void draw_frame(Coverage& ink, const PageLayout& layout, double stroke) {
 
 bool has_frame(const PlaneView& view) { return std::max(view.width, view.height) >= kLeastFramedSize; }
 
-Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend, const ColourMap& colours) {
+Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend) {
   const PlotAxis across = plot_axis(view.right, "u", view, view.width);
   const PlotAxis upwards = plot_axis(view.up, "v", view, view.height);
   const PageLayout layout = lay_out(view, across, upwards, legend);
@@ -173,7 +173,7 @@ Image framed_picture(const Image& plot, const PlaneView& view, const Legend& leg
   draw_axis_across(ink, layout, across, stroke);
   draw_axis_upwards(ink, layout, upwards, stroke);
   blend(page, ink, kInk);
-  draw_legend(page, legend, colours, layout.text, {layout.right() + std::llround(kLegendGap * layout.text), 0});
+  draw_legend(page, legend, layout.text, {layout.right() + std::llround(kLegendGap * layout.text), 0});
   return page;
 }
 

@@ -1,7 +1,6 @@
 // A picture with axes and legend around it.
 #pragma once
 
-#include "app/picture/colour_map.h"
 #include "app/picture/image.h"
 #include "app/picture/legend.h"
 #include "app/picture/plane_view.h"
@@ -16,8 +15,7 @@ inline constexpr std::int64_t kLeastFramedSize = 320;  // pixels along the longe
 // `plot`, of `view`, shrunk so that axes and legend fit around it on a page whose longer side is that of `plot`. An
 // axis of the world is labelled x, y or z and has world coordinates; another one u (to the right) or v (up), the
 // distance from the view's origin in world units. Precondition: has_frame(view).
-[[nodiscard]] Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend,
-                                   const ColourMap& colours);
+[[nodiscard]] Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend);
 
 // An upper bound of the bytes that it takes, its result included.
 [[nodiscard]] double framed_picture_bytes(const PlaneView& view);

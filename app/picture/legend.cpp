@@ -40,7 +40,8 @@ double half_width_at(double row, const BarLayout& layout, const ColourRange& ran
   return std::max(layout.width / 2 - std::max(above, below), 0.0);
 }
 
-void draw_bar(Image& image, const BarLayout& layout, const ColourMap& colours, LegendSize size, PixelOffset corner) {
+void draw_colours(Image& image, const BarLayout& layout, const ColourMap& colours, LegendSize size,
+                  PixelOffset corner) {
   const ColourRange& range = colours.range();
   for (std::int64_t row = 0; row < size.height; ++row) {
     const double y = static_cast<double>(row) + 0.5;
@@ -53,48 +54,47 @@ void draw_bar(Image& image, const BarLayout& layout, const ColourMap& colours, L
   }
 }
 
-void draw_bar_numbers(Coverage& ink, const BarLayout& layout, const ColourRange& range, const Legend& legend) {
+void draw_bar_numbers(Coverage& ink, const BarLayout& layout, const LegendBar& bar) {
   const double stroke = std::max(layout.text / 12.0, 1.0);
-  for (const Tick& label : legend.labels) {
-    const double row = layout.row_of(label.value, range);
+  for (const Tick& number : bar.numbers) {
+    const double row = layout.row_of(number.value, bar.colours.range());
     add_stroke(ink, {{layout.width, row}, {layout.width + 0.45 * layout.text, row}}, stroke);
-    add_text(ink, label.text, kLabelLeft * layout.text, row + layout.text / 2, layout.text);
+    add_text(ink, number.text, kLabelLeft * layout.text, row + layout.text / 2, layout.text);
   }
 }
 
-void draw_bar_lines(Coverage& ink, const BarLayout& layout, const ColourRange& range, const Legend& legend) {
+void draw_bar_lines(Coverage& ink, const BarLayout& layout, const LegendBar& bar) {
   const double stroke = std::max(layout.text / 12.0, 1.0);
-  for (const double level : legend.lines) {
-    const double row = layout.row_of(level, range);
+  for (const double level : bar.lines) {
+    const double row = layout.row_of(level, bar.colours.range());
     add_stroke(ink, {{0.0, row}, {layout.width, row}}, stroke);
   }
 }
 
-void draw_continuous(Image& image, const Legend& legend, const ColourMap& colours, double text, PixelOffset corner) {
-  const LegendSize size = legend_size(legend, text);
+void draw_bar(Image& image, const LegendBar& bar, double text, LegendSize size, PixelOffset corner) {
   const BarLayout layout(text);
-  draw_bar(image, layout, colours, size, corner);
+  draw_colours(image, layout, bar.colours, size, corner);
   Coverage lines(size.width, size.height);
-  draw_bar_lines(lines, layout, colours.range(), legend);
+  draw_bar_lines(lines, layout, bar);
   blend(image, lines, kInk, 0.55, corner);
   Coverage numbers(size.width, size.height);
-  draw_bar_numbers(numbers, layout, colours.range(), legend);
+  draw_bar_numbers(numbers, layout, bar);
   blend(image, numbers, kInk, 1.0, corner);
 }
 
-void draw_patches(Image& image, const Legend& legend, const ColourMap& colours, double text, PixelOffset corner) {
-  const LegendSize size = legend_size(legend, text);
+void draw_patches(Image& image, const std::vector<LegendPatch>& patches, double text, LegendSize size,
+                  PixelOffset corner) {
   Coverage words(size.width, size.height);
   const auto side = static_cast<std::int64_t>(std::round(kBarWidth * text));
   double top = std::round(kBarTop * text);
-  for (const Tick& label : legend.labels) {
+  for (const LegendPatch& patch : patches) {
     const auto first = static_cast<std::int64_t>(top);
-    for (std::int64_t row = first; row < first + side; ++row) {
+    for (std::int64_t row = first; patch.colour && row < first + side; ++row) {
       for (std::int64_t column = 0; column < side; ++column) {
-        image.at(corner.column + column, corner.row + row) = colours(label.value);
+        image.at(corner.column + column, corner.row + row) = *patch.colour;
       }
     }
-    add_text(words, label.text, kLabelLeft * text, top + (static_cast<double>(side) + text) / 2, text);
+    add_text(words, patch.text, kLabelLeft * text, top + (static_cast<double>(side) + text) / 2, text);
     top += std::round(kPatchPitch * text);
   }
   blend(image, words, kInk, 1.0, corner);
@@ -104,23 +104,23 @@ void draw_patches(Image& image, const Legend& legend, const ColourMap& colours, 
 
 LegendSize legend_size(const Legend& legend, double text) {
   double widest = 0.0;
-  for (const Tick& label : legend.labels) widest = std::max(widest, text_width(label.text, text));
+  for (const LegendPatch& patch : legend.patches) widest = std::max(widest, text_width(patch.text, text));
+  if (legend.bar) {
+    for (const Tick& number : legend.bar->numbers) widest = std::max(widest, text_width(number.text, text));
+  }
   const double width = std::max(kLabelLeft * text + widest, text_width(legend.title, text)) + 0.3 * text;
-  const double patches = kPatchPitch * static_cast<double>(legend.labels.size());
-  const double height = std::round(kBarTop * text) + (legend.continuous ? kBarHeight + 1.0 : patches) * text + 1.0;
+  const double below = legend.bar ? kBarHeight + 1.0 : kPatchPitch * static_cast<double>(legend.patches.size());
+  const double height = std::round(kBarTop * text) + below * text + 1.0;
   return {std::llround(std::ceil(width)), std::llround(std::ceil(height))};
 }
 
-void draw_legend(Image& image, const Legend& legend, const ColourMap& colours, double text, PixelOffset corner) {
+void draw_legend(Image& image, const Legend& legend, double text, PixelOffset corner) {
   const LegendSize size = legend_size(legend, text);
   Coverage title(size.width, size.height);
   add_text(title, legend.title, std::max(text / 12.0, 1.0), 1.2 * text, text);
   blend(image, title, kInk, 1.0, corner);
-  if (legend.continuous) {
-    draw_continuous(image, legend, colours, text, corner);
-  } else {
-    draw_patches(image, legend, colours, text, corner);
-  }
+  if (legend.bar) draw_bar(image, *legend.bar, text, size, corner);
+  draw_patches(image, legend.patches, text, size, corner);
 }
 
 }  // namespace raycone

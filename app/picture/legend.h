@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,27 @@
 
 namespace raycone {
 
-struct Legend {
-  std::string title;
-  std::vector<Tick> labels;
+// All colours, with numbers beside them.
+struct LegendBar {
+  ColourMap colours;
+  std::vector<Tick> numbers;
   std::vector<double> lines;  // values at which the picture has contours
-  bool continuous = true;     // a bar of all colours; else a patch for each label
 };
 
-// How wide and high it is with digits of the height `text`, all in pixels. Its bar begins 2.4 * text below its top.
+// One colour, and what it stands for; without a colour, only words.
+struct LegendPatch {
+  std::optional<Rgb> colour;
+  std::string text;
+};
+
+struct Legend {
+  std::string title;
+  std::optional<LegendBar> bar;      // a bar or
+  std::vector<LegendPatch> patches;  // one below the other
+};
+
+// How wide and high it is with digits of the height `text`, all in pixels. What is below its title begins 2.4 * text
+// below its top.
 struct LegendSize {
   std::int64_t width;
   std::int64_t height;
@@ -26,6 +40,6 @@ struct LegendSize {
 [[nodiscard]] LegendSize legend_size(const Legend& legend, double text);
 
 // Draws it from its top left corner. Precondition: it is within `image`.
-void draw_legend(Image& image, const Legend& legend, const ColourMap& colours, double text, PixelOffset corner);
+void draw_legend(Image& image, const Legend& legend, double text, PixelOffset corner);
 
 }  // namespace raycone

@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "app/picture/colour_map.h"
@@ -10,12 +16,16 @@
 #include "app/picture/legend.h"
 #include "app/picture/section_curve.h"
 #include "app/picture/ticks.h"
+#include "io/fields/label_colour.h"
 
 namespace raycone {
 namespace {
 
-constexpr std::size_t kMostLabels = 7;
-constexpr double kMostContours = 14;  // in a legend
+// In a legend.
+constexpr std::size_t kMostNumbers = 7;
+constexpr double kMostContours = 14;
+constexpr std::size_t kMostPatches = 30;
+constexpr std::size_t kMostLetters = 24;  // of a name
 
 // In pixels, of pictures of different sizes alike up to a lower limit.
 struct LineWidths {
@@ -28,46 +38,104 @@ LineWidths line_widths(const PlaneView& view) {
   return {std::max(2.2 * scale, 1.5), std::max(1.1 * scale, 0.8)};
 }
 
-ColourRange range_of(std::span<const double> values, PictureField field) {
-  if (field == PictureField::kInside) return {};
-  return field == PictureField::kDistance ? distance_colour_range(values) : colour_range(values);
-}
-
 std::vector<Tick> numbers_in(const ColourRange& range) {
-  return round_ticks(range.least(), range.most(), [](const Ticks& ticks) { return ticks.marks.size() <= kMostLabels; })
+  return round_ticks(range.least(), range.most(), [](const Ticks& ticks) { return ticks.marks.size() <= kMostNumbers; })
       .marks;
 }
 
-Levels levels_of(const ColourRange& range, PictureField field) {
-  if (field != PictureField::kDistance) return {};
-  const std::vector<Tick> numbers = numbers_in(range);
-  return {0.0, numbers.size() < 2 ? range.half_width : numbers[1].value - numbers[0].value};
-}
+// What a field looks like.
+struct Appearance {
+  std::function<Rgb(double)> colour;
+  std::optional<Levels> contours;
+  Legend legend;
+};
 
-Legend legend_of(const ColourRange& range, const Levels& levels, PictureField field) {
-  if (field == PictureField::kInside) return {"", {{1.0, "inside"}, {0.0, "outside"}}, {}, false};
-  Legend legend{field == PictureField::kDistance ? "sdf" : "w", numbers_in(range), {}, true};
+LegendBar bar_of(const ColourMap& colours, const Levels& levels) {
+  const ColourRange& range = colours.range();
+  LegendBar bar{colours, numbers_in(range), {}};
   const double first = std::ceil((range.least() - levels.offset) / levels.step);
   const double last = std::floor((range.most() - levels.offset) / levels.step);
-  if (last - first >= kMostContours) return legend;
-  for (double n = first; n <= last; n += 1.0) legend.lines.push_back(levels.offset + n * levels.step);
-  return legend;
+  if (last - first >= kMostContours) return bar;
+  for (double n = first; n <= last; n += 1.0) bar.lines.push_back(levels.offset + n * levels.step);
+  return bar;
 }
 
-Image coloured(const PlaneView& view, std::span<const double> values, const ColourMap& colours) {
+Appearance of_winding_numbers(std::span<const double> values) {
+  const ColourMap colours(colour_range(values));
+  return {colours, Levels{}, {"w", bar_of(colours, {}), {}}};
+}
+
+Appearance of_distances(std::span<const double> values) {
+  const ColourMap colours(distance_colour_range(values));
+  const std::vector<Tick> numbers = numbers_in(colours.range());
+  const double step = numbers.size() < 2 ? colours.range().half_width : numbers[1].value - numbers[0].value;
+  const Levels levels{0.0, step};
+  return {colours, levels, {"sdf", bar_of(colours, levels), {}}};
+}
+
+Appearance of_inside() {
+  const ColourMap colours({});
+  return {colours, Levels{}, {"", {}, {{colours(1.0), "inside"}, {colours(0.0), "outside"}}}};
+}
+
+Rgb colour_of(std::int64_t label) {
+  constexpr Rgb kNone{245, 245, 245};
+  if (label == 0) return kNone;
+  const auto [red, green, blue] = label_colour(static_cast<std::uint64_t>(label));
+  return {red, green, blue};
+}
+
+std::string shortened(const std::string& name) {
+  return name.size() <= kMostLetters ? name : name.substr(0, kMostLetters - 2) + "..";
+}
+
+// The labels that the picture has, as many as there is room for.
+Appearance of_labels(const PictureValues& values) {
+  Legend legend{"label", {}, {}};
+  const std::set<double> present(values.values.begin(), values.values.end());
+  for (const double value : present) {
+    const auto label = static_cast<std::int64_t>(value);
+    const bool full = legend.patches.size() + 1 == kMostPatches && present.size() > kMostPatches;
+    if (full) {
+      legend.patches.push_back({{}, "and " + std::to_string(present.size() - legend.patches.size()) + " more"});
+      break;
+    }
+    const std::string name = label == 0 ? "none" : values.names[static_cast<std::size_t>(label - 1)];
+    legend.patches.push_back({colour_of(label), std::to_string(label) + "  " + shortened(name)});
+  }
+  return {[](double value) { return colour_of(static_cast<std::int64_t>(value)); }, {}, std::move(legend)};
+}
+
+Appearance appearance_of(const PictureValues& values) {
+  switch (values.field) {
+    case PictureField::kInside:
+      return of_inside();
+    case PictureField::kDistance:
+      return of_distances(values.values);
+    case PictureField::kLabel:
+      return of_labels(values);
+    case PictureField::kWinding:
+      break;
+  }
+  return of_winding_numbers(values.values);
+}
+
+Image coloured(const PlaneView& view, std::span<const double> values, const std::function<Rgb(double)>& colour) {
   Image image(view.width, view.height);
-  std::ranges::transform(values, image.pixels().begin(), [&](double w) { return colours(w); });
+  std::ranges::transform(values, image.pixels().begin(), colour);
   return image;
 }
 
 void draw_lines(Image& image, const PlaneView& view, std::span<const double> values, const TriangleMesh& mesh,
-                const Levels& levels) {
+                const std::optional<Levels>& levels) {
   const std::vector<PictureSegment> curve = section_curve(mesh, view);
   const LineWidths widths = line_widths(view);
-  Coverage contours(view.width, view.height);
-  trace_contours(values, view.width, view.height, squares_on(curve, view.width, view.height), levels,
-                 [&](const PictureSegment& piece, double) { add_stroke(contours, piece, widths.contour); });
-  blend(image, contours, kInk, 0.55);
+  if (levels) {
+    Coverage contours(view.width, view.height);
+    trace_contours(values, view.width, view.height, squares_on(curve, view.width, view.height), *levels,
+                   [&](const PictureSegment& piece, double) { add_stroke(contours, piece, widths.contour); });
+    blend(image, contours, kInk, 0.55);
+  }
   Coverage section(view.width, view.height);
   for (const PictureSegment& segment : curve) add_stroke(section, segment, widths.section);
   blend(image, section, kInk);
@@ -75,14 +143,12 @@ void draw_lines(Image& image, const PlaneView& view, std::span<const double> val
 
 }  // namespace
 
-Image slice_picture(const PlaneView& view, std::span<const double> values, const TriangleMesh& mesh, PictureField field,
-                    bool framed) {
-  const ColourMap colours(range_of(values, field));
-  const Levels levels = levels_of(colours.range(), field);
-  Image image = coloured(view, values, colours);
-  draw_lines(image, view, values, mesh, levels);
+Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh, bool framed) {
+  const Appearance appearance = appearance_of(values);
+  Image image = coloured(view, values.values, appearance.colour);
+  draw_lines(image, view, values.values, mesh, appearance.contours);
   if (!framed || !has_frame(view)) return image;
-  return framed_picture(image, view, legend_of(colours.range(), levels, field), colours);
+  return framed_picture(image, view, appearance.legend);
 }
 
 double slice_picture_bytes(const PlaneView& view, bool framed) {

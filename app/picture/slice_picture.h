@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "app/picture/image.h"
 #include "app/picture/plane_view.h"
@@ -14,12 +15,20 @@ enum class PictureField {
   kWinding,   // contours at the half-integers
   kInside,    // 0 or 1
   kDistance,  // signed, negative inside; contours at round distances
+  kLabel,     // whole numbers; no contours
 };
 
-// Colours of `values` at the pixels of `view`, row by row from the top, with contour lines and the curve where the
-// plane cuts `mesh`. `framed`: with axes and legend around it, where there is room for them (framed_picture.h).
-[[nodiscard]] Image slice_picture(const PlaneView& view, std::span<const double> values, const TriangleMesh& mesh,
-                                  PictureField field, bool framed);
+// Values at the pixels of a view, row by row from the top.
+struct PictureValues {
+  PictureField field;
+  std::span<const double> values;
+  std::span<const std::string> names = {};  // of labels, from 1
+};
+
+// Their colours, with contour lines and the curve where the plane cuts `mesh`. `framed`: with axes and legend around
+// it, where there is room for them (framed_picture.h).
+[[nodiscard]] Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh,
+                                  bool framed);
 
 // An upper bound of the bytes that it takes, its result included.
 [[nodiscard]] double slice_picture_bytes(const PlaneView& view, bool framed);

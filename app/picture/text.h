@@ -1,4 +1,4 @@
-// Numbers, letters of a few words, and signs, drawn as strokes so that they are sharp at any size.
+// Numbers, letters and signs, drawn as strokes so that they are sharp at any size.
 #pragma once
 
 #include <string_view>
@@ -10,8 +10,7 @@ namespace raycone {
 // Width of `text` drawn with digits `height` pixels high.
 [[nodiscard]] double text_width(std::string_view text, double height);
 
-// Draws `text`, of digits, ".-+" and the letters of "inside", "outside", "sdf", "u" to "z", from `left` on the line
-// that its digits stand on. Other characters are blanks.
+// Draws `text` from `left` on the line that its digits stand on. What has no glyph (glyphs.h) is a blank.
 void add_text(Coverage& coverage, std::string_view text, double left, double baseline, double height);
 
 }  // namespace raycone

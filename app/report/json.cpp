@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/process/version.h"
+#include "io/fields/label_colour.h"
 
 namespace raycone {
 namespace {
@@ -97,19 +98,6 @@ Json to_array(const std::vector<FileRead>& meshes) {
   Json array = Json::array();
   for (const FileRead& mesh : meshes) array.push_back({{"mesh", mesh.path}, {"sha256", mesh.sha256}});
   return array;
-}
-
-// Hues by the golden angle: those of neighbours are far apart, and none returns.
-Json colour_of(std::size_t label) {
-  const double turns = static_cast<double>(label) * 0.6180339887498949;
-  const double sixths = 6 * (turns - std::floor(turns));
-  Json colour = Json::array();
-  for (const double shift : {0.0, 4.0, 2.0}) {
-    const double hue = std::fmod(sixths + shift, 6.0);
-    const double share = std::clamp(std::abs(hue - 3) - 1, 0.0, 1.0);
-    colour.push_back(static_cast<int>(std::lround(40 + 200 * share)));
-  }
-  return colour;
 }
 
 Json names_of(const std::vector<Warning>& warnings) {
@@ -275,7 +263,7 @@ std::string label_table_json(const RunReport& report) {
   Json labels = Json::array();
   for (const PartReport& part : report.parts) {
     const std::size_t label = labels.size() + 1;
-    labels.push_back({{"label", label}, {"name", part.name}, {"color", colour_of(label)}});
+    labels.push_back({{"label", label}, {"name", part.name}, {"color", label_colour(label)}});
   }
   return to_text({{"raycone_version", kVersion}, {"labels", labels}});
 }

@@ -21,12 +21,19 @@
 
 namespace raycone {
 
+// What the mesh of all parts together is wanted for.
+enum class WholeMesh {
+  kUnused,
+  kShown,      // drawn
+  kEvaluated,  // or drawn from: warnings and counts of orientation are about it
+};
+
 // The parts of a run, made ready one after the other. The report learns of them, their user of what is wrong with them.
 class LabelledParts {
  public:
   // Reads the meshes. What is given here must outlive this.
   LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
-                const std::vector<WrittenFile>& written, bool whole);
+                const std::vector<WrittenFile>& written, WholeMesh whole);
 
   [[nodiscard]] std::size_t size() const { return parts_.size(); }
   [[nodiscard]] const Box& box() const { return parts_.box(); }
@@ -50,7 +57,7 @@ class LabelledParts {
   MeshRun& run_;
   const MeshOptions& mesh_;
   const FieldOptions& field_;
-  bool whole_;  // all is evaluated, or drawn from, as one mesh, too
+  bool whole_is_evaluated_;
   MeshParts parts_;
   std::size_t next_ = 0;
   std::vector<std::size_t> empty_;  // parts that should not be

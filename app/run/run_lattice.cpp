@@ -165,7 +165,8 @@ void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
     loaded.box = bounding_box(loaded.mesh);
     return;
   }
-  loaded.parts.emplace(run, command.mesh, field, files_written(command), !field.labels_only());
+  const WholeMesh whole = field.labels_only() ? WholeMesh::kUnused : WholeMesh::kEvaluated;
+  loaded.parts.emplace(run, command.mesh, field, files_written(command), whole);
   if (!field.labels_only()) loaded.mesh = run.prepare(loaded.parts->whole());
   loaded.box = loaded.parts->box();
 }

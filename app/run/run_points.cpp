@@ -79,7 +79,8 @@ double expected_points(const PointReader& reader, const std::string& path) {
 TriangleMesh load(const PointsCommand& command, MeshRun& run, std::optional<LabelledParts>& parts) {
   if (!command.field.has(Field::kLabel)) return run.load_mesh(files_written(command));
   const bool whole = !command.field.labels_only() || command.sample;
-  parts.emplace(run, command.mesh, command.field, files_written(command), whole);
+  parts.emplace(run, command.mesh, command.field, files_written(command),
+                whole ? WholeMesh::kEvaluated : WholeMesh::kUnused);
   return whole ? run.prepare(parts->whole()) : TriangleMesh{};
 }
 

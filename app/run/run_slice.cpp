@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "app/process/version.h"
 #include "app/run/field_evaluator.h"
 #include "app/run/fields.h"
+#include "app/run/labels.h"
 #include "app/run/mesh_run.h"
 #include "app/run/slice_choice.h"
 #include "app/run/written_files.h"
@@ -39,7 +41,8 @@ constexpr std::int64_t kPixelBatch = std::int64_t{1} << 18;
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunLimits& limits) {
   const double pixels = static_cast<double>(slice.view.width) * static_cast<double>(slice.view.height);
   const bool on_lattice = is_on_lattice(slice, command.field);
-  const double samples = on_lattice ? static_cast<double>(FieldSamples::bytes_per_sample(command.field)) : 0.0;
+  double samples = on_lattice ? static_cast<double>(FieldSamples::bytes_per_sample(command.field)) : 0.0;
+  if (command.field.has(Field::kLabel)) samples = sizeof(std::int32_t) + sizeof(std::uint8_t);
   const double bytes = pixels * (sizeof(double) + samples) + slice_picture_bytes(slice.view, command.framed);
   check_memory(command.mesh.path, bytes, limits.memory());
 }
@@ -58,38 +61,79 @@ void take(const FieldValues& from, std::span<double> to) {
   }
 }
 
-Tally evaluate_view(const FieldEvaluator& evaluator, const PlaneView& view, FieldSamples& samples,
-                    std::span<double> values, std::atomic<std::uint64_t>* done) {
-  Tally tally;
+// Hands the centres of the pixels on, batch by batch, row by row from the top.
+template <typename Visit>
+void for_pixels(const PlaneView& view, const Visit& visit) {
   std::vector<Vec3> points;
   const std::int64_t pixels = view.width * view.height;
   for (std::int64_t first = 0; first < pixels; first += kPixelBatch) {
-    const std::int64_t count = std::min(kPixelBatch, pixels - first);
+    const std::int64_t end = std::min(first + kPixelBatch, pixels);
     points.clear();
-    for (std::int64_t n = first; n < first + count; ++n) points.push_back(view.centre(n % view.width, n / view.width));
-    tally += evaluator.evaluate(points, samples, done);
-    take(samples.fields().front(), values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+    for (std::int64_t n = first; n < end; ++n) points.push_back(view.centre(n % view.width, n / view.width));
+    visit(static_cast<std::size_t>(first), points);
   }
-  return tally;
 }
 
 Tally evaluate(const FieldEvaluator& evaluator, const Slice& slice, const FieldOptions& field, std::span<double> values,
                std::atomic<std::uint64_t>* done) {
   FieldSamples samples(field);
-  if (!is_on_lattice(slice, field)) return evaluate_view(evaluator, slice.view, samples, values, done);
-  const Tally tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), samples, done);
-  take(samples.fields().front(), values);
-  turn_rows_over(values, slice.view.width, slice.view.height);
+  Tally tally;
+  if (is_on_lattice(slice, field)) {
+    tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), samples, done);
+    take(samples.fields().front(), values);
+    turn_rows_over(values, slice.view.width, slice.view.height);
+    return tally;
+  }
+  for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
+    tally += evaluator.evaluate(points, samples, done);
+    take(samples.fields().front(), values.subspan(first, points.size()));
+  });
   return tally;
+}
+
+void evaluate_field(TriangleMesh mesh, const Slice& slice, const FieldOptions& field, std::span<double> values,
+                    MeshRun& run) {
+  RunReport& report = run.report;
+  const auto evaluator = timed(report.seconds.prepare, [&] {
+    const std::vector<ExteriorEdge> edges = run.take_edges();
+    return FieldEvaluator(std::move(mesh), field, &edges, static_cast<double>(values.size()));
+  });
+  report.exterior_edges = evaluator.winding_number().exterior_edges();
+  std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
+  report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, field, values, done); });
+  report.terms = evaluator.winding_number().terms();
+  report.largest_error_bound = evaluator.accuracy();
+}
+
+void evaluate_labels(LabelledParts& parts, const Slice& slice, const FieldOptions& field, std::span<double> values,
+                     MeshRun& run) {
+  std::vector<std::int32_t> labels(values.size());
+  if (slice.lattice) {
+    label_lattice(parts, *slice.lattice, field, run).copy(whole(*slice.lattice), labels);
+    std::ranges::copy(labels, values.begin());
+    return turn_rows_over(values, slice.view.width, slice.view.height);
+  }
+  PointLabels evaluator(parts, field, static_cast<double>(values.size()), run);
+  std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
+  timed(run.report.seconds.evaluate, [&] {
+    for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
+      evaluator.evaluate(points, std::span(labels).subspan(first, points.size()));
+      if (done) *done += points.size();
+    });
+  });
+  evaluator.finish();
+  std::ranges::copy(labels, values.begin());
 }
 
 std::string described(const FieldOptions& field) {
   if (field.has(Field::kWinding)) return "winding number";
+  if (field.has(Field::kLabel)) return "labels by " + name_of(field.rule);
   return (field.has(Field::kInside) ? "inside by " : "signed distance by ") + name_of(field.rule);
 }
 
 PictureField picture_field(const FieldOptions& field) {
   if (field.has(Field::kInside)) return PictureField::kInside;
+  if (field.has(Field::kLabel)) return PictureField::kLabel;
   return field.has(Field::kDistance) ? PictureField::kDistance : PictureField::kWinding;
 }
 
@@ -104,6 +148,23 @@ void write_picture(OutputFile& output, const Image& image, const std::string& me
             {reinterpret_cast<const std::uint8_t*>(image.pixels().data()), 3 * image.pixels().size()});
 }
 
+// What is cut: one mesh, or for labels its parts.
+struct CutMesh {
+  std::optional<LabelledParts> parts;
+  TriangleMesh mesh;
+  std::vector<std::string> names;  // of the parts
+};
+
+void load(const SliceCommand& command, MeshRun& run, CutMesh& cut) {
+  if (!command.field.has(Field::kLabel)) {
+    cut.mesh = run.load_mesh(files_written(command));
+    return;
+  }
+  cut.parts.emplace(run, command.mesh, command.field, files_written(command), WholeMesh::kShown);
+  cut.mesh = cut.parts->whole();
+  for (const PartReport& part : run.report.parts) cut.names.push_back(part.name);
+}
+
 }  // namespace
 
 RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
@@ -111,27 +172,24 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   RunReport& report = run.report;
   std::unique_ptr<OutputFile> values_file;
   if (command.values) values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber);
-  const TriangleMesh mesh = run.load_mesh(files_written(command));
-  const Slice slice = choose_slice(bounding_box(mesh), command.slice, report.warnings);
+  CutMesh cut;
+  load(command, run, cut);
+  const Slice slice = choose_slice(bounding_box(cut.mesh), command.slice, report.warnings);
   report.lattice = slice.lattice;
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
   run.print_warnings();
 
   check_slice_memory(slice, command, limits);
   if (values_file) values_file->reserve(report.samples * sizeof(double));
-  const auto evaluator = timed(report.seconds.prepare, [&] {
-    const std::vector<ExteriorEdge> edges = run.take_edges();
-    return FieldEvaluator(mesh, command.field, &edges, static_cast<double>(report.samples));
-  });
-  report.exterior_edges = evaluator.winding_number().exterior_edges();
-  std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   std::vector<double> values(report.samples);
-  report.tally =
-      timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, command.field, values, done); });
-  report.terms = evaluator.winding_number().terms();
-  report.largest_error_bound = evaluator.accuracy();
+  if (cut.parts) {
+    evaluate_labels(*cut.parts, slice, command.field, values, run);
+  } else {
+    evaluate_field(cut.mesh, slice, command.field, values, run);
+  }
   timed(report.seconds.write, [&] {
-    const Image picture = slice_picture(slice.view, values, mesh, picture_field(command.field), command.framed);
+    const PictureValues shown{picture_field(command.field), values, cut.names};
+    const Image picture = slice_picture(slice.view, shown, cut.mesh, command.framed);
     write_picture(run.output, picture, report.mesh, described(command.field) + " at " + slice.plane);
     if (values_file) write_npy_rows(*values_file, slice.view.height, slice.view.width, values);
   });

@@ -76,7 +76,7 @@ std::vector<std::string> inputs_of(const PointsCommand& command) {
   return inputs;
 }
 
-std::vector<std::string> inputs_of(const SliceCommand& command) { return {command.mesh.path}; }
+std::vector<std::string> inputs_of(const SliceCommand& command) { return paths_of(command.mesh); }
 
 std::vector<std::string> inputs_of(const SurfaceCommand& command) { return inputs_of(command.mesh, command.lattice); }
 

@@ -218,6 +218,20 @@ class Values(Labels):
         self.works("points %s p.npy -o both.npy --field label,winding" % self.files)
         self.assertTrue((numpy.load("both.npy")[:, 0] == self.lattice(self.files).ravel()).all())
 
+    def test_slices_are_what_single_jobs_say(self):
+        for plane in ("--axis z --at 0.45", "--normal 1,2,3 --origin 1,1,.5"):
+            place = plane + " --bounds -.25,-.25,-.25,3.25,1.75,1.75 --size 60 --values s.npy -o s.png"
+            for options in ("", " --priority", " --orient auto --rule nonzero"):
+                self.works("slice %s --field label %s%s" % (self.files, place, options))
+                labels = numpy.load("s.npy")
+                self.assertGreater(len(numpy.unique(labels)), 2)
+                expected = numpy.zeros(labels.shape)
+                for number, name in enumerate(self.files.split(), 1):
+                    self.works("slice %s --field inside %s%s" % (name, place, options.replace(" --priority", "")))
+                    inside = numpy.load("s.npy") != 0
+                    expected[inside & (expected == 0) if "priority" in options else inside] = number
+                self.assertTrue((labels == expected).all(), (plane, options))
+
     def test_drawn_points_are_of_all_meshes(self):
         self.works("points %s --field label,inside --sample uniform=500,surface=50 -o s.npz --orient auto" % self.files)
         drawn = numpy.load("s.npz")
@@ -425,7 +439,7 @@ class Refusals(Labels):
         self.refused("lattice - @- -o l.npy --field label", 1, "standard input cannot be two of the inputs")
         self.refused("points left_lobe.obj - - --field label", 1, "standard input cannot be two of the inputs")
         self.refused("points left_lobe.obj p.npy -o l.npy --field label,winding --dtype f16", 1, "--field label: takes")
-        self.refused("slice left_lobe.obj -o l.png --field label", 1, "--field label: expected winding")
+        self.refused("slice left_lobe.obj -o l.png --field label,inside", 1, "--field label,inside: expected winding")
         self.refused("batch left_lobe.obj --out-dir out --field label", 1, "expected --parts group or component")
         self.refused("lattice left_lobe.obj right.obj -o right.obj --format csv --field label", 1, "is input and output")
         self.assertEqual([name for name in os.listdir() if name.startswith("l.")], [])

@@ -93,12 +93,13 @@ TABLE = [
     Row(BATCH, "--field label", REFUSED),
     *(Row(words + " --field label --parts group", "--rule abs=2", CHANGES)
       for words in (LATTICE, POINTS, SAMPLE, BATCH)),
-    *(Row(words + " --field label", "--parts component", CHANGES) for words in (LATTICE, POINTS, SAMPLE)),
+    *(Row(words + " --field label", "--parts component", CHANGES)
+      for words in (LATTICE, POINTS, SAMPLE, "slice cubes.obj -o out/a.png --size 8")),
     Row(BATCH + " --field label --parts group", "--parts component", CHANGES),
     *(Row(words + " --field label --parts component", "--priority", CHANGES)
-      for words in (LATTICE, POINTS, SAMPLE, BATCH)),
+      for words in (LATTICE, POINTS, SAMPLE, BATCH, "slice cubes.obj -o out/a.png --size 8")),
     *(Row(words, option, REFUSED)
-      for words in (LATTICE, POINTS, SAMPLE, BATCH) for option in ("--parts component", "--priority")),
+      for words in (LATTICE, POINTS, SAMPLE, BATCH, SLICE) for option in ("--parts component", "--priority")),
     *(Row(words + " --field label --parts component", "--diagnostics", REFUSED)
       for words in (LATTICE, POINTS, SAMPLE, BATCH)),
     *(Row(words, "--diagnostics", CHANGES) for words in (LATTICE, POINTS, SAMPLE, BATCH)),

@@ -65,7 +65,7 @@ PlaneView view_of(std::int64_t width, std::int64_t height) {
 
 Image picture_of(const PlaneView& view, bool framed) {
   const std::vector<double> values(static_cast<std::size_t>(view.width * view.height), 1.0);
-  return slice_picture(view, values, {}, PictureField::kWinding, framed);
+  return slice_picture(view, {PictureField::kWinding, values}, {}, framed);
 }
 
 TEST(FramedPicture, IsAsLongAsThePlainOne) {
@@ -123,7 +123,7 @@ TEST(ShrunkImage, HasTheMeanOfWhatPixelsCover) {
 TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
   const PlaneView view = view_of(2, 1);
   const std::vector<double> values{-1.0, 1.0};
-  const Image image = slice_picture(view, values, {}, PictureField::kDistance, false);
+  const Image image = slice_picture(view, {PictureField::kDistance, values}, {}, false);
   EXPECT_GT(image.at(0, 0).red, image.at(0, 0).blue);
   EXPECT_LT(image.at(1, 0).red, image.at(1, 0).blue);
 }

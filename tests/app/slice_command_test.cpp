@@ -109,6 +109,33 @@ TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {
   EXPECT_NE(read_text(picture_).find("signed distance by threshold=0 at z = 0.5"), std::string::npos);
 }
 
+TEST_F(Slice, ShowsLabelsOfParts) {
+  const std::string other = dir_ / "other.obj";
+  std::string moved = kCube;
+  for (std::size_t at = 0; (at = moved.find("v 1", at)) != std::string::npos; ++at) moved.replace(at, 3, "v 2");
+  write_text(other, moved);  // from x = 0 to 2
+  const std::vector<std::string> common{other, "--bounds", "-1,0,0,3,2,1", "--size", "4", "--values", values_};
+  const auto lower_row = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = common;
+    words.insert(words.end(), {"--field", "label"});
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = slice(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::vector<double> two_rows = values(2, 4);
+    return std::vector<double>(two_rows.begin() + 4, two_rows.end());
+  };
+  // x = -0.5, 0.5, 1.5, 2.5 at y = 0.5. Seen along the normal z, an oblique plane is the same one.
+  for (const std::vector<std::string>& plane :
+       std::vector<std::vector<std::string>>{{"--at", "0.5"}, {"--normal", "0,0,1", "--origin", "1,1,0.5"}}) {
+    EXPECT_EQ(lower_row(plane), (std::vector<double>{0, 2, 2, 0}));
+    std::vector<std::string> first_wins = plane;
+    first_wins.push_back("--priority");
+    EXPECT_EQ(lower_row(first_wins), (std::vector<double>{0, 1, 2, 0}));
+  }
+  EXPECT_NE(read_text(picture_).find("labels by threshold=0.5"), std::string::npos);
+  EXPECT_EQ(run_raycone({"slice", cube_, other, "-o", picture_}).status, 1);
+}
+
 TEST_F(Slice, HasAxesAndLegendWithinItsSizeAndTheSamplesBesideThem) {
   const std::vector<std::string> common{"--bounds", "0,0,0,2,1,1", "--size", "400", "--values", values_};
   ASSERT_EQ(slice(common).status, 0);
@@ -144,7 +171,9 @@ TEST_F(Slice, RefusesWhatItCannotDo) {
                                              {"--size", "0"},
                                              {"--format", "vdb"},
                                              {"--field", "density"},
-                                             {"--field", "label"},
+                                             {"--field", "label,inside"},
+                                             {"--parts", "component"},
+                                             {"--priority"},
                                              {"--field", "inside,sdf"},
                                              {"--rule", "odd"},
                                              {"--values", picture_}}) {

@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "core/exact/predicates.h"
@@ -17,6 +18,7 @@
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/mesh/opposite_faces.h"
+#include "core/mesh/ray_grid.h"
 
 namespace raycone {
 namespace {
@@ -192,7 +194,6 @@ class ClosedComponents {
     }
   }
 
-  // By increasing y of their points.
   [[nodiscard]] std::vector<Candidate> negative_ones() const {
     constexpr std::uint32_t kAbsent = Components::kUnused;
     std::vector<std::uint32_t> number(components_.count, kAbsent);
@@ -211,7 +212,6 @@ class ClosedComponents {
         if (lexicographic_order(mesh_.vertices[v], least) < 0) least = mesh_.vertices[v];
       }
     }
-    std::ranges::sort(candidates, {}, [](const Candidate& candidate) { return candidate.point.y; });
     return candidates;
   }
 
@@ -223,31 +223,56 @@ class ClosedComponents {
     return plane_side(a, b, c, q) * side < 0 ? side : 0;
   }
 
+  // That the ray from a candidate's point crosses another closed component.
+  struct Hit {
+    std::uint32_t candidate, component;
+    int sign;
+  };
+
   // Removes those that lie in another closed component: whose winding number at their point is not 0.
   void drop_surrounded(std::vector<Candidate>& candidates) const {
-    std::map<std::pair<std::size_t, std::uint32_t>, std::int64_t> crossings;  // of candidate and other component
+    std::vector<std::uint8_t> surrounded(candidates.size(), 0);
+    note_surrounded(candidates, surrounded);
+    auto flag = surrounded.begin();
+    std::erase_if(candidates, [&](const Candidate&) { return *flag++ != 0; });
+  }
+
+  // Of many shells within each other, all cross all rays: the candidates are halved until that fits into memory.
+  void note_surrounded(std::span<const Candidate> candidates, std::span<std::uint8_t> surrounded) const {
+    std::optional<std::vector<Hit>> hits = hits_of(candidates);
+    if (!hits) {
+      const std::size_t half = candidates.size() / 2;
+      note_surrounded(candidates.first(half), surrounded.first(half));
+      return note_surrounded(candidates.subspan(half), surrounded.subspan(half));
+    }
+    std::ranges::sort(*hits, {}, [](const Hit& hit) { return std::pair(hit.candidate, hit.component); });
+    for (auto it = hits->begin(); it != hits->end();) {
+      const Hit first = *it;
+      std::int64_t sum = 0;
+      for (; it != hits->end() && it->candidate == first.candidate && it->component == first.component; ++it) {
+        sum += it->sign;
+      }
+      if (sum != 0) surrounded[first.candidate] = 1;
+    }
+  }
+
+  // Nothing where there are too many of several candidates.
+  [[nodiscard]] std::optional<std::vector<Hit>> hits_of(std::span<const Candidate> candidates) const {
+    constexpr std::size_t kMost = std::size_t{1} << 18;
+    std::vector<Vec3> points;
+    for (const Candidate& candidate : candidates) points.push_back(candidate.point);
+    const RayGrid grid(points);
+    std::vector<Hit> hits;
     for (const Triangle& t : mesh_.triangles) {
       const std::uint32_t component = component_of(t);
       if (open_[component]) continue;
-      const auto [first, last] = std::minmax({mesh_.vertices[t[0]].y, mesh_.vertices[t[1]].y, mesh_.vertices[t[2]].y});
-      const auto y = [](const Candidate& candidate) { return candidate.point.y; };
-      const auto begin = std::ranges::lower_bound(candidates, first, {}, y);
-      for (auto it = begin; it != candidates.end() && it->point.y <= last; ++it) {
-        if (it->component == component) continue;
-        if (const int sign = crossing(t, it->point)) {
-          crossings[{static_cast<std::size_t>(it - candidates.begin()), component}] += sign;
-        }
-      }
+      grid.for_each_ray(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], [&](std::size_t i) {
+        if (candidates[i].component == component) return;
+        if (const int sign = crossing(t, points[i])) hits.push_back({static_cast<std::uint32_t>(i), component, sign});
+      });
+      if (hits.size() > kMost && candidates.size() > 1) return {};
     }
-    std::vector<bool> surrounded(candidates.size(), false);
-    for (const auto& [pair, sum] : crossings) {
-      if (sum != 0) surrounded[pair.first] = true;
-    }
-    std::vector<Candidate> outermost;
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
-      if (!surrounded[n]) outermost.push_back(candidates[n]);
-    }
-    candidates = std::move(outermost);
+    return hits;
   }
 
   const TriangleMesh& mesh_;

@@ -1,7 +1,9 @@
 #include "core/orientation/crossing_votes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "core/crossings/crossings.h"
 #include "core/crossings/projected_grid.h"
@@ -55,15 +57,49 @@ class AxisRays {
   ProjectedGrid grid_;
 };
 
+// Faces whose box a ray along an axis meets, on average. By counting at some samples: what a grid finds may depend on
+// the order of faces.
+double faces_per_ray(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+                     const std::vector<SurfaceSample>& samples) {
+  constexpr std::size_t kCounted = 64;
+  const std::size_t step = samples.size() / kCounted + 1;
+  std::uint64_t met = 0, rays = 0;
+  for (std::size_t k = 0; k < samples.size(); k += step) {
+    const Vec3& q = samples[k].at;
+    rays += 3;
+    for (const Triangle& t : faces) {
+      std::array<bool, 3> within{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double a = vertices[t[0]][axis], b = vertices[t[1]][axis], c = vertices[t[2]][axis];
+        const double least = std::min(std::min(a, b), c), most = std::max(std::max(a, b), c);
+        within[static_cast<std::size_t>(axis)] = least <= q[axis] && q[axis] <= most;
+      }
+      const auto [x, y, z] = within;
+      met += std::uint64_t{x && y} + std::uint64_t{y && z} + std::uint64_t{z && x};
+    }
+  }
+  return static_cast<double>(met) / static_cast<double>(std::max<std::uint64_t>(rays, 1));
+}
+
+// All of them nearly always. Where many faces lie behind each other, as many as there is time for: rays through so many
+// say little anyway.
+std::size_t samples_that_vote(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
+                              const std::vector<SurfaceSample>& samples) {
+  constexpr double kMostTests = 1e8;  // some seconds
+  const double most = kMostTests / (3 * std::max(faces_per_ray(faces, vertices, samples), 1.0));
+  return static_cast<std::size_t>(std::min(most, static_cast<double>(samples.size())));
+}
+
 }  // namespace
 
 std::vector<double> crossing_votes(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
                                    const std::vector<SurfaceSample>& samples) {
   constexpr std::size_t kSamplesPerTask = 64;
   std::vector<double> votes(samples.size(), 0.0);
+  const std::size_t voting = samples_that_vote(faces, vertices, samples);
   for (int axis = 0; axis < 3; ++axis) {
     const AxisRays rays(faces, vertices, axis);
-    parallel_for(samples.size(), kSamplesPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for(voting, kSamplesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) votes[k] += rays.vote(samples[k]);
     });
   }

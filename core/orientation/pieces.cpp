@@ -45,14 +45,19 @@ class PieceFinder {
     for (const FaceAtEdge& at : edge.faces) {
       const std::uint32_t patch = patches_.of_face[at.face];
       const std::uint32_t piece = pieces_.of_patch[patch];
-      const int direction = at.direction * patches_.sign[at.face] * pieces_.sign[patch];
-      const auto it = std::find_if(uses.begin(), uses.end(), [&](const NetUse& use) { return use.piece == piece; });
-      if (it == uses.end()) {
-        uses.push_back({piece, direction});
+      uses.push_back({piece, at.direction * patches_.sign[at.face] * pieces_.sign[patch]});
+    }
+    // Thousands of pieces may meet at an edge.
+    std::ranges::sort(uses, {}, &NetUse::piece);
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < uses.size(); ++i) {
+      if (uses[i].piece == uses[last].piece) {
+        uses[last].net += uses[i].net;
       } else {
-        it->net += direction;
+        uses[++last] = uses[i];
       }
     }
+    if (!uses.empty()) uses.resize(last + 1);
     std::erase_if(uses, [](const NetUse& use) { return use.net == 0; });
     return uses;
   }

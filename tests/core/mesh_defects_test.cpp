@@ -169,6 +169,43 @@ TEST(MeshDefects, OppositeFacesAreFoundAtVerticesOfManyFaces) {
   }
 }
 
+TEST(MeshDefects, OfManySolidsAreCountedOneByOne) {
+  TriangleMesh mesh;
+  std::uint64_t expected = 0;
+  for (int n = 0; n < 8 * 8 * 8; ++n) {
+    const Vec3 at{2.0 * (n % 8), 2.0 * (n / 8 % 8), 2.0 * (n / 64)};
+    const auto box = [&](double margin) {
+      const Vec3 in{margin, margin, margin};
+      return box_mesh(at + in, at + Vec3{1, 1, 1} - in);
+    };
+    // Right, reversed, hollow, and hollow but wholly reversed ones.
+    const bool is_reversed = n % 4 == 1 || n % 4 == 3;
+    TriangleMesh solid = n % 4 < 2 ? box(0) : joined(box(0), reversed(box(0.25)));
+    mesh = joined(mesh, is_reversed ? reversed(solid) : solid);
+    expected += is_reversed;
+  }
+  EXPECT_EQ(reversed_in(mesh), expected);
+}
+
+// So many that what their rays cross is looked at in parts.
+TEST(MeshDefects, OfManyShellsWithinEachOtherOnlyTheOutermostMayBeReversed) {
+  constexpr int kShells = 1100;
+  for (const int first_reversed : {0, 1}) {
+    TriangleMesh mesh;
+    for (int n = 0; n < kShells; ++n) {
+      const TriangleMesh shell = cube_at(-2.0 + n * 0x1p-10, 2.0 - n * 0x1p-10);
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), shell.vertices.begin(), shell.vertices.end());
+      for (Triangle t : shell.triangles) {
+        for (std::uint32_t& corner : t) corner += first;
+        if (n % 2 == first_reversed) std::swap(t[1], t[2]);
+        mesh.triangles.push_back(t);
+      }
+    }
+    EXPECT_EQ(reversed_in(mesh), first_reversed == 0 ? 1U : 0U);
+  }
+}
+
 TEST(MeshDefects, DoNotDependOnTheOrderOfFaces) {
   Random random(7);
   const TriangleMesh mesh =

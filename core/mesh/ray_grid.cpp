@@ -1,0 +1,35 @@
+#include "core/mesh/ray_grid.h"
+
+#include <cmath>
+#include <limits>
+
+namespace raycone {
+
+RayGrid::RayGrid(std::span<const Vec3> points) : points_(points) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  lower_y_ = lower_z_ = kInfinity;
+  upper_y_ = upper_z_ = -kInfinity;
+  for (const Vec3& p : points) {
+    lower_y_ = std::min(lower_y_, p.y);
+    lower_z_ = std::min(lower_z_, p.z);
+    upper_y_ = std::max(upper_y_, p.y);
+    upper_z_ = std::max(upper_z_, p.z);
+  }
+  constexpr double kMostCells = 1024;
+  side_ = static_cast<std::size_t>(std::clamp(2.0 * std::sqrt(static_cast<double>(points.size())), 1.0, kMostCells));
+  per_y_ = cells_per_unit(lower_y_, upper_y_);
+  per_z_ = cells_per_unit(lower_z_, upper_z_);
+  begin_.assign(side_ * side_ + 1, 0);
+  for (const Vec3& p : points) ++begin_[cell(p) + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  rays_.resize(points.size());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t i = 0; i < points.size(); ++i) rays_[next[cell(points[i])]++] = i;
+}
+
+double RayGrid::cells_per_unit(double lower, double upper) const {
+  const double cells = static_cast<double>(side_) / (upper - lower);
+  return std::isfinite(cells) ? cells : 0.0;
+}
+
+}  // namespace raycone

@@ -1,0 +1,56 @@
+// Rays from points along +x, found by the triangles that they may cross.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// A regular grid over the points' y and z. Nothing is built over triangles: going through many of them once is faster.
+class RayGrid {
+ public:
+  // Precondition: they are finite. They must outlive this.
+  explicit RayGrid(std::span<const Vec3> points);
+
+  // Calls visit(i) for each point i whose ray may meet the closed triangle: it lies in the shadow of its box.
+  // Thread-safe.
+  template <class Visit>
+  void for_each_ray(const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) const {
+    // Not of lists, whose loops branch as in a coin toss.
+    const double y0 = std::min(std::min(a.y, b.y), c.y), y1 = std::max(std::max(a.y, b.y), c.y);
+    const double z0 = std::min(std::min(a.z, b.z), c.z), z1 = std::max(std::max(a.z, b.z), c.z);
+    if (y1 < lower_y_ || y0 > upper_y_ || z1 < lower_z_ || z0 > upper_z_) return;
+    const double x1 = std::max(std::max(a.x, b.x), c.x);
+    const std::size_t last_y = place(y1 - lower_y_, per_y_), last_z = place(z1 - lower_z_, per_z_);
+    for (std::size_t z = place(z0 - lower_z_, per_z_); z <= last_z; ++z) {
+      for (std::size_t y = place(y0 - lower_y_, per_y_); y <= last_y; ++y) {
+        for (std::size_t i = begin_[z * side_ + y]; i < begin_[z * side_ + y + 1]; ++i) {
+          const Vec3& q = points_[rays_[i]];
+          if (q.x <= x1 && q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(rays_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  // Monotone in the coordinate: a point within an interval lies in a cell between those of its ends.
+  [[nodiscard]] std::size_t place(double offset, double per_unit) const {
+    return static_cast<std::size_t>(std::clamp(offset * per_unit, 0.0, static_cast<double>(side_ - 1)));
+  }
+  [[nodiscard]] double cells_per_unit(double lower, double upper) const;
+  [[nodiscard]] std::size_t cell(const Vec3& p) const {
+    return place(p.z - lower_z_, per_z_) * side_ + place(p.y - lower_y_, per_y_);
+  }
+
+  std::span<const Vec3> points_;
+  double lower_y_, lower_z_, upper_y_, upper_z_, per_y_ = 0.0, per_z_ = 0.0;
+  std::size_t side_;
+  std::vector<std::size_t> begin_;  // per cell, and the end
+  std::vector<std::size_t> rays_;   // by cell
+};
+
+}  // namespace raycone

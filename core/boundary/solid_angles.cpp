@@ -14,8 +14,8 @@ namespace {
 
 Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto component = [&](int i, int j) {
-    return static_cast<double>(
-        determinant(difference(b[i], a[i]), difference(b[j], a[j]), difference(c[i], a[i]), difference(c[j], a[j])));
+    return rounded_determinant(difference(b[i], a[i]), difference(b[j], a[j]), difference(c[i], a[i]),
+                               difference(c[j], a[j]));
   };
   return {component(1, 2), component(2, 0), component(0, 1)};
 }

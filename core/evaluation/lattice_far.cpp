@@ -15,10 +15,9 @@ constexpr double kEdge = 0.4;
 constexpr double kTriangle = 0.75;
 // Of what is made once: the fit; of each triangle, its part of the tree.
 constexpr double kFit = 4e6;
-constexpr double kInTree = 1e3;
-// An estimate needs the tree, which takes a twentieth of the time of the direct sum at so many samples. (At 50^3
-// samples of eleven open shared meshes it took up to four fifths of that time, for nothing.)
-constexpr double kLeastSamples = 0x1p20;
+constexpr double kInTree = 4e2;
+// An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples.
+constexpr double kLeastSamples = 4e5;
 
 double direct_cost(const ScaledMesh& mesh) {
   return mesh.counts_crossings() ? kEdge * static_cast<double>(mesh.boundary().exterior_edges())
@@ -62,7 +61,7 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   constexpr double kUnit = 5.2e-9;    // of a direct sum
   constexpr double kInBlocks = 9e-9;  // of blocks, with all that they take beside triangles; of five meshes at 256
-  constexpr double kSource = 3e-5;    // in the tree
+  constexpr double kSource = 1e-5;    // in the tree
   if (mesh.is_closed()) return 0.0;
   double samples = 1.0;
   for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);

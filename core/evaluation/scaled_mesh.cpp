@@ -27,6 +27,7 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   return std::make_unique<const Cone>(boundary, options.level);
 }
 
+constexpr double kTriangleSummed = 1.9;    // directly, in units of an exterior edge
 constexpr double kLeastTolerance = 1e-12;  // less is as good as nothing
 constexpr double kMostTolerance = 0x1p-4;  // more would not be settled at half-integers
 constexpr double kFarShare = 0.75;         // of the tolerance; near triangles round, too
@@ -45,8 +46,7 @@ std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const B
   if (!forced && !may_pay) return nullptr;
   auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
   if (far->has_repeated_faces()) return nullptr;
-  constexpr double kTriangleSummed = 1.9;  // directly, in units of an exterior edge
-  constexpr double kSafety = 0.8;          // estimates are no better
+  constexpr double kSafety = 0.8;  // estimates are no better
   const double of_direct = sources == FarSources::kCaps ? static_cast<double>(boundary.exterior_edges())
                                                         : kTriangleSummed * static_cast<double>(mesh.triangles.size());
   return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
@@ -111,10 +111,16 @@ const FarField* ScaledMesh::far_field() const {
   return far_.get();
 }
 
-// Where nobody knows how many samples certificates leave, they are counted: so many take seven times as long as the
+bool ScaledMesh::has_far_field() const {
+  const bool forced = options_.summation == Summation::kFarField;
+  const double source_directly = counts_crossings() ? 1.0 : kTriangleSummed;
+  return (forced || far_field_may_pay(options_.accuracy.samples, source_directly)) && far_field() != nullptr;
+}
+
+// Where nobody knows how many samples certificates leave, they are counted: so many take three times as long as the
 // tree.
 bool ScaledMesh::takes_far_field(std::size_t samples) const {
-  constexpr std::uint64_t kEnough = 100'000;
+  constexpr std::uint64_t kEnough = 12'000;
   const bool forced = options_.summation == Summation::kFarField;
   if (forced) return far_field() != nullptr;
   if (options_.accuracy.sides_only && samples_.load(std::memory_order_relaxed) < kEnough) {

@@ -97,10 +97,7 @@ class ScaledMesh {
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
-  [[nodiscard]] bool has_far_field() const {
-    const bool may_pay = options_.summation == Summation::kFarField || far_field_may_pay(options_.accuracy.samples);
-    return may_pay && far_field() != nullptr;
-  }
+  [[nodiscard]] bool has_far_field() const;
   // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 

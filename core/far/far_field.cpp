@@ -11,10 +11,10 @@
 
 namespace raycone {
 
-bool far_field_may_pay(double samples) {
-  constexpr double kPreparation = 12500;  // of a source, in units of an exterior edge at a sample
+bool far_field_may_pay(double samples, double direct) {
+  constexpr double kPreparation = 4500;  // of a source, in units of an exterior edge at a sample
   constexpr double kSmallPart = 0.04;
-  return kPreparation < kSmallPart * samples;
+  return kPreparation < kSmallPart * samples * direct;
 }
 
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,
@@ -27,7 +27,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
-  tree_.emplace(std::move(faces.triangles), tolerance);
+  tree_.emplace(std::move(faces.triangles), tolerance, level);
   cost_ = cost_in(bounding_box(mesh), tolerance);
 }
 

@@ -20,8 +20,8 @@ namespace raycone {
 enum class FarSources { kTriangles, kCaps };
 
 // Whether preparing a far field takes no more than a small part of what direct sums at so many samples take: then its
-// cost() can be looked at.
-[[nodiscard]] bool far_field_may_pay(double samples);
+// cost() can be looked at. `direct`: what a source takes there, in units of an exterior edge.
+[[nodiscard]] bool far_field_may_pay(double samples, double direct);
 
 class FarField final : public BoundaryTerm {
  public:

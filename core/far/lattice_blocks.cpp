@@ -11,7 +11,7 @@
 namespace raycone {
 
 LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
-    : tree_(std::move(triangles), kSampleShare * tolerance), tolerance_(tolerance), level_(level) {
+    : tree_(std::move(triangles), kSampleShare * tolerance, level), tolerance_(tolerance), level_(level) {
   sources_.reserve(tree_.triangles().size());
   for (const SolidTriangle& t : tree_.triangles()) {
     Source source;

@@ -6,39 +6,17 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace raycone {
 namespace {
 
 using Complex = std::complex<double>;
 constexpr int kP = kMultipoleOrder;
+static_assert(kMomentOrder == kP - 1);
 constexpr double kUnitRoundoff = 0x1p-53;
 constexpr double kUp = 1 + 1e-12;  // more than what rounds in a sum of positive numbers here
 constexpr double kFourPi = 4 * std::numbers::pi;
-
-// Gauss's rule of eight points on [0, 1]: exact up to degree 15, that of grad R_16.
-constexpr std::size_t kPoints = 8;
-struct GaussRule {
-  std::array<double, kPoints> at, weight;
-  GaussRule() : at{}, weight{} {
-    constexpr int n = static_cast<int>(kPoints);
-    for (int i = 0; i < n; ++i) {
-      long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L)), slope = 1;
-      for (int step = 0; step < 8; ++step) {
-        long double before = 1, value = x;
-        for (int k = 2; k <= n; ++k) {
-          const long double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
-          before = value;
-          value = next;
-        }
-        slope = n * (x * value - before) / (x * x - 1);
-        x -= value / slope;
-      }
-      at[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / 2);
-      weight[static_cast<std::size_t>(i)] = static_cast<double>(1 / ((1 - x * x) * slope * slope));
-    }
-  }
-};
 
 // Constants of the bounds.
 struct Tables {
@@ -103,106 +81,46 @@ const Tables& tables() {
   return all;
 }
 
-// Eight edges at a time.
-constexpr std::size_t kLanes = 8;
-using Eight = std::array<double, kLanes>;
-constexpr std::size_t kTermsBelow = multipole_index(kP - 1, kP - 1, kP - 1) + 1;
-
 // The sums of (a x b) times the integral of R_n^m along an edge a -> b, n < kP.
 class EdgeSums {
  public:
-  EdgeSums() : re_{}, im_{} {}
+  explicit EdgeSums(MomentKernel kernel) : kernel_(kernel) {}
 
   void add(const Vec3& a, const Vec3& along, double sign) {
-    const Vec3 v = sign * cross(a, along);
+    const Vec3 normal = sign * cross(a, along);
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      from_[i][count_] = a[axis];
-      along_[i][count_] = along[axis];
-      normal_[i][count_] = v[axis];
+      edges_.from[i][count_] = a[axis];
+      edges_.along[i][count_] = along[axis];
+      edges_.normal[i][count_] = normal[axis];
     }
-    if (++count_ == kLanes) flush();
+    if (++count_ < kMomentLanes) return;
+    kernel_(edges_, lanes_);
+    count_ = 0;
   }
   void finish() {
-    if (count_ == 0) return;
-    for (; count_ < kLanes; ++count_) {
-      for (std::size_t i = 0; i < 3; ++i) from_[i][count_] = along_[i][count_] = normal_[i][count_] = 0.0;
+    while (count_ > 0) add({}, {}, 0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t term = 0; term < kMomentTerms; ++term) {
+        const MomentLanes &re = lanes_.re[axis][term], &im = lanes_.im[axis][term];
+        sums_[axis][term] = {std::accumulate(re.begin(), re.end(), 0.0), std::accumulate(im.begin(), im.end(), 0.0)};
+      }
     }
-    flush();
   }
   // Of component `axis` of a x b, any m.
   [[nodiscard]] Complex operator()(std::size_t axis, int n, int m) const {
     if (std::abs(m) > n) return 0.0;
-    const std::size_t term = multipole_index(n, std::abs(m), kP - 1);
-    const Complex c(re_[axis][term], im_[axis][term]);
+    const Complex c = sums_[axis][multipole_index(n, std::abs(m), kMomentOrder)];
     return m >= 0 ? c : m % 2 == 0 ? std::conj(c) : -std::conj(c);
   }
 
  private:
-  void flush();
-  void integrate();
-
-  std::array<Eight, 3> from_, along_, normal_;
+  MomentKernel kernel_;
+  MomentEdges edges_;
   std::size_t count_ = 0;
-  std::array<Eight, kTermsBelow> integral_re_, integral_im_;
-  std::array<std::array<double, kTermsBelow>, 3> re_, im_;
+  MomentSums lanes_;
+  std::array<std::array<Complex, kMomentTerms>, 3> sums_;
 };
-
-void EdgeSums::flush() {
-  integrate();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t term = 0; term < kTermsBelow; ++term) {
-      double re = 0, im = 0;
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        re += normal_[axis][i] * integral_re_[term][i];
-        im += normal_[axis][i] * integral_im_[term][i];
-      }
-      re_[axis][term] += re;
-      im_[axis][term] += im;
-    }
-  }
-  count_ = 0;
-}
-
-void EdgeSums::integrate() {
-  static const GaussRule rule;
-  for (std::size_t term = 0; term < kTermsBelow; ++term) integral_re_[term].fill(0.0), integral_im_[term].fill(0.0);
-  for (std::size_t point = 0; point < kPoints; ++point) {
-    const double t = rule.at[point], weight = rule.weight[point];
-    Eight x, y, z, square, corner_re, corner_im;
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      x[i] = from_[0][i] + t * along_[0][i];
-      y[i] = from_[1][i] + t * along_[1][i];
-      z[i] = from_[2][i] + t * along_[2][i];
-      square[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-      corner_re[i] = weight;
-      corner_im[i] = 0.0;
-    }
-    for (int m = 0; m < kP; ++m) {
-      Eight re = corner_re, im = corner_im, re_before{}, im_before{};
-      for (int n = m; n < kP; ++n) {
-        const std::size_t term = multipole_index(n, m, kP - 1);
-        const double step = 1.0 / ((n + 1) * (n + 1) - m * m), forward = (2 * n + 1) * step;
-        for (std::size_t i = 0; i < kLanes; ++i) {
-          integral_re_[term][i] += re[i];
-          integral_im_[term][i] += im[i];
-          const double f = forward * z[i], g = step * square[i];
-          const double next_re = f * re[i] - g * re_before[i], next_im = f * im[i] - g * im_before[i];
-          re_before[i] = re[i];
-          im_before[i] = im[i];
-          re[i] = next_re;
-          im[i] = next_im;
-        }
-      }
-      const double factor = -1.0 / (2 * (m + 1));
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        const double next = factor * (corner_re[i] * x[i] - corner_im[i] * y[i]);
-        corner_im[i] = factor * (corner_re[i] * y[i] + corner_im[i] * x[i]);
-        corner_re[i] = next;
-      }
-    }
-  }
-}
 
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -243,8 +161,9 @@ std::array<Degree, kP + 1> rows_of(const At& at) {
 
 }  // namespace
 
-Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius) {
-  EdgeSums sums;
+Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius,
+                       MomentKernel kernel) {
+  EdgeSums sums(kernel);
   const double scale = 1 / unit;
   double reach = 0;  // the sum of |a||b - a|
   for (const SolidTriangle& t : triangles) {

@@ -13,6 +13,7 @@
 
 #include "core/boundary/solid_angle_kernel.h"
 #include "core/data/vec3.h"
+#include "core/far/moment_kernel.h"
 
 namespace raycone {
 
@@ -32,9 +33,9 @@ struct Multipole {
 };
 
 // Of the triangles, each of which is at most `radius` units away from the centre at every point; radius <= 1. `unit` is
-// a power of two.
+// a power of two. The result does not depend on the kernel.
 [[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit,
-                                     double radius);
+                                     double radius, MomentKernel kernel = moment_kernel(SimdLevel::kBest));
 
 // Adds an expansion that is about a centre that lies `shift` away, in units of the sum, and whose unit is `ratio` such
 // units, a power of two. |shift| <= 1.

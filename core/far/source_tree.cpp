@@ -87,8 +87,35 @@ std::array<double, kOrders + 1> largest_ratios(const SourceNode& node, double sh
 
 }  // namespace
 
-SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance)
-    : triangles_(std::move(triangles)), tolerance_(tolerance) {
+// What the tree is built of, in place of the triangles themselves.
+struct SourceTree::PlacedTriangle {
+  Box box;
+  std::uint32_t number;
+};
+
+// Along the axis along which the middles of their boxes are farthest apart.
+void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
+  Vec3 lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
+  for (const PlacedTriangle& t : placed) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], middle(t.box, axis));
+      upper[axis] = std::max(upper[axis], middle(t.box, axis));
+    }
+  }
+  const Vec3 size = upper - lower;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::vector<std::pair<double, std::uint32_t>> order;
+  order.reserve(placed.size());
+  for (std::uint32_t i = 0; i < placed.size(); ++i) order.emplace_back(middle(placed[i].box, axis), i);
+  std::sort(order.begin(), order.end());
+  std::vector<PlacedTriangle> sorted;
+  sorted.reserve(placed.size());
+  for (const auto& [at, i] : order) sorted.push_back(placed[i]);
+  std::ranges::copy(sorted, placed.begin());
+}
+
+SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
+    : triangles_(std::move(triangles)), tolerance_(tolerance), moments_(moment_kernel(level)) {
   if (triangles_.empty()) return;
   build();
   expand();
@@ -96,7 +123,14 @@ SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance)
 
 void SourceTree::build() {
   nodes_.reserve(triangles_.size() / 2 + 1);
-  build_node(0, static_cast<std::uint32_t>(triangles_.size()));
+  std::vector<PlacedTriangle> placed;
+  placed.reserve(triangles_.size());
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) placed.push_back({box_of(triangles_[i]), i});
+  build_node(placed, 0);
+  std::vector<SolidTriangle> ordered;
+  ordered.reserve(triangles_.size());
+  for (const PlacedTriangle& t : placed) ordered.push_back(triangles_[t.number]);
+  triangles_ = std::move(ordered);
   std::size_t coefficients = 0;
   corners_ = SharedCorners::without_groups(triangles_);
   for (SourceNode& node : nodes_) {
@@ -111,36 +145,25 @@ void SourceTree::build() {
 }
 
 // Triangles that are large beside the node stay with it; the others are halved by their middles.
-std::uint32_t SourceTree::build_node(std::uint32_t begin, std::uint32_t end) {
+std::uint32_t SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint32_t begin) {
   const auto number = static_cast<std::uint32_t>(nodes_.size());
+  const auto end = begin + static_cast<std::uint32_t>(placed.size());
   nodes_.emplace_back();
   nodes_[number].begin = begin;
   nodes_[number].end = nodes_[number].own_end = end;
-  if (end - begin > kLeaf) {
-    Box box = box_of(triangles_[begin]);
-    for (std::uint32_t i = begin + 1; i < end; ++i) extend(box, box_of(triangles_[i]));
+  if (placed.size() > kLeaf) {
+    Box box = placed.front().box;
+    for (const PlacedTriangle& t : placed) extend(box, t.box);
     const double large = longest_side(box) / 2;
-    const auto first = triangles_.begin() + begin, last = triangles_.begin() + end;
     const auto rest =
-        std::stable_partition(first, last, [&](const SolidTriangle& t) { return longest_side(box_of(t)) > large; });
-    const auto own_end = static_cast<std::uint32_t>(rest - triangles_.begin());
-    if (end - own_end > kLeaf / 2) {
-      nodes_[number].own_end = own_end;
-      Vec3 lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
-      for (auto it = rest; it != last; ++it) {
-        for (int axis = 0; axis < 3; ++axis) {
-          lower[axis] = std::min(lower[axis], middle(box_of(*it), axis));
-          upper[axis] = std::max(upper[axis], middle(box_of(*it), axis));
-        }
-      }
-      const Vec3 size = upper - lower;
-      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      std::stable_sort(rest, last, [&](const SolidTriangle& s, const SolidTriangle& t) {
-        return middle(box_of(s), axis) < middle(box_of(t), axis);
-      });
-      const std::uint32_t half = own_end + (end - own_end) / 2;
-      build_node(own_end, half);
-      build_node(half, end);
+        std::ranges::stable_partition(placed, [&](const PlacedTriangle& t) { return longest_side(t.box) > large; });
+    if (rest.size() > kLeaf / 2) {
+      const std::size_t own = placed.size() - rest.size();
+      nodes_[number].own_end = begin + static_cast<std::uint32_t>(own);
+      sort_by_middles(placed.subspan(own));
+      const std::size_t half = own + rest.size() / 2;
+      build_node(placed.subspan(own, half - own), begin + static_cast<std::uint32_t>(own));
+      build_node(placed.subspan(half), begin + static_cast<std::uint32_t>(half));
     }
   }
   nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
@@ -205,7 +228,7 @@ void SourceTree::expand() {
 Multipole SourceTree::expansion_of(const SourceNode& node) const {
   if (!(node.radius > kSmallest)) return {};
   const std::span own = triangles().subspan(node.begin, node.own_end - node.begin);
-  return multipole_of(own, node.centre, node.unit, node.radius / node.unit);
+  return multipole_of(own, node.centre, node.unit, node.radius / node.unit, moments_);
 }
 
 void SourceTree::finish(SourceNode& node, const Multipole& multipole) {

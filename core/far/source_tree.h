@@ -39,8 +39,8 @@ class SourceTree {
   static constexpr std::uint32_t kLeaf = 16;  // triangles
 
   // Triangles of a mesh in scale: coordinates of at most 1. Nodes that are accepted as square_of_distance says err by
-  // at most `tolerance` turns (positive) together, whichever they are. Deterministic.
-  SourceTree(std::vector<SolidTriangle> triangles, double tolerance);
+  // at most `tolerance` turns (positive) together, whichever they are. Deterministic, also for every level.
+  SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level = SimdLevel::kBest);
 
   [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any
   [[nodiscard]] std::span<const SolidTriangle> triangles() const { return triangles_; }
@@ -52,8 +52,12 @@ class SourceTree {
   [[nodiscard]] static double error(const SourceNode& node, int p, double distance);
 
  private:
+  struct PlacedTriangle;
+
   void build();
-  std::uint32_t build_node(std::uint32_t begin, std::uint32_t end);
+  // Of all of `placed`, which it sorts; they become the triangles from `begin` on.
+  std::uint32_t build_node(std::span<PlacedTriangle> placed, std::uint32_t begin);
+  static void sort_by_middles(std::span<PlacedTriangle> placed);
   void measure(SourceNode& node) const;
   void expand();
   [[nodiscard]] Multipole expansion_of(const SourceNode& node) const;
@@ -62,6 +66,7 @@ class SourceTree {
   std::vector<SolidTriangle> triangles_;
   SharedCorners corners_;  // of the triangles, node by node
   double tolerance_;
+  MomentKernel moments_;
   std::vector<SourceNode> nodes_;
   std::vector<double> coefficients_;
 };

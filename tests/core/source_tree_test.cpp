@@ -122,6 +122,23 @@ TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
   }
 }
 
+TEST(SourceTree, MomentsAreTheSameForEverySimdLevel) {
+  const DefaultFloatingPoint guard;
+  test::Random random(4);
+  for (const int count : {1, 2, 3, 7, 8, 9}) {
+    const auto all = solid_faces(small_triangles(random, count, 0.3)).triangles;
+    const auto moments = [&](SimdLevel level) {
+      return multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, moment_kernel(level));
+    };
+    const Multipole best = moments(SimdLevel::kBest);
+    for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+      const Multipole here = moments(level);
+      EXPECT_EQ(here.re, best.re) << count;
+      EXPECT_EQ(here.im, best.im) << count;
+    }
+  }
+}
+
 TEST(SourceTree, HoldsEachTriangleInEveryNodeAbove) {
   test::Random random(3);
   TriangleMesh mesh = test::joined(small_triangles(random, 300, 0.02), test::soup(random, 20));

@@ -1,0 +1,38 @@
+#include "core/far/gauss_rule.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace raycone {
+namespace {
+
+// By Newton's method from Chebyshev's points.
+GaussRule make_rule() {
+  GaussRule rule{};
+  constexpr int n = static_cast<int>(GaussRule::kPoints);
+  for (int i = 0; i < n; ++i) {
+    long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L)), slope = 1;
+    for (int step = 0; step < 8; ++step) {
+      long double before = 1, value = x;
+      for (int k = 2; k <= n; ++k) {
+        const long double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
+        before = value;
+        value = next;
+      }
+      slope = n * (x * value - before) / (x * x - 1);
+      x -= value / slope;
+    }
+    rule.at[static_cast<std::size_t>(i)] = static_cast<double>((1 + x) / 2);
+    rule.weight[static_cast<std::size_t>(i)] = static_cast<double>(1 / ((1 - x * x) * slope * slope));
+  }
+  return rule;
+}
+
+}  // namespace
+
+const GaussRule& gauss_rule() {
+  static const GaussRule rule = make_rule();
+  return rule;
+}
+
+}  // namespace raycone

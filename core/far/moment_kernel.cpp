@@ -1,0 +1,106 @@
+#include "core/far/moment_kernel.h"
+
+#include "core/far/gauss_rule.h"
+#include "core/far/multipole.h"
+
+// Highway compiles what is between its markers once per SIMD level.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/far/moment_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raycone {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Doubles = hn::CappedTag<double, kMomentLanes>;
+using Lanes = hn::Vec<Doubles>;
+constexpr Doubles d;
+constexpr int kOrder = kMomentOrder;
+
+// Of each term, of as many edges as there are lanes.
+struct Integrals {
+  alignas(64) std::array<MomentLanes, kMomentTerms> re, im;
+};
+
+// Numbers, one in each lane.
+struct ComplexLanes {
+  Lanes re, im;
+};
+
+// Of R_n^m at one point, times its weight: adds those of all n to the integrals.
+HWY_INLINE void add_column(int m, const ComplexLanes& corner, Lanes z, Lanes square, bool is_first,
+                           Integrals& integrals) {
+  ComplexLanes value = corner, before{hn::Zero(d), hn::Zero(d)};
+  for (int n = m; n <= kOrder; ++n) {
+    const std::size_t term = multipole_index(n, m, kOrder);
+    double* const re = integrals.re[term].data();
+    double* const im = integrals.im[term].data();
+    hn::Store(is_first ? value.re : hn::Add(hn::Load(d, re), value.re), d, re);
+    hn::Store(is_first ? value.im : hn::Add(hn::Load(d, im), value.im), d, im);
+    const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
+    const Lanes forward = hn::Mul(hn::Set(d, (2 * n + 1) * step), z), back = hn::Mul(hn::Set(d, step), square);
+    const ComplexLanes next{hn::Sub(hn::Mul(forward, value.re), hn::Mul(back, before.re)),
+                            hn::Sub(hn::Mul(forward, value.im), hn::Mul(back, before.im))};
+    before = value;
+    value = next;
+  }
+}
+
+HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, Integrals& integrals) {
+  const GaussRule& rule = gauss_rule();
+  for (std::size_t point = 0; point < GaussRule::kPoints; ++point) {
+    const Lanes t = hn::Set(d, rule.at[point]);
+    const auto at = [&](std::size_t axis) {
+      return hn::Add(hn::Load(d, &edges.from[axis][lane]), hn::Mul(t, hn::Load(d, &edges.along[axis][lane])));
+    };
+    const Lanes x = at(0), y = at(1), z = at(2);
+    const Lanes square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+    ComplexLanes corner{hn::Set(d, rule.weight[point]), hn::Zero(d)};
+    for (int m = 0; m <= kOrder; ++m) {
+      add_column(m, corner, z, square, point == 0, integrals);
+      const Lanes factor = hn::Set(d, -1.0 / (2 * (m + 1)));
+      corner = {hn::Mul(factor, hn::Sub(hn::Mul(corner.re, x), hn::Mul(corner.im, y))),
+                hn::Mul(factor, hn::Add(hn::Mul(corner.re, y), hn::Mul(corner.im, x)))};
+    }
+  }
+}
+
+void add_edges(const MomentEdges& edges, MomentSums& sums) {
+  Integrals integrals;
+  for (std::size_t lane = 0; lane < kMomentLanes; lane += hn::Lanes(d)) {
+    integrate(edges, lane, integrals);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Lanes normal = hn::Load(d, &edges.normal[axis][lane]);
+      for (std::size_t term = 0; term < kMomentTerms; ++term) {
+        double* const re = &sums.re[axis][term][lane];
+        double* const im = &sums.im[axis][term][lane];
+        hn::Store(hn::Add(hn::Load(d, re), hn::Mul(normal, hn::Load(d, integrals.re[term].data()))), d, re);
+        hn::Store(hn::Add(hn::Load(d, im), hn::Mul(normal, hn::Load(d, integrals.im[term].data()))), d, im);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace raycone
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace raycone {
+
+MomentKernel moment_kernel([[maybe_unused]] SimdLevel level) {
+#if HWY_ARCH_X86
+  const SimdLevel available = available_level(level);
+  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(add_edges);
+  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(add_edges);
+  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(add_edges);
+#endif
+  return &HWY_STATIC_DISPATCH(add_edges);
+}
+
+}  // namespace raycone
+#endif

@@ -18,7 +18,7 @@ namespace raycone {
 struct Seconds {
   double read = 0.0;      // mesh and points: parsing and hashing
   double prepare = 0.0;   // all that depends on the mesh alone: welding, exterior edges, acceleration structures
-  double evaluate = 0.0;  // the rest of the evaluation
+  double evaluate = 0.0;  // the rest of the evaluation, and drawing the points that it is of
   double write = 0.0;
   double verify = 0.0;  // where asked for
   double total = 0.0;

@@ -30,13 +30,15 @@ namespace {
 // Points evaluated at a time.
 constexpr std::size_t kPointBatch = std::size_t{1} << 16;
 
-// Answers are handed on whenever the next question would have to be waited for.
-void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, PointWriter& writer, MeshRun& run) {
+// Answers are handed on whenever the next question would have to be waited for. `source`: the seconds of what reading
+// points is part of.
+void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, PointWriter& writer, MeshRun& run,
+                     double& source) {
   std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
   std::vector<Vec3> points;
   for (;;) {
     if (reader.would_block()) writer.flush();
-    if (!timed(run.report.seconds.read, [&] { return reader.next(points, kPointBatch); })) return;
+    if (!timed(source, [&] { return reader.next(points, kPointBatch); })) return;
     fields.evaluate(points, done);
     if (labels) timed(run.report.seconds.evaluate, [&] { labels->evaluate(points, fields.labels()); });
     const SurfacePlaces places = reader.places();
@@ -117,7 +119,9 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
   run.output.reserve(least_point_file(command.encoding.format, description, reader->size().value_or(0)));
   const std::unique_ptr<PointWriter> writer =
       make_point_writer(command.encoding.format, run.output, reader->size(), description);
-  evaluate_points(fields, labels ? &*labels : nullptr, *reader, *writer, run);
+  // Points that are drawn are made, not read.
+  double& source = command.sample ? report.seconds.evaluate : report.seconds.read;
+  evaluate_points(fields, labels ? &*labels : nullptr, *reader, *writer, run, source);
   fields.finish(std::numeric_limits<double>::infinity());
   if (labels) labels->finish();
   timed(report.seconds.write, [&] { writer->finish(); });

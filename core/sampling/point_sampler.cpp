@@ -70,6 +70,23 @@ std::vector<double> areas_up_to(const TriangleMesh& mesh) {
   return areas;
 }
 
+// The step of an area among as many as there are triangles. Monotone.
+std::size_t step_of(double area, const std::vector<double>& areas) {
+  return static_cast<std::size_t>(area / areas.back() * static_cast<double>(areas.size()));
+}
+
+std::vector<std::uint32_t> first_beyond_steps(const std::vector<double>& areas) {
+  std::vector<std::uint32_t> first(areas.size() + 1, 0);
+  if (areas.back() <= 0.0) return first;
+  std::size_t step = 0;
+  for (std::uint32_t n = 0; n < areas.size(); ++n) {
+    // All areas of the steps before that of areas[n] are less.
+    for (const std::size_t end = std::min(step_of(areas[n], areas), areas.size()); step < end; ++step)
+      first[step + 1] = n;
+  }
+  return first;
+}
+
 double diagonal_of(const TriangleMesh& mesh) {
   const int exponent = largest_exponent(mesh);
   const PowerOfTwo to_unit(-exponent), to_world(exponent);
@@ -86,7 +103,8 @@ PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector
       diagonal_(diagonal_of(mesh)),
       groups_(std::move(groups)),
       seed_(seed),
-      areas_(areas_up_to(mesh)) {
+      areas_(areas_up_to(mesh)),
+      first_beyond_(first_beyond_steps(areas_)) {
   for (const SampleGroup& group : groups_) size_ += count_of(group);
 }
 
@@ -113,8 +131,8 @@ double PointSampler::noise_of(const NearSamples& near) const {
 
 PointSampler::Drawn PointSampler::on_surface(Random& random) const {
   const double area = random.uniform() * areas_.back();
-  const auto found = std::upper_bound(areas_.begin(), areas_.end(), area);
-  const Triangle& t = mesh_.triangles[static_cast<std::size_t>(found - areas_.begin())];
+  const std::size_t face = triangle_at(area);
+  const Triangle& t = mesh_.triangles[face];
   const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
   const double from_a = std::sqrt(random.uniform()), toward_c = random.uniform();
   Vec3 p = (1 - from_a) * a + (from_a * (1 - toward_c)) * b + (from_a * toward_c) * c;
@@ -123,7 +141,18 @@ PointSampler::Drawn PointSampler::on_surface(Random& random) const {
     const auto [least, most] = std::minmax({a[axis], b[axis], c[axis]});
     p[axis] = std::clamp(p[axis], least, most);
   }
-  return {p, found - areas_.begin()};
+  return {p, static_cast<std::int64_t>(face)};
+}
+
+// The first one up to which there is more area. Steps with many triangles take a search.
+std::size_t PointSampler::triangle_at(double area) const {
+  constexpr std::size_t kFew = 8;
+  std::size_t n = first_beyond_[std::min(step_of(area, areas_), areas_.size())];
+  for (std::size_t tried = 0; tried < kFew; ++tried, ++n) {
+    if (areas_[n] > area) return n;
+  }
+  const auto begin = areas_.begin() + static_cast<std::ptrdiff_t>(n);
+  return static_cast<std::size_t>(std::upper_bound(begin, areas_.end(), area) - areas_.begin());
 }
 
 PointSampler::Drawn PointSampler::drawn(std::uint64_t number) const {

@@ -1,6 +1,7 @@
 // Points drawn in a box, on a surface and near it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <variant>
@@ -54,6 +55,7 @@ class PointSampler {
   };
   [[nodiscard]] Drawn drawn(std::uint64_t number) const;
   [[nodiscard]] Drawn on_surface(Random& random) const;
+  [[nodiscard]] std::size_t triangle_at(double area) const;
   [[nodiscard]] double noise_of(const NearSamples& near) const;
 
   TriangleMesh mesh_;
@@ -63,6 +65,8 @@ class PointSampler {
   std::uint64_t seed_;
   std::uint64_t size_ = 0;
   std::vector<double> areas_;  // of the triangles up to each, in some unit
+  // The areas cut into equal steps, as many as triangles: at each step the first triangle that reaches beyond it.
+  std::vector<std::uint32_t> first_beyond_;
 };
 
 }  // namespace raycone

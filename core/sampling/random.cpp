@@ -1,5 +1,6 @@
 #include "core/sampling/random.h"
 
+#include <array>
 #include <cmath>
 
 namespace raycone {
@@ -24,9 +25,11 @@ double logarithm(double x) {
     m *= 2;
     --exponent;
   }
+  constexpr std::array kInverses{1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13,
+                                 1.0 / 11, 1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
   const double z = (m - 1) / (m + 1), square = z * z;
   double series = 0.0;
-  for (int n = 23; n >= 1; n -= 2) series = series * square + 1.0 / n;
+  for (const double inverse : kInverses) series = series * square + inverse;
   return exponent * kLog2 + 2 * z * series;
 }
 

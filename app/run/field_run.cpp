@@ -114,7 +114,10 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   std::vector<std::string> names;
   for (const FieldDescription& described : description.fields) names.push_back(described.name);
   description.metadata = provenance_json(report, names, field.has_rule() ? name_of(field.rule) : "");
-  if (field.has(Field::kLabel)) description.label_names = label_names_json(report);
+  if (field.has(Field::kLabel)) {
+    for (const PartReport& part : report.parts) description.labels.push_back(part.name);
+    description.label_names = label_names_json(report);
+  }
   return description;
 }
 

@@ -81,7 +81,8 @@ struct OutputDescription {
   bool single_points = false;                     // NPZ: points and normals as 32 bits
   std::array<double, 16> transform = kIdentity4;  // from the mesh's file to the world, row by row
   std::string metadata;                           // how this was made, as JSON
-  std::string label_names;                        // of 1, 2, ..., as a JSON array; empty where there are no labels
+  std::vector<std::string> labels;                // names of 1, 2, ...
+  std::string label_names;                        // the same as a JSON array; empty where there are no labels
   std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
 
   [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }

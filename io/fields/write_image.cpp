@@ -19,6 +19,7 @@
 
 #include "io/fields/array_elements.h"
 #include "io/fields/format_writers.h"
+#include "io/fields/label_colour.h"
 #include "io/fields/quaternion.h"
 #include "io/files/file_error.h"
 #include "io/files/gzip_writer.h"
@@ -67,6 +68,27 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
+// How 3D Slicer knows the segments of a file *.seg.nrrd (its developer guide, "Segmentations"): all in one layer.
+std::string segments(const PlacedLattice& lattice, const std::vector<std::string>& labels) {
+  std::string extent;
+  for (const std::int64_t count : lattice.grid.counts) extent += " 0 " + std::to_string(count - 1);
+  std::string text = labels.empty() ? "" : "Segmentation_ContainedRepresentationNames:=Binary labelmap|\n";
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    const std::string label = std::to_string(n + 1), segment = "Segment" + std::to_string(n) + '_';
+    std::string colour;
+    for (const std::uint8_t part : label_colour(n + 1)) {
+      colour += (colour.empty() ? "" : " ") + shortest_text(std::round(part / 255.0 * 1e6) / 1e6);
+    }
+    text += segment + "ID:=Segment_" + label + '\n';
+    text += segment + "Name:=" + escaped(labels[n]) + '\n';
+    text += segment + "LabelValue:=" + label + '\n';
+    text += segment + "Layer:=0\n";
+    text += segment + "Extent:=" + extent.substr(1) + '\n';
+    text += segment + "Color:=" + colour + '\n';
+  }
+  return text;
+}
+
 std::string nrrd_head(const PlacedLattice& lattice, const OutputDescription& description) {
   static constexpr std::array kTypes{"uint8", "float", "double", "int32"};
   const auto& [i, j, k] = lattice.steps;
@@ -83,6 +105,7 @@ std::string nrrd_head(const PlacedLattice& lattice, const OutputDescription& des
   head += "raycone_field:=" + field.name + '\n';
   if (!field.rule.empty()) head += "raycone_rule:=" + field.rule + '\n';
   if (!description.metadata.empty()) head += "raycone:=" + escaped(description.metadata) + '\n';
+  head += segments(lattice, description.labels);
   return head + '\n';
 }
 

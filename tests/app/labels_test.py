@@ -341,6 +341,17 @@ class Names(Labels):
         about = json.loads(numpy.load("l.npz")["raycone"].item())
         self.assertEqual((about["labels"], about["rule"], about["fields"]), (list(PARTS), "threshold=0.5", ["label"]))
         self.assertIn(b'"labels":["left lobe","right","open","turned"]', read("l.nrrd"))
+        pairs = dict(line.split(":=", 1) for line in read("l.nrrd").split(b"\n\n", 1)[0].decode().split("\n") if ":=" in line)
+        self.works(words + " -o l.nii")
+        for n, label in enumerate(json.loads(read("l.json"))["labels"]):
+            segment = {key.split("_", 1)[1]: value for key, value in pairs.items() if key.startswith("Segment%d_" % n)}
+            colour = segment.pop("Color").split(" ")
+            self.assertEqual(segment, {"ID": "Segment_%d" % (n + 1), "Name": label["name"], "LabelValue": str(n + 1),
+                                       "Layer": "0", "Extent": "0 14 0 8 0 8"})
+            self.assertEqual([round(255 * float(part)) for part in colour], label["color"])
+        self.assertNotIn("Segment4_ID", pairs)
+        self.works("lattice groups.obj --field inside -o i.nrrd" + BOX)
+        self.assertNotIn(b"Segment", read("i.nrrd"))
         self.assertIn(b'["left lobe","right","open","turned"]', read("l.vdb"))
         self.assertIn(b"Tree_int32_5_4_3", read("l.vdb"))
         self.works(words + " -o l.npy --report r.json")

@@ -473,6 +473,94 @@ add("cut.npy", npy(npy_header("(2, 3)"), DOUBLES[:-1]), 2, "NPY data of 47 bytes
 add("nan.npy", npy(npy_header("(2, 3)"), DOUBLES[:-8] + struct.pack("<d", float("nan"))), 2, "byte 168: row 1 has z = nan, expected a finite number")
 add("no_rows.npy", npy(npy_header("(0, 3)")), 0)
 
+# --- 3MF
+
+CORE_3MF = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+RELATIONS = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+MESH_3MF = "<mesh><vertices>%s</vertices><triangles>%s</triangles></mesh>" % (
+    "".join('<vertex x="%d" y="%d" z="%d"/>' % v for v in VERTICES), "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % f for f in FACES))
+OBJECT_3MF = '<object id="1">%s</object>' % MESH_3MF
+
+
+def model_3mf(resources=OBJECT_3MF, build='<item objectid="1"/>', more=""):
+    return '<model unit="millimeter" xmlns="%s"%s><resources>%s</resources><build>%s</build></model>' % (CORE_3MF, more, resources, build)
+
+
+def package(model, relations=RELATIONS, method=zipfile.ZIP_DEFLATED, **others):
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", method) as parts:
+        for name, content in [("_rels/.rels", relations), ("3D/3dmodel.model", model), *others.items()]:
+            if content is not None:
+                parts.writestr(zipfile.ZipInfo(name), content, method)
+    return file.getvalue()
+
+
+GOOD_3MF = package(model_3mf())
+add("good.3mf", GOOD_3MF, 0)
+add("stored.3mf", package(model_3mf(), method=zipfile.ZIP_STORED), 0)
+add("empty.3mf", "", 2, "the file is empty")
+add("text.3mf", OBJ, 2, "not a readable ZIP archive: no directory at its end")
+add("cut.3mf", GOOD_3MF[:-30], 2)
+add("head_only.3mf", GOOD_3MF[:40], 2)
+add("no_parts.3mf", b"PK\x05\x06" + bytes(18), 2, "no part _rels/.rels")
+add("no_relations.3mf", package(model_3mf(), None), 2, "no part _rels/.rels, expected a 3MF package")
+add("no_model.3mf", package(None), 2, "no part 3D/3dmodel.model, expected a 3MF package")
+add("relations_elsewhere.3mf", package(model_3mf(), RELATIONS.replace("/3D/3dmodel.model", "/../../etc/passwd")), 2, "no part ../../etc/passwd")
+add("relations_of_nothing.3mf", package(model_3mf(), RELATIONS.replace("3dmodel\"", "thumbnail\"")), 2, "no 3D model in its relationships")
+add("encrypted.3mf", package(model_3mf(), RELATIONS.replace("2013/01/3dmodel", "2019/07/encryptedfile")), 2, "is encrypted")
+add("model_is_empty.3mf", package(""), 2, "not well-formed XML")
+add("model_is_text.3mf", package("hello"), 2, "not well-formed XML")
+add("model_is_binary.3mf", package(bytes(range(256)) * 4), 2, "not well-formed XML")
+add("model_is_html.3mf", package("<html/>"), 2, "element html, expected")
+add("model_cut.3mf", package(model_3mf()[:-9]), 2, "not well-formed XML")
+add("two_roots.3mf", package(model_3mf() + model_3mf()), 2, "not well-formed XML")
+add("bad_utf8.3mf", package(model_3mf().encode().replace(b"millimeter", b"\xff\xfe")), 2, "not well-formed XML")
+add("nul.3mf", package(model_3mf().replace("millimeter", "a\0b")), 2, "not well-formed XML")
+add("utf16.3mf", package(model_3mf().encode("utf-16")), 0)
+add("unknown_encoding.3mf", package('<?xml version="1.0" encoding="klingon"?>' + model_3mf()), 2, "not well-formed XML")
+add("laughs.3mf", package('<!DOCTYPE m [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;">]>' + model_3mf(more=' n="&b;"')), 2, "a document type, expected none")
+add("external_entity.3mf", package('<!DOCTYPE m SYSTEM "file:///etc/passwd">' + model_3mf()), 2, "a document type, expected none")
+add("no_namespace.3mf", package(model_3mf().replace(' xmlns="%s"' % CORE_3MF, "")), 2, "element model, expected")
+add("other_namespace.3mf", package(model_3mf().replace(CORE_3MF, "urn:other")), 2, "element urn:other|model")
+add("no_build.3mf", package(model_3mf(build="")), 2, "no triangles")
+add("no_objects.3mf", package(model_3mf("", "")), 2, "no triangles")
+add("item_of_nothing.3mf", package(model_3mf(build='<item objectid="2"/>')), 2, "no object 2, which a component or an item of the build names")
+add("item_without_object.3mf", package(model_3mf(build="<item/>")), 2, "no attribute objectid")
+add("object_without_id.3mf", package(model_3mf("<object>%s</object>" % MESH_3MF)), 2, "no attribute id")
+add("object_twice.3mf", package(model_3mf(OBJECT_3MF * 2)), 2, "a second object 1")
+add("two_meshes.3mf", package(model_3mf('<object id="1">%s</object>' % (MESH_3MF * 2))), 2, "a second mesh of an object, expected one")
+add("no_mesh.3mf", package(model_3mf('<object id="1"/>')), 2, "no triangles")
+add("id_2_to_32.3mf", package(model_3mf(OBJECT_3MF.replace('"1"', '"4294967296"', 1))), 2, "id is '4294967296', expected an index of 32 bits")
+add("id_negative.3mf", package(model_3mf(OBJECT_3MF.replace('"1"', '"-1"', 1))), 2, "id is '-1', expected an index of 32 bits")
+add("index_beyond.3mf", package(model_3mf(OBJECT_3MF.replace('v3="1"', 'v3="4"', 1))), 2, "face index 4, but there are only 4 vertices")
+add("index_negative.3mf", package(model_3mf(OBJECT_3MF.replace('v3="1"', 'v3="-1"', 1))), 2, "v3 is '-1', expected an index of 32 bits")
+add("index_fraction.3mf", package(model_3mf(OBJECT_3MF.replace('v3="1"', 'v3="1.5"', 1))), 2, "v3 is '1.5', expected an index of 32 bits")
+add("index_absent.3mf", package(model_3mf(OBJECT_3MF.replace(' v3="1"', "", 1))), 2, "no attribute v3")
+add("triangles_first.3mf", package(model_3mf('<object id="1"><mesh><triangles><triangle v1="0" v2="1" v3="2"/></triangles><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices></mesh></object>')), 0)
+add("coordinate_absent.3mf", package(model_3mf(OBJECT_3MF.replace(' z="0"', "", 1))), 2, "no attribute z")
+add("coordinate_word.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="a"', 1))), 2, "z is 'a', expected a finite number")
+add("coordinate_nan.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="nan"', 1))), 2, "z is 'nan', expected a finite number")
+add("coordinate_overflow.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="1e400"', 1))), 2, "z is '1e400', expected a finite number")
+add("coordinate_long.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="0.%s"' % ("3" * 100000), 1))), 0)
+add("coordinate_hex.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="0x1"', 1))), 2, "z is '0x1', expected a finite number")
+add("coordinate_control.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="&#x1b;[31m"', 1))), 2, "not well-formed XML")
+add("transform_short.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0"/>')), 2, "transform: expected 12 finite numbers")
+add("transform_long.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 0 5"/>')), 2, "transform: more than 12 numbers")
+add("transform_infinite.3mf", package(model_3mf(build='<item objectid="1" transform="inf 0 0 0 1 0 0 0 1 0 0 0"/>')), 2, "transform: expected 12 finite numbers")
+add("transform_overflow.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 1e308 0 0"/>').replace('x="1"', 'x="1.7e308"')), 2, "a vertex is not finite once its transform is applied")
+add("transform_of_zeros.3mf", package(model_3mf(build='<item objectid="1" transform="0 0 0 0 0 0 0 0 0 0 0 0"/>')), 0)
+add("component_of_itself.3mf", package(model_3mf('<object id="1"><components><component objectid="1"/></components></object>')), 2, "components within components, more than 256 deep")
+add("components_in_a_ring.3mf", package(model_3mf('<object id="1"><components><component objectid="2"/></components></object><object id="2"><components><component objectid="1"/></components></object>')), 2, "more than 256 deep")
+add("components_that_double.3mf", package(model_3mf(OBJECT_3MF + "".join('<object id="%d"><components>%s</components></object>' % (n, '<component objectid="%d"/>' % (n - 1) * 2) for n in range(2, 41)), '<item objectid="40"/>')), 4, "components make more than 1048576 copies of objects")
+add("required_unknown.3mf", package(model_3mf(more=' xmlns:q="urn:quantum" requiredextensions="q"')), 2, "requires the extension urn:quantum, which is not supported")
+add("required_undeclared.3mf", package(model_3mf(more=' requiredextensions="q  zz"')), 2, "requires the extension q, which is not supported")
+add("deep.3mf", package(model_3mf(more=">" + "<a>" * 100000 + "</a>" * 100000 + "<b /").replace("<b />", "<b/>", 1)), 0)
+add("long_tag.3mf", package(model_3mf(more=' n="%s"' % ("x" * 3000000))), 2, "a tag or comment of more than a megabyte")
+add("long_comment.3mf", package(model_3mf("<!--" + "x" * 3000000 + "-->" + OBJECT_3MF)), 2, "a tag or comment of more than a megabyte")
+add("many_attributes.3mf", package(model_3mf(more="".join(' a%d=""' % n for n in range(20000)))), 0)
+add("name_of_backslashes.3mf", package(model_3mf(OBJECT_3MF.replace('id="1"', 'id="1" name="\\\\&#10;&quot;%s"' % ("n" * 5000), 1))), 0)
+add("bomb.3mf", package(model_3mf() + " " * 8000000), 0)
+
 # --- Grids for --like
 
 add("empty.vdb", "", 2, "not a readable OpenVDB file")

@@ -168,10 +168,11 @@ class Values(unittest.TestCase):
         self.assertEqual(len(self.read(package(model(foreign + TETRAHEDRON, ITEM, 'requiredextensions="m s"')))), 4)
 
     def test_unit_and_names_are_told(self):
-        with open(self.path, "wb") as file:
-            file.write(package(model(TETRAHEDRON, ITEM, 'unit="inch"')))
-        result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
-        self.assertEqual(json.loads(result.stdout)["unit"], "inch")
+        for attributes, unit in (("", "millimeter"), ('unit="inch"', "inch")):  # the first is the format's default
+            with open(self.path, "wb") as file:
+                file.write(package(model(TETRAHEDRON, ITEM, attributes)))
+            result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
+            self.assertEqual(json.loads(result.stdout)["unit"], unit)
         lattice = [RAYCONE, "lattice", self.path, "-o", self.path + ".csv", "--resolution", "3"]
         report = self.path + ".json"
         words = [*lattice, "--report", report, "--field", "label", "--parts", "group", "--quiet"]

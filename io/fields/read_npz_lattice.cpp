@@ -37,7 +37,7 @@ template <typename Number, std::size_t kCount>
 std::array<Number, kCount> read_numbers(const ZipReader& archive, const std::string& path, const std::string& name,
                                         std::string_view descriptor) {
   const ZipReader::Member& member = find_array(archive, path, name);
-  InputBuffer input(archive.name_of(member), archive.open(member));
+  InputBuffer input(archive.name_of(member), archive.open_checked(member));
   const NpyHead head = read_npy_head(input);
   std::uint64_t count = 1;
   for (const std::uint64_t size : head.shape) count *= std::min<std::uint64_t>(size, kCount + 1);
@@ -47,6 +47,7 @@ std::array<Number, kCount> read_numbers(const ZipReader& archive, const std::str
   std::array<Number, kCount> numbers{};
   require_bytes(input, sizeof numbers, "the array");
   std::memcpy(numbers.data(), input.pending().data(), sizeof numbers);
+  input.check_rest();
   return numbers;
 }
 

@@ -41,12 +41,14 @@ VolumeFacts npz_facts(const std::string& path) {
   facts.format = "NPZ";
   for (const ZipReader::Member& member : archive.members()) {
     if (!member.name.ends_with(kNpy)) continue;
-    InputBuffer input(archive.name_of(member), archive.open(member));
+    const bool is_text = member.name == "raycone.npy";
+    InputBuffer input(archive.name_of(member), is_text ? archive.open_checked(member) : archive.open(member));
     const NpyHead head = read_npy_head(input);
     facts.arrays.push_back({member.name.substr(0, member.name.size() - kNpy.size()), head.type, head.shape});
-    if (member.name != "raycone.npy") continue;
+    if (!is_text) continue;
     while (input.pending().size() < kMostText && input.fill()) continue;
     facts.made_json = input.pending().substr(0, kMostText);
+    input.check_rest();
   }
   if (facts.arrays.empty()) throw InputError(path + ": has no arrays, expected an NPZ archive");
   if (archive.find("origin.npy") != nullptr) add_lattice(facts, path, [&] { return read_npz_lattice(path); });

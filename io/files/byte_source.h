@@ -18,6 +18,8 @@ class ByteSource {
   virtual std::size_t read(char* bytes, std::size_t size) = 0;
   // Whether read() would not have to wait.
   [[nodiscard]] virtual bool is_ready() const { return true; }
+  // Whether only read() at the end tells that bytes are damaged, as of what is packed.
+  [[nodiscard]] virtual bool is_checked_at_end() const { return false; }
 
   // Number of bytes in all, where known: of a regular file, or as an archive announces it.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }

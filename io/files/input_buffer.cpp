@@ -34,6 +34,13 @@ bool InputBuffer::fill() {
   return !at_end_;
 }
 
+void InputBuffer::check_rest() {
+  if (!source_->is_checked_at_end()) return;
+  do {
+    consume(end_ - begin_);
+  } while (fill());
+}
+
 bool InputBuffer::would_wait() const { return !at_end_ && !source_->is_ready(); }
 
 std::optional<std::uint64_t> InputBuffer::file_size() const { return source_->size(); }

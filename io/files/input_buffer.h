@@ -29,6 +29,8 @@ class InputBuffer {
   bool fill();
   // Whether fill() would have to wait.
   [[nodiscard]] bool would_wait() const;
+  // Reads on to the end where only that tells whether bytes are damaged, and consumes them. Throws InputError.
+  void check_rest();
   // Offset in the input of the first byte of pending().
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
 

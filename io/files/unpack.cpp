@@ -77,6 +77,7 @@ class InflatingSource final : public ByteSource {
     return count;
   }
   bool is_ready() const override { return at_end_ || input_.is_ready(); }
+  bool is_checked_at_end() const override { return true; }
   std::optional<std::uint64_t> size() const override { return size_; }
 
  private:
@@ -144,6 +145,7 @@ class ZstandardSource final : public ByteSource {
     return out.pos;
   }
   bool is_ready() const override { return input_.is_ready(); }
+  bool is_checked_at_end() const override { return true; }
 
  private:
   [[noreturn]] void fail(std::size_t result) const {
@@ -171,6 +173,7 @@ class UnpackingSource final : public ByteSource {
     return count;
   }
   bool is_ready() const override { return !begun_.empty() || source_->is_ready(); }
+  bool is_checked_at_end() const override { return source_->is_checked_at_end(); }
   std::optional<std::uint64_t> size() const override { return source_->size(); }
   bool is_seekable() const override { return source_->is_seekable(); }
   void read_at(std::uint64_t offset, char* bytes, std::size_t size) const override {

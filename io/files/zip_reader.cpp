@@ -145,6 +145,12 @@ class CheckedSource final : public ByteSource {
     if (count == 0 && checksum_ != expected_) throw InputError(name_ + ": its bytes do not match their checksum");
     return count;
   }
+  bool is_checked_at_end() const override { return true; }
+  std::optional<std::uint64_t> size() const override { return source_->size(); }
+  bool is_seekable() const override { return source_->is_seekable(); }
+  void read_at(std::uint64_t offset, char* bytes, std::size_t size) const override {
+    source_->read_at(offset, bytes, size);
+  }
 
  private:
   std::unique_ptr<ByteSource> source_;

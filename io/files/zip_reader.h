@@ -36,7 +36,7 @@ class ZipReader {
 
   // The unpacked bytes of a member. Messages about them call it "PATH(NAME)".
   [[nodiscard]] std::unique_ptr<ByteSource> open(const Member& member) const;
-  // The same, to be read from start to end: there they are compared with the checksum.
+  // The same, to be read from start to end: there they are compared with the checksum. read_at() compares nothing.
   [[nodiscard]] std::unique_ptr<ByteSource> open_checked(const Member& member) const;
   [[nodiscard]] std::string name_of(const Member& member) const { return path_ + '(' + member.name + ')'; }
 

@@ -52,7 +52,7 @@ std::unique_ptr<PointReader> read_npz_points(const std::string& path) {
   const ZipReader archive(path);
   const ZipReader::Member* const points = archive.find("points.npy");
   if (points == nullptr) throw InputError(path + ": has no array 'points', expected one of shape (n, 3)");
-  return read_npy_points(std::make_unique<InputBuffer>(archive.name_of(*points), archive.open(*points)));
+  return read_npy_points(std::make_unique<InputBuffer>(archive.name_of(*points), archive.open_checked(*points)));
 }
 
 std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPointsOptions& options) {

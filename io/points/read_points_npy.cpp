@@ -175,7 +175,10 @@ class RowMajorReader : public NpyPointReader {
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.clear();
-    if (next_count(max) == 0) return false;
+    if (next_count(max) == 0) {
+      input_->check_rest();
+      return false;
+    }
     require_bytes(*input_, row_size(), "the NPY data");
     const std::size_t count = std::min(next_count(max), input_->pending().size() / row_size());
     const char* row = input_->pending().data();
@@ -233,6 +236,7 @@ std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input)
     throw InputError(input->name() +
                      ": NPY in Fortran order on a pipe or compressed, expected C order or a file that is neither");
   }
+  input->check_rest();
   return std::make_unique<ColumnMajorReader>(std::move(input), header);
 }
 

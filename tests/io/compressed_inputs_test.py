@@ -1,0 +1,227 @@
+"""Every input format as .gz and .zst, from files and pipes: python3 compressed_inputs_test.py RAYCONE
+
+What a compressed file says is what the file itself says. Cut anywhere, or damaged, it is refused in one line.
+"""
+
+import base64
+import gzip
+import io
+import json
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+RAYCONE = os.path.abspath(sys.argv.pop(1))
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+
+# A tetrahedron, and three points in and about it.
+VERTICES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+POINTS = [(0.1, 0.2, 0.3), (1, 1, 1), (-0.5, 0, 0)]
+
+
+def zstd(data):
+    """A frame of blocks that are stored as they are (RFC 8878): Debian's Python has no module that compresses."""
+    frame = struct.pack("<IBQ", 0xFD2FB528, 0xE0, len(data))
+    blocks = [data[n : n + 100_000] for n in range(0, len(data), 100_000)] or [b""]
+    for n, block in enumerate(blocks):
+        frame += struct.pack("<I", len(block) << 3 | (n == len(blocks) - 1))[:3] + block
+    return frame
+
+
+def rows(numbers, form="%r %r %r\n", before=""):
+    return "".join(before + form % tuple(row) for row in numbers)
+
+
+def ply(head, body):
+    text = "ply\nformat %s 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" % head
+    text += "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    return text.encode() + body
+
+
+def binary_ply(order):
+    body = b"".join(struct.pack(order + "3f", *v) for v in VERTICES)
+    return body + b"".join(struct.pack(order + "B3i", 3, *f) for f in FACES)
+
+
+def gltf(uri):
+    positions, indices = struct.pack("<12f", *sum(VERTICES, ())), struct.pack("<12H", *sum(FACES, ()))
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0] * 3, "max": [1] * 3},
+                      {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+        "buffers": [{"byteLength": 72}],
+    }
+    data = positions + indices
+    if uri:
+        document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+        return json.dumps(document).encode()
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def three_mf():
+    core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+    mesh = "<mesh><vertices>%s</vertices><triangles>%s</triangles></mesh>" % (
+        rows(VERTICES, '<vertex x="%r" y="%r" z="%r"/>'), rows(FACES, '<triangle v1="%r" v2="%r" v3="%r"/>'))
+    model = '<model xmlns="%s"><resources><object id="1">%s</object></resources>' % (core, mesh)
+    model += '<build><item objectid="1"/></build></model>'
+    relations = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
+    relations += 'Id="r" Target="/m.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>'
+    relations += "</Relationships>"
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as package:
+        package.writestr("_rels/.rels", relations)
+        package.writestr("m.model", model)
+    return file.getvalue()
+
+
+def stl_text():
+    corners = ["".join("vertex %r %r %r\n" % VERTICES[i] for i in face) for face in FACES]
+    facets = "".join("facet normal 0 0 0\nouter loop\n%sendloop\nendfacet\n" % c for c in corners)
+    return ("solid t\n" + facets + "endsolid\n").encode()
+
+
+def stl_binary():
+    return bytes(80) + struct.pack("<I", 4) + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *VERTICES[a], *VERTICES[b], *VERTICES[c], 0) for a, b, c in FACES)
+
+
+def npy():
+    head = "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 3), }"
+    head += " " * (-(len(head) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + struct.pack("<9d", *sum(POINTS, ()))
+
+
+def npz(method=zipfile.ZIP_STORED, array=None):
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", method) as archive:
+        archive.writestr("points.npy", array or npy())
+    return file.getvalue()
+
+
+FACES_FROM_1 = [tuple(i + 1 for i in face) for face in FACES]
+MESHES = {
+    "text.obj": (rows(VERTICES, before="v ") + rows(FACES_FROM_1, before="f ")).encode(),
+    "text.off": ("OFF\n4 4 0\n" + rows(VERTICES) + rows(FACES, before="3 ")).encode(),
+    "text.ply": ply("ascii", (rows(VERTICES) + rows(FACES, before="3 ")).encode()),
+    "little.ply": ply("binary_little_endian", binary_ply("<")),
+    "big.ply": ply("binary_big_endian", binary_ply(">")),
+    "text.stl": stl_text(),
+    "binary.stl": stl_binary(),
+    "text.gltf": gltf(True),
+    "binary.glb": gltf(False),
+    "package.3mf": three_mf(),
+}
+POINT_FILES = {
+    "p.csv": ("x,y,z\n" + rows(POINTS, "%r,%r,%r\n")).encode(),
+    "p.tsv": rows(POINTS, "%r\t%r\t%r\n").encode(),
+    "p.npy": npy(),
+    "p.npz": npz(),
+    "p.ply": ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n" +
+              rows(POINTS)).encode(),
+}
+
+
+class Compressed(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.addCleanup(os.chdir, "/")
+        os.chdir(directory.name)
+        self.write("t.obj", MESHES["text.obj"])
+
+    def write(self, name, data):
+        with open(name, "wb") as file:
+            file.write(data)
+        return name
+
+    def run_raycone(self, words, **options):
+        return subprocess.run([RAYCONE, *words.split(), "--quiet"], capture_output=True, timeout=PATIENCE, **options)
+
+    def works(self, words, **options):
+        result = self.run_raycone(words, **options)
+        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
+        return result.stdout
+
+    def packed(self, name, data):
+        return ((name + ".gz", gzip.compress(data)), (name + ".zst", zstd(data)))
+
+    def test_meshes_are_the_same(self):
+        for name, data in MESHES.items():
+            expected = self.works("info %s --json" % self.write(name, data))
+            self.assertEqual(json.loads(expected)["faces"], 4, name)
+            kind = " --mesh-format " + name.split(".")[1]
+            for packed_name, packed in self.packed(name, data):
+                self.assertEqual(self.works("info %s --json" % self.write(packed_name, packed)), expected, packed_name)
+                self.assertEqual(self.works("info - --json" + kind, input=packed), expected, packed_name)
+
+    def test_points_are_the_same(self):
+        for name, data in POINT_FILES.items():
+            expected = self.works("points t.obj %s" % self.write(name, data))
+            self.assertEqual(expected.count(b"\n"), 4, name)
+            if name == "p.npz":  # is packed itself, and read from its end on
+                self.refused("points t.obj %s" % self.write("p.npz.gz", gzip.compress(data)), "expected a file that is neither")
+                continue
+            for packed_name, packed in self.packed(name, data):
+                self.assertEqual(self.works("points t.obj %s" % self.write(packed_name, packed)), expected, packed_name)
+        for packed_name, packed in self.packed("p.csv", POINT_FILES["p.csv"]):
+            self.assertEqual(self.works("points t.obj -", input=packed), self.works("points t.obj p.csv"), packed_name)
+
+    def refused(self, words, name, stdout=b""):
+        result = self.run_raycone(words)
+        self.assertEqual((result.returncode, result.stdout or b""), (2, stdout), (words, result.stderr))
+        self.assertRegex(result.stderr.decode(), r"\Araycone: [^\n]*%s[^\n]*\n\Z" % name, words)
+
+    def test_cut_and_damaged_ones_are_refused(self):
+        for name, data in {**MESHES, **POINT_FILES}.items():
+            words = "points t.obj bad" if name in POINT_FILES else "info bad --mesh-format " + name.split(".")[1]
+            if name in ("p.npy", "p.npz", "p.ply"):
+                words = "points t.obj bad." + name.split(".")[1]
+            for packed_name, packed in self.packed(name, data):
+                for cut in (len(packed) - 1, len(packed) // 2):
+                    with self.subTest(packed_name, cut=cut):
+                        path = self.write(words.split()[2 if words.startswith("points") else 1], packed[:cut])
+                        self.refused(words, path)
+                damaged = bytearray(packed)
+                damaged[4 if packed_name.endswith("zst") else 2] ^= 0xFF  # of the frame's head, or the method
+                self.refused(words, self.write(path, damaged))
+
+    def test_damaged_archives_of_arrays_are_refused(self):
+        for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            for array in (npy(), npy().replace(b"'fortran_order': False", b"'fortran_order': True ")):
+                if array != npy() and method == zipfile.ZIP_DEFLATED:
+                    continue  # needs a file that can be sought
+                data = bytearray(npz(method, array))
+                self.works("points t.obj %s" % self.write("good.npz", data))
+                checksum = data.index(b"PK\1\2") + 16  # of the directory
+                data[checksum] ^= 1
+                self.refused("points t.obj %s" % self.write("bad.npz", data), "its bytes do not match their checksum")
+                if method == zipfile.ZIP_STORED:
+                    data[checksum] ^= 1
+                    data[data.index(struct.pack("<d", POINTS[1][0])) + 6] ^= 1
+                    self.refused("points t.obj %s" % self.write("bad.npz", data), "its bytes do not match their checksum")
+        self.works("lattice t.obj -o l.npz --resolution 4")
+        with zipfile.ZipFile("l.npz") as archive:
+            members = {info.filename: archive.read(info) for info in archive.infolist()}
+        for name in ("origin.npy", "spacing.npy", "index_min.npy", "direction.npy"):
+            file = io.BytesIO()
+            with zipfile.ZipFile(file, "w") as archive:
+                for member, content in members.items():
+                    archive.writestr(member, content)
+            data = bytearray(file.getvalue())
+            data[data.index(members[name]) + len(members[name]) - 1] ^= 1
+            self.refused("lattice t.obj --like %s -o m.npy" % self.write("damaged.npz", data), "damaged.npz.%s" % name)
+            self.assertFalse(os.path.exists("m.npy"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -155,13 +155,13 @@ std::uint32_t SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint
     Box box = placed.front().box;
     for (const PlacedTriangle& t : placed) extend(box, t.box);
     const double large = longest_side(box) / 2;
-    const auto rest =
-        std::ranges::stable_partition(placed, [&](const PlacedTriangle& t) { return longest_side(t.box) > large; });
-    if (rest.size() > kLeaf / 2) {
-      const std::size_t own = placed.size() - rest.size();
+    const auto rest = std::stable_partition(placed.begin(), placed.end(),
+                                            [&](const PlacedTriangle& t) { return longest_side(t.box) > large; });
+    const auto own = static_cast<std::size_t>(rest - placed.begin());
+    if (placed.size() - own > kLeaf / 2) {
       nodes_[number].own_end = begin + static_cast<std::uint32_t>(own);
       sort_by_middles(placed.subspan(own));
-      const std::size_t half = own + rest.size() / 2;
+      const std::size_t half = own + (placed.size() - own) / 2;
       build_node(placed.subspan(own, half - own), begin + static_cast<std::uint32_t>(own));
       build_node(placed.subspan(half), begin + static_cast<std::uint32_t>(half));
     }

@@ -41,10 +41,6 @@ PlotAxis plot_axis(const Vec3& direction, const char* other_name, const PlaneVie
   return {other_name, begin, begin + length};
 }
 
-double text_height(const PlaneView& view) {
-  return std::clamp(static_cast<double>(std::max(view.width, view.height)) / 80.0, 7.0, 48.0);
-}
-
 // Pixels from the page's top left corner.
 struct PageLayout {
   double text = 0.0;
@@ -158,6 +154,10 @@ void draw_frame(Coverage& ink, const PageLayout& layout, double stroke) {
 }
 
 }  // namespace
+
+double text_height(const PlaneView& view) {
+  return std::clamp(static_cast<double>(std::max(view.width, view.height)) / 80.0, 7.0, 48.0);
+}
 
 bool has_frame(const PlaneView& view) { return std::max(view.width, view.height) >= kLeastFramedSize; }
 

@@ -12,9 +12,13 @@ inline constexpr std::int64_t kLeastFramedSize = 320;  // pixels along the longe
 
 [[nodiscard]] bool has_frame(const PlaneView& view);
 
+// Of digits, in pixels.
+[[nodiscard]] double text_height(const PlaneView& view);
+
 // `plot`, of `view`, shrunk so that axes and legend fit around it on a page whose longer side is that of `plot`. An
 // axis of the world is labelled x, y or z and has world coordinates; another one u (to the right) or v (up), the
-// distance from the view's origin in world units. Precondition: has_frame(view).
+// distance from the view's origin in world units. Preconditions: has_frame(view), and the legend takes at most half of
+// the longer side across, all of it upwards.
 [[nodiscard]] Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend);
 
 // An upper bound of the bytes that it takes, its result included.

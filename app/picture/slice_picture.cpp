@@ -15,6 +15,7 @@
 #include "app/picture/framed_picture.h"
 #include "app/picture/legend.h"
 #include "app/picture/section_curve.h"
+#include "app/picture/text.h"
 #include "app/picture/ticks.h"
 #include "io/fields/label_colour.h"
 
@@ -25,7 +26,7 @@ namespace {
 constexpr std::size_t kMostNumbers = 7;
 constexpr double kMostContours = 14;
 constexpr std::size_t kMostPatches = 30;
-constexpr std::size_t kMostLetters = 24;  // of a name
+constexpr double kMostOfSide = 0.3;  // of the picture's longer side, that names are wide
 
 // In pixels, of pictures of different sizes alike up to a lower limit.
 struct LineWidths {
@@ -85,35 +86,52 @@ Rgb colour_of(std::int64_t label) {
   return {red, green, blue};
 }
 
-std::string shortened(const std::string& name) {
-  return name.size() <= kMostLetters ? name : name.substr(0, kMostLetters - 2) + "..";
+double longer_side(const PlaneView& view) { return static_cast<double>(std::max(view.width, view.height)); }
+
+std::string shortened(std::string text, const PlaneView& view) {
+  const double room = kMostOfSide * longer_side(view), height = text_height(view);
+  if (text_width(text, height) <= room) return text;
+  while (!text.empty() && text_width(text + "..", height) > room) text.pop_back();
+  return text + "..";
+}
+
+// As many as fit below each other into the picture.
+std::size_t most_patches(const PlaneView& view, Legend legend) {
+  while (legend.patches.size() < kMostPatches) {
+    legend.patches.push_back({});
+    if (static_cast<double>(legend_size(legend, text_height(view)).height) > longer_side(view)) {
+      return legend.patches.size() - 1;
+    }
+  }
+  return kMostPatches;
 }
 
 // The labels that the picture has, as many as there is room for.
-Appearance of_labels(const PictureValues& values) {
+Appearance of_labels(const PictureValues& values, const PlaneView& view) {
   Legend legend{"label", {}, {}};
+  const std::size_t most = most_patches(view, legend);
   const std::set<double> present(values.values.begin(), values.values.end());
   for (const double value : present) {
     const auto label = static_cast<std::int64_t>(value);
-    const bool full = legend.patches.size() + 1 == kMostPatches && present.size() > kMostPatches;
+    const bool full = legend.patches.size() + 1 == most && present.size() > most;
     if (full) {
       legend.patches.push_back({{}, "and " + std::to_string(present.size() - legend.patches.size()) + " more"});
       break;
     }
     const std::string name = label == 0 ? "none" : values.names[static_cast<std::size_t>(label - 1)];
-    legend.patches.push_back({colour_of(label), std::to_string(label) + "  " + shortened(name)});
+    legend.patches.push_back({colour_of(label), shortened(std::to_string(label) + "  " + name, view)});
   }
   return {[](double value) { return colour_of(static_cast<std::int64_t>(value)); }, {}, std::move(legend)};
 }
 
-Appearance appearance_of(const PictureValues& values) {
+Appearance appearance_of(const PictureValues& values, const PlaneView& view) {
   switch (values.field) {
     case PictureField::kInside:
       return of_inside();
     case PictureField::kDistance:
       return of_distances(values.values);
     case PictureField::kLabel:
-      return of_labels(values);
+      return of_labels(values, view);
     case PictureField::kWinding:
       break;
   }
@@ -144,7 +162,7 @@ void draw_lines(Image& image, const PlaneView& view, std::span<const double> val
 }  // namespace
 
 Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh, bool framed) {
-  const Appearance appearance = appearance_of(values);
+  const Appearance appearance = appearance_of(values, view);
   Image image = coloured(view, values.values, appearance.colour);
   draw_lines(image, view, values.values, mesh, appearance.contours);
   if (!framed || !has_frame(view)) return image;

@@ -128,5 +128,22 @@ TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
   EXPECT_LT(image.at(1, 0).red, image.at(1, 0).blue);
 }
 
+// Hundreds of parts with long names, in pictures of all sizes: what does not fit is left out. (Pixels outside of an
+// image are memory of something else, which sanitizers notice.)
+TEST(SlicePicture, OfLabelsHasALegendThatFits) {
+  const std::vector<std::string> names(500, "WWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWW \xc3\xa9 mmmmmm");
+  for (const auto& [width, height] : std::vector<std::pair<std::int64_t, std::int64_t>>{
+           {320, 320}, {320, 10}, {10, 320}, {400, 700}, {1024, 1024}, {4096, 16}}) {
+    const PlaneView view = view_of(width, height);
+    std::vector<double> values(static_cast<std::size_t>(width * height));
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = static_cast<double>(n % 501);
+    const Image page = slice_picture(view, {PictureField::kLabel, values, names}, {}, true);
+    EXPECT_EQ(std::max(page.width(), page.height()), std::max(width, height));
+    const Image few =
+        slice_picture(view, {PictureField::kLabel, std::vector<double>(values.size(), 7.0), names}, {}, true);
+    EXPECT_LE(std::max(few.width(), few.height()), std::max(width, height));
+  }
+}
+
 }  // namespace
 }  // namespace raycone::test

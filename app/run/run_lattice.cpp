@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -29,7 +28,6 @@
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
 #include "io/files/output_file.h"
-#include "io/vdb/preload_vdb_module.h"
 
 namespace raycone {
 namespace {
@@ -191,17 +189,10 @@ TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) 
   });
 }
 
-// With --threads 1, and where memory is short, everything has its turn.
-bool may_preload_vdb(const LatticeCommand& command, const RunLimits& limits) {
-  constexpr std::uint64_t kPlenty = std::uint64_t{2} << 30;
-  return command.encoding.format == FieldFormat::kVdb && limits.threads() > 1 && limits.memory() > kPlenty;
-}
-
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
   LatticeCommand command = asked;
-  const VdbModulePreload preload(may_preload_vdb(command, limits));
   MeshRun run(command.mesh, command.output, command.run, limits);
   const std::unique_ptr<OutputFile> names = open_label_names(command);
   RunReport& report = run.report;

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <exception>
 #include <filesystem>
 #include <new>
 #include <string>
@@ -13,7 +12,6 @@
 
 #include "io/fields/format_writers.h"
 #include "io/files/file_error.h"
-#include "io/vdb/preload_vdb_module.h"
 #include "io/vdb/read_vdb.h"
 #include "io/vdb/vdb_module.h"
 
@@ -66,41 +64,18 @@ void require_what_loading_takes(const std::string& name) {
   require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
 }
 
-// Null where that fails. Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
-void* load_library() { return dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL); }
-
 // `name`: the file that asks for it. Throws std::bad_alloc, LimitError, and Error where the module cannot be loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
   require_what_loading_takes(name);
-  void* const library = load_library();
+  // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
+  void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
   if (symbol) return *static_cast<const vdb::Module*>(symbol);
   throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
 }
 
 }  // namespace
-
-VdbModulePreload::VdbModulePreload(bool wanted) {
-  if (!wanted) return;
-  const auto load = [] {
-    try {
-      require_what_loading_takes("");
-      static_cast<void>(load_library());
-    } catch (const std::exception&) {
-      // is told where the module is needed
-    }
-  };
-  try {
-    thread_ = std::thread(load);
-  } catch (const std::system_error&) {
-    // no thread: no hint
-  }
-}
-
-VdbModulePreload::~VdbModulePreload() {
-  if (thread_.joinable()) thread_.join();
-}
 
 std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {

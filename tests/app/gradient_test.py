@@ -145,7 +145,7 @@ class Gradient(unittest.TestCase):
         for name in ("nrrd", "nii", "nii.gz"):
             self.refused(LATTICE + "a." + name, "--field gradient: %s holds one number per sample" % name)
         self.refused(LATTICE + "a.csv --rule odd", "--rule odd: has no effect on winding, density and gradient")
-        self.refused("slice %s -o a.png --field gradient" % CUBE, "--field gradient: expected winding, inside or sdf")
+        self.refused("slice %s -o a.png --field gradient" % CUBE, "--field gradient: expected winding, inside, sdf or label")
 
     def test_batches(self):
         self.works("batch %s --out-dir out --format npy --field gradient --resolution 6,5,4 --padding .3" % OPEN_BOX)

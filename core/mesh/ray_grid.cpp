@@ -17,8 +17,8 @@ RayGrid::RayGrid(std::span<const Vec3> points) : points_(points) {
   }
   constexpr double kMostCells = 1024;
   side_ = static_cast<std::size_t>(std::clamp(2.0 * std::sqrt(static_cast<double>(points.size())), 1.0, kMostCells));
-  per_y_ = cells_per_unit(lower_y_, upper_y_);
-  per_z_ = cells_per_unit(lower_z_, upper_z_);
+  per_y_ = cells_per_half(lower_y_, upper_y_);
+  per_z_ = cells_per_half(lower_z_, upper_z_);
   begin_.assign(side_ * side_ + 1, 0);
   for (const Vec3& p : points) ++begin_[cell(p) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
@@ -27,8 +27,8 @@ RayGrid::RayGrid(std::span<const Vec3> points) : points_(points) {
   for (std::size_t i = 0; i < points.size(); ++i) rays_[next[cell(points[i])]++] = i;
 }
 
-double RayGrid::cells_per_unit(double lower, double upper) const {
-  const double cells = static_cast<double>(side_) / (upper - lower);
+double RayGrid::cells_per_half(double lower, double upper) const {
+  const double cells = static_cast<double>(side_) / (upper / 2 - lower / 2);
   return std::isfinite(cells) ? cells : 0.0;
 }
 

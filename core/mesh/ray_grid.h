@@ -25,9 +25,9 @@ class RayGrid {
     const double z0 = std::min(std::min(a.z, b.z), c.z), z1 = std::max(std::max(a.z, b.z), c.z);
     if (y1 < lower_y_ || y0 > upper_y_ || z1 < lower_z_ || z0 > upper_z_) return;
     const double x1 = std::max(std::max(a.x, b.x), c.x);
-    const std::size_t last_y = place(y1 - lower_y_, per_y_), last_z = place(z1 - lower_z_, per_z_);
-    for (std::size_t z = place(z0 - lower_z_, per_z_); z <= last_z; ++z) {
-      for (std::size_t y = place(y0 - lower_y_, per_y_); y <= last_y; ++y) {
+    const std::size_t last_y = place(y1, lower_y_, per_y_), last_z = place(z1, lower_z_, per_z_);
+    for (std::size_t z = place(z0, lower_z_, per_z_); z <= last_z; ++z) {
+      for (std::size_t y = place(y0, lower_y_, per_y_); y <= last_y; ++y) {
         for (std::size_t i = begin_[z * side_ + y]; i < begin_[z * side_ + y + 1]; ++i) {
           const Vec3& q = points_[rays_[i]];
           if (q.x <= x1 && q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(rays_[i]);
@@ -37,17 +37,20 @@ class RayGrid {
   }
 
  private:
-  // Monotone in the coordinate: a point within an interval lies in a cell between those of its ends.
-  [[nodiscard]] std::size_t place(double offset, double per_unit) const {
-    return static_cast<std::size_t>(std::clamp(offset * per_unit, 0.0, static_cast<double>(side_ - 1)));
+  // Monotone in the coordinate: a point within an interval lies in a cell between those of its ends. By halves, whose
+  // differences do not overflow.
+  [[nodiscard]] std::size_t place(double coordinate, double lower, double per_half) const {
+    const double cells = (coordinate / 2 - lower / 2) * per_half;
+    return static_cast<std::size_t>(std::clamp(cells, 0.0, static_cast<double>(side_ - 1)));
   }
-  [[nodiscard]] double cells_per_unit(double lower, double upper) const;
+  [[nodiscard]] double cells_per_half(double lower, double upper) const;
   [[nodiscard]] std::size_t cell(const Vec3& p) const {
-    return place(p.z - lower_z_, per_z_) * side_ + place(p.y - lower_y_, per_y_);
+    return place(p.z, lower_z_, per_z_) * side_ + place(p.y, lower_y_, per_y_);
   }
 
   std::span<const Vec3> points_;
-  double lower_y_, lower_z_, upper_y_, upper_z_, per_y_ = 0.0, per_z_ = 0.0;
+  double lower_y_, lower_z_, upper_y_, upper_z_;
+  double per_y_ = 0.0, per_z_ = 0.0;  // cells per half of a unit
   std::size_t side_;
   std::vector<std::size_t> begin_;  // per cell, and the end
   std::vector<std::size_t> rays_;   // by cell

@@ -187,6 +187,16 @@ TEST(MeshDefects, OfManySolidsAreCountedOneByOne) {
   EXPECT_EQ(reversed_in(mesh), expected);
 }
 
+TEST(MeshDefects, OfSolidsAtBothEndsOfDoublePrecisionAreCounted) {
+  TriangleMesh mesh;
+  for (const double at : {-1.5e308, 0.0, 1.5e308}) {
+    mesh = joined(mesh, reversed(box_mesh({at, at, at}, Vec3{at, at, at} + Vec3{1e307, 1e307, 1e307})));
+  }
+  EXPECT_EQ(reversed_in(mesh), 3U);
+  for (Vec3& p : mesh.vertices) p = 0x1p-1023 * p;  // down to where nearly all bits are lost
+  EXPECT_EQ(reversed_in(mesh), 3U);
+}
+
 // So many that what their rays cross is looked at in parts.
 TEST(MeshDefects, OfManyShellsWithinEachOtherOnlyTheOutermostMayBeReversed) {
   constexpr int kShells = 1100;

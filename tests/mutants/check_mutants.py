@@ -73,6 +73,10 @@ def chosen_mutants(names):
 
 
 def main():
+    if sys.argv[1:] == ["--texts"]:  # whether each can be applied, as part of the tests
+        for mutant in chosen_mutants([]):
+            mutated_texts(mutant, ROOT)
+        return 0
     chosen = chosen_mutants(sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         tree, build_directory = Path(directory) / "source", Path(directory) / "build"

@@ -272,7 +272,8 @@ MUTANTS = [
     Mutant("another_generator", "the generator is SplitMix64", [
         ("core/sampling/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
     Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
-        ("core/sampling/random.cpp", "for (int n = 23;", "for (int n = 13;")]),
+        ("core/sampling/random.cpp", "1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13",
+         "0.0, 0.0, 0.0, 0.0, 0.0, 0.0")]),
 
     # --- Distances ---
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
@@ -312,7 +313,7 @@ MUTANTS = [
         ("core/distance/triangle_distance.cpp", "return square(rest - dot(rest, to_v_) * edges_[0] + dot(rest, to_w_) * edges_[2]);",
          "return square(rest);")]),
     Mutant("inside_of_two_edges", "a point is inside of a thin triangle within all three edges", [
-        ("core/distance/accurate_distance.cpp", "&& !(along < up * apex) &&", "&&")]),
+        ("core/distance/accurate_distance.cpp", "&& !(along < up * apex_) &&", "&&")]),
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/distance/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 

@@ -97,12 +97,9 @@ std::string quoted_names(const std::vector<std::size_t>& empty, const MeshParts&
 
 LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
                              const std::vector<WrittenFile>& written, WholeMesh whole)
-    : run_(run),
-      mesh_(mesh),
-      field_(field),
-      whole_is_evaluated_(whole == WholeMesh::kEvaluated),
-      parts_(timed(run.report.seconds.read,
-                   [&] { return MeshParts(mesh, run.limits(), whole != WholeMesh::kUnused); })) {
+    : run_(run), mesh_(mesh), field_(field), whole_(whole), parts_(timed(run.report.seconds.read, [&] {
+        return MeshParts(mesh, run.limits(), whole != WholeMesh::kUnused);
+      })) {
   RunReport& report = run.report;
   report.transform = parts_.transform();
   for (const MeshParts::File& file : parts_.files()) {
@@ -141,7 +138,7 @@ void LabelledParts::note(const MeshToEvaluate& part) {
   // Of several parts, each is a component more.
   if (part.defects.negative_volume && part.defects.reversed_components == 0) ++defects_.reversed_components;
   cut_edges_ += part.orientation.cut_edges;
-  if (whole_is_evaluated_) return;
+  if (whole_ == WholeMesh::kEvaluated) return;
   OrientationCounts& counts = run_.report.orientation;
   counts.flipped_faces += part.orientation.flipped_faces;
   counts.dropped_duplicates += part.orientation.dropped_duplicates;
@@ -152,19 +149,18 @@ void LabelledParts::note(const MeshToEvaluate& part) {
 void LabelledParts::warn_about_file() {
   if (cut_edges_ > 0) warnings_.push_back(unorientable(cut_edges_));
   for (const Warning& warning : warnings_about(defects_, mesh_.orient)) warnings_.push_back(warning);
-  if (!whole_is_evaluated_) run_.warn_about(parts_.files()[parts_.file_of(next_ - 1)].read.path, warnings_);
+  if (whole_ != WholeMesh::kEvaluated) run_.warn_about(parts_.files()[parts_.file_of(next_ - 1)].read.path, warnings_);
   warnings_.clear();
   defects_ = {};
   cut_edges_ = 0;
 }
 
 void LabelledParts::found(bool inside, bool expected) {
-  if (!inside && expected) empty_.push_back(next_ - 1);
+  const bool is_slice = whole_ == WholeMesh::kShown;  // which may miss any part
+  if (!inside && expected && !is_slice) empty_.push_back(next_ - 1);
 }
 
-void LabelledParts::spent(const FieldEvaluator& evaluator) {
-  terms_ += evaluator.winding_number().terms();
-}
+void LabelledParts::spent(const FieldEvaluator& evaluator) { terms_ += evaluator.winding_number().terms(); }
 
 void LabelledParts::finish(std::span<const std::uint64_t> samples) {
   RunReport& report = run_.report;

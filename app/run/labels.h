@@ -57,7 +57,7 @@ class LabelledParts {
   MeshRun& run_;
   const MeshOptions& mesh_;
   const FieldOptions& field_;
-  bool whole_is_evaluated_;
+  WholeMesh whole_;
   MeshParts parts_;
   std::size_t next_ = 0;
   std::vector<std::size_t> empty_;  // parts that should not be

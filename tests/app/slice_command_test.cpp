@@ -133,6 +133,8 @@ TEST_F(Slice, ShowsLabelsOfParts) {
     EXPECT_EQ(lower_row(first_wins), (std::vector<double>{0, 1, 2, 0}));
   }
   EXPECT_NE(read_text(picture_).find("labels by threshold=0.5"), std::string::npos);
+  // That a part is not in the picture is no reason for a warning.
+  EXPECT_EQ(slice({other, "--field", "label", "--at", "100%", "--size", "1", "--padding", "1v", "--strict"}).status, 0);
   EXPECT_EQ(run_raycone({"slice", cube_, other, "-o", picture_}).status, 1);
 }
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import mutants
 
 ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("core", "io", "tests")
 TEST_SECONDS = 300  # a mutant may loop for ever; the unmutated tests take less than a minute
 
 
@@ -76,11 +77,13 @@ def main():
     if sys.argv[1:] == ["--texts"]:  # whether each can be applied, as part of the tests
         for mutant in chosen_mutants([]):
             mutated_texts(mutant, ROOT)
+            if others := {name for name, _, _ in mutant.edits if name.split("/")[0] not in FOLDERS}:
+                sys.exit(f"{mutant.name}: {others} is not built here")
         return 0
     chosen = chosen_mutants(sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         tree, build_directory = Path(directory) / "source", Path(directory) / "build"
-        for folder in ("core", "io", "tests"):
+        for folder in FOLDERS:
             shutil.copytree(ROOT / folder, tree / folder)
         for mutant in mutants.MUTANTS:
             mutated_texts(mutant, tree)  # all of them, before the first is built

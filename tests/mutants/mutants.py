@@ -418,9 +418,6 @@ MUTANTS = [
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
          "*std::min_element(outer")]),
-    Mutant("outward_by_construction", "what faces inward after auto is counted from the result where that is closed", [
-        ("app/run/mesh_input.cpp", "options.orient == Orient::kAuto && !result.edges.empty()",
-         "options.orient == Orient::kAuto")]),
 
     # --- Surfaces ---
     Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [

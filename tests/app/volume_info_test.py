@@ -82,6 +82,27 @@ class VolumeInfo(unittest.TestCase):
                 options = made["options"] if form != "OpenVDB" else made["options"].split(" ")
                 self.assertEqual(options, report["options"])
 
+    def test_options_that_results_depend_on_are_told(self):
+        common = ["--field=inside", "--rule=odd", "--tolerance=1e-6", "--scale=2", "--up=y-to-z", "--normalize=cube:3",
+                  "--orient=auto", "--weld=0.001"]
+        for name, more in (("a.vdb", ["--padding=5%", "--resolution=7"]), ("a.npz", ["--pack-bits", "--resolution=7"]),
+                           ("a.nrrd", ["--centers", "--resolution=7"]),
+                           ("p.npz", ["--sample=uniform=9,near=3:0.1", "--seed=7", "--dtype=f16"])):
+            options = common + more
+            words = "%s %s -o %s %s --threads 1 --report r.json --quiet" % (
+                "points" if name == "p.npz" else "lattice", CUBE, name, " ".join(options))
+            self.works(words)
+            with open("r.json") as file:
+                report = json.load(file)
+            self.assertEqual(report["command"], words.split(), name)
+            made = self.facts(name)["made"]
+            told = made["options"] if name != "a.vdb" else made["options"].split(" ")
+            self.assertEqual(sorted(told), sorted(options), name)
+            self.assertEqual(made["transform"], report["transform"], name)
+            text = self.works("info " + name)
+            for option in options:
+                self.assertIn(option, text, name)
+
     def expect_near(self, got, expected, tolerance):
         if isinstance(expected, dict):
             self.assertEqual(got.keys(), expected.keys())

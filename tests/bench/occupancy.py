@@ -1,8 +1,8 @@
 """Occupancy of uniform points, one thread: the raycone columns of a table of docs/benchmarks.md.
 /usr/bin/python3 tests/bench/occupancy.py RAYCONE MESH... [--points N] [--save DIRECTORY]
 
-Seconds are those of preparing and evaluating, the least of three runs. `wrong` counts labels that differ from the direct
-sum's. With --save the points (float32, as .npy) and raycone's labels are left for other programs to be compared with.
+Seconds are those of preparing and evaluating, the least of three runs. `wrong` counts labels that differ from the
+direct sum's. With --save the points (float32, as .npy) and raycone's labels are left for other programs to be compared with.
 """
 
 import argparse
@@ -28,12 +28,14 @@ def occupancy(raycone, mesh, points, directory):
     seconds = []
     for _ in range(3):
         report = name + ".json"
-        run(raycone, ["points", mesh, name + ".points.npy", "-o", name + ".inside.npy", "--field", "inside", "--report", report])
+        words = ["points", mesh, name + ".points.npy", "-o", name + ".inside.npy", "--field", "inside"]
+        run(raycone, [*words, "--report", report])
         with open(report, encoding="utf-8") as file:
             spent = json.load(file)["seconds"]
         seconds.append(spent["prepare"] + spent["evaluate"])
     run(raycone, ["points", mesh, name + ".points.npy", "-o", name + ".direct.npy", "--tolerance", "0"])
-    wrong = numpy.count_nonzero((numpy.load(name + ".direct.npy") >= 0.5) != numpy.load(name + ".inside.npy").astype(bool))
+    direct = numpy.load(name + ".direct.npy") >= 0.5
+    wrong = numpy.count_nonzero(direct != numpy.load(name + ".inside.npy").astype(bool))
     print("| %s | %d | %d | %.2f | %d |" % (
         os.path.basename(name), facts["faces"], facts["exterior_edges"], min(seconds), wrong), flush=True)
 

@@ -2,7 +2,7 @@
 /usr/bin/python3 tests/bench/occupancy.py RAYCONE MESH... [--points N] [--save DIRECTORY]
 
 Seconds are those of preparing and evaluating, the least of three runs. `wrong` counts labels that differ from the
-direct sum's. With --save the points (float32, as .npy) and raycone's labels are left for other programs to be compared with.
+direct sum's. With --save the points (float32, as .npy) and raycone's labels are left there for other programs.
 """
 
 import argparse

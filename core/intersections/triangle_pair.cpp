@@ -1,6 +1,7 @@
 #include "core/intersections/triangle_pair.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -167,6 +168,34 @@ bool meet_beyond_edge(const Corners3& s, const Corners3& t) {
   return orientation_in_plane(axis, from, to, s[2]) == orientation_in_plane(axis, from, to, t[2]);
 }
 
+// The sign of a turn in the same plane as orientation_in_plane(), where floating point is sure of it, else 0.
+int sure_turn(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto projected = [axis](const Vec3& p) { return Vec3{0.0, p[axis], p[(axis + 1) % 3]}; };
+  return sure_sign(determinant_from(projected(a), projected(a), projected(b), projected(c)));
+}
+
+// Of the three planes of orientation_in_plane(), the one in which the triangle looks largest, up to rounding.
+int widest_plane(const Corners3& t) {
+  const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  const Vec3 size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+  return size.x >= size.y && size.x >= size.z ? 1 : size.y >= size.z ? 2 : 0;
+}
+
+// Whether, seen along one axis, a line through all positions that both have, along an edge of `s`, has the rest of `t`
+// on the outer side for sure: most pairs of neighbours in one plane, where exact signs of volumes cost most. Of
+// triangles whose first `shared` corners are at the same positions.
+bool is_surely_beside(const Corners3& s, const Corners3& t, std::size_t shared) {
+  const int axis = widest_plane(s), whole = sure_turn(axis, s[0], s[1], s[2]);
+  if (whole == 0) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3, opposite = (i + 2) % 3;
+    if (opposite < shared) continue;  // its edge does not pass all of them
+    const auto is_outside = [&](const Vec3& p) { return sure_turn(axis, s[i], s[next], p) == -whole; };
+    if (std::all_of(t.begin() + static_cast<std::ptrdiff_t>(shared), t.end(), is_outside)) return true;
+  }
+  return false;
+}
+
 // Brings the corners at positions of both to the front, in the same order. Returns their number. What repeats a corner
 // of its own triangle stays behind.
 std::size_t shared_first(Corners3& s, Corners3& t) {
@@ -187,7 +216,9 @@ std::size_t shared_first(Corners3& s, Corners3& t) {
 
 bool meet_beyond_shared(const Corners3& s, const Corners3& t) {
   Corners3 a = s, b = t;
-  switch (shared_first(a, b)) {
+  const std::size_t shared = shared_first(a, b);
+  if (shared < 3 && (is_surely_beside(a, b, shared) || is_surely_beside(b, a, shared))) return false;
+  switch (shared) {
     case 0:
       return triangles_meet(a, b);
     case 1:

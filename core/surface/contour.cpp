@@ -248,6 +248,42 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   return {corners[0] + (meets ? *meeting : moved_within(corners, target, margin_)), on_mesh};
 }
 
+// Each part's memory is given back once it is in the whole.
+ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
+                        std::span<const Vec3> face_points) {
+  std::size_t triangles = 0, apexes = 0;
+  for (const ContourPart& part : parts) {
+    triangles += part.triangles.size();
+    apexes += part.apexes.size();
+  }
+  const std::size_t all_vertices = edge_points.size() + face_points.size() + apexes;
+  if (all_vertices > kFirstApex || triangles > kMaxTriangles)
+    throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
+
+  ContouredSurface contoured;
+  auto& [mesh, sources] = contoured.surface;
+  mesh.vertices.reserve(all_vertices);
+  mesh.triangles.reserve(triangles);
+  sources.reserve(triangles);
+  contoured.tetrahedra.reserve(apexes);
+  for (const EdgePoint& point : edge_points) mesh.vertices.push_back(point.position);
+  mesh.vertices.insert(mesh.vertices.end(), face_points.begin(), face_points.end());
+  for (ContourPart& part : parts) {
+    const std::size_t first_apex = mesh.vertices.size();
+    for (Triangle triangle : part.triangles) {
+      for (std::uint32_t& corner : triangle) {
+        if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex);
+      }
+      mesh.triangles.push_back(triangle);
+    }
+    mesh.vertices.insert(mesh.vertices.end(), part.apexes.begin(), part.apexes.end());
+    contoured.tetrahedra.insert(contoured.tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
+    sources.insert(sources.end(), part.sources.begin(), part.sources.end());
+    part = {};
+  }
+  return contoured;
+}
+
 }  // namespace
 
 ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
@@ -263,26 +299,7 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
       }
     }
   });
-  ContouredSurface contoured;
-  SurfaceMesh& surface = contoured.surface;
-  std::vector<Vec3>& vertices = surface.mesh.vertices;
-  for (const EdgePoint& point : edge_points) vertices.push_back(point.position);
-  vertices.insert(vertices.end(), face_points.positions().begin(), face_points.positions().end());
-  for (const ContourPart& part : parts) {
-    const std::size_t first_apex = vertices.size();
-    vertices.insert(vertices.end(), part.apexes.begin(), part.apexes.end());
-    for (Triangle triangle : part.triangles) {
-      for (std::uint32_t& corner : triangle) {
-        if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex);
-      }
-      surface.mesh.triangles.push_back(triangle);
-    }
-    contoured.tetrahedra.insert(contoured.tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
-    surface.sources.insert(surface.sources.end(), part.sources.begin(), part.sources.end());
-    if (vertices.size() >= kFirstApex || surface.mesh.triangles.size() > kMaxTriangles)
-      throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
-  }
-  return contoured;
+  return joined(parts, edge_points, face_points.positions());
 }
 
 }  // namespace raycone

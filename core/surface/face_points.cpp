@@ -138,27 +138,40 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
     all.insert(all.end(), found.begin(), found.end());
   });
   std::ranges::sort(all, {}, &FacePoint::face);
+  std::vector<std::uint64_t> faces;
+  std::vector<Vec3> positions;
   for (const FacePoint& point : all) {
-    faces_.push_back(point.face);
-    positions_.push_back(point.position);
+    faces.push_back(point.face);
+    positions.push_back(point.position);
   }
+  *this = FacePoints(std::move(faces), std::move(positions));
+}
+
+FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
+    : faces_(std::move(faces)), positions_(std::move(positions)) {
+  const std::size_t cells = faces_.empty() ? 0 : faces_.back() / 16 + 1;
+  first_of_cell_.resize(cells + 1, 0);
+  for (const std::uint64_t face : faces_) ++first_of_cell_[face / 16 + 1];
+  for (std::size_t cell = 0; cell < cells; ++cell) first_of_cell_[cell + 1] += first_of_cell_[cell];
 }
 
 std::optional<std::uint32_t> FacePoints::find(std::uint32_t cell, std::size_t face) const {
-  const std::uint64_t wanted = std::uint64_t{16} * cell + face;
-  const auto found = std::ranges::lower_bound(faces_, wanted);
-  if (found == faces_.end() || *found != wanted) return std::nullopt;
-  return static_cast<std::uint32_t>(found - faces_.begin());
+  if (cell + std::size_t{1} >= first_of_cell_.size()) return std::nullopt;
+  for (std::uint32_t n = first_of_cell_[cell]; n < first_of_cell_[cell + std::size_t{1}]; ++n) {
+    if (faces_[n] % 16 == face) return n;
+  }
+  return std::nullopt;
 }
 
 FacePoints FacePoints::without(const std::vector<bool>& dropped) const {
-  FacePoints left;
+  std::vector<std::uint64_t> faces;
+  std::vector<Vec3> positions;
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (dropped[i]) continue;
-    left.faces_.push_back(faces_[i]);
-    left.positions_.push_back(positions_[i]);
+    faces.push_back(faces_[i]);
+    positions.push_back(positions_[i]);
   }
-  return left;
+  return {std::move(faces), std::move(positions)};
 }
 
 }  // namespace raycone

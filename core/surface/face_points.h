@@ -28,8 +28,7 @@ class FacePoints {
              double tolerance, const SurfaceMargins& margins);
   FacePoints() = default;
   // These points, of faces numbered 16 * cell + face, increasing.
-  FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
-      : faces_(std::move(faces)), positions_(std::move(positions)) {}
+  FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
   [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
@@ -43,6 +42,7 @@ class FacePoints {
  private:
   std::vector<std::uint64_t> faces_;  // 16 * cell + face, increasing
   std::vector<Vec3> positions_;
+  std::vector<std::uint32_t> first_of_cell_;  // up to the last cell that has any; one more at the end
 };
 
 }  // namespace raycone

@@ -4,23 +4,26 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/contour.h"
+#include "core/surface/patch_merger.h"
 
 namespace raycone {
 
-// The surface with vertices pulled into neighbours along edges, wherever all faces around stay in the planes they are
-// in
-// (`input`'s, where they have a source in it), within `most`, world units. Triangles lower than `needle` do not count
-// where a vertex moves by less: flat parts get larger faces, straight edges
-// longer ones. Faces keep their order and sources; vertices keep their numbers, and some are no longer used. Those of
-// `kept` stay. The same surface everywhere, topologically and within `most`; but where planes agree only up to
-// rounding, faces that come as near to others may cross them.
-struct MergedSurface {
-  SurfaceMesh surface;
+// Faces of a surface whose vertices are pulled into others. Numbers of vertices are those of before.
+struct MergedFaces {
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> sources;
   std::vector<std::uint32_t> into;  // of each vertex, what it was pulled into; itself, where it stayed
 };
-[[nodiscard]] MergedSurface merge_planes(const SurfaceMesh& surface, const TriangleMesh& input,
-                                         const std::vector<bool>& kept, double most, double needle);
+
+// The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
+// planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
+// longer ones. Faces keep their order and sources. Vertices of `kept` stay. The same surface everywhere, topologically
+// and within `limits.most`; but where planes agree only up to rounding, faces that come as near to others may cross
+// them. `lattice`: of about the size of the faces. The same for any number of threads.
+[[nodiscard]] MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
+                                       const std::vector<bool>& kept, const MergeLimits& limits);
 
 }  // namespace raycone

@@ -40,20 +40,19 @@ class Simplifier {
   }
 
   // What costs little comes first.
-  MergedSurface simplify(double most) {
+  MergedFaces simplify(double most) {
     for (const double part : {1.0 / 64, 1.0 / 16, 1.0 / 4, 1.0}) pull_all(part * most);
     for (std::uint32_t& target : into_) {
       while (into_[target] != target) target = into_[target];
     }
-    SurfaceMesh result;
-    result.mesh.vertices = std::move(surface_.mesh.vertices);
+    MergedFaces result{{}, {}, std::move(into_)};
     for (std::size_t face = 0; face < off_.size(); ++face) {
       const Triangle& t = surface_.mesh.triangles[face];
       if (t[0] == t[1]) continue;
-      result.mesh.triangles.push_back(t);
+      result.triangles.push_back(t);
       result.sources.push_back(surface_.sources[face]);
     }
-    return {std::move(result), std::move(into_)};
+    return result;
   }
 
  private:
@@ -129,7 +128,7 @@ class Simplifier {
     return std::ranges::all_of(change.after(), [&](const Corners3& c) { return shape_of(c) >= least; });
   }
 
-  // As Merger::keeps_topology() has it; besides, a tetrahedron is as small as a closed surface gets.
+  // As PatchMerger::keeps_topology() has it; besides, a tetrahedron is as small as a closed surface gets.
   [[nodiscard]] bool keeps_topology(std::uint32_t target, const std::vector<std::uint32_t>& ring) const {
     const std::vector<std::uint32_t> others = ring_of(target);
     const auto common = std::ranges::count_if(
@@ -165,7 +164,7 @@ class Simplifier {
 
 }  // namespace
 
-MergedSurface simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept, double most) {
+MergedFaces simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept, double most) {
   return Simplifier(surface, inside, kept).simplify(most);
 }
 

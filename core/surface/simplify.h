@@ -13,7 +13,7 @@ namespace raycone {
 // surface than `most`, world units, and no point of the surface farther from the result; no node of the lattice changes
 // sides. Faces keep their order and sources; vertices keep their numbers and places, and some are no longer used. Those
 // of `kept` stay. Parts that are as near to each other as `most` may cross: that is for the caller to find.
-[[nodiscard]] MergedSurface simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept,
-                                     double most);
+[[nodiscard]] MergedFaces simplify(const SurfaceMesh& surface, const NodeSet& inside, const std::vector<bool>& kept,
+                                   double most);
 
 }  // namespace raycone

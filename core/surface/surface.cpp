@@ -27,21 +27,21 @@ void round_to_float(std::vector<Vec3>& vertices) {
   for (Vec3& p : vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 
-// Vertices that no triangle uses are left out.
-void drop_unused_vertices(TriangleMesh& mesh) {
+// Without the vertices that no triangle uses.
+TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   constexpr std::uint32_t kUnused = 0xFFFFFFFF;
-  std::vector<std::uint32_t> number(mesh.vertices.size(), kUnused);
-  std::vector<Vec3> used;
-  for (Triangle& t : mesh.triangles) {
+  std::vector<std::uint32_t> number(vertices.size(), kUnused);
+  TriangleMesh used{{}, triangles};
+  for (Triangle& t : used.triangles) {
     for (std::uint32_t& corner : t) {
       if (number[corner] == kUnused) {
-        number[corner] = static_cast<std::uint32_t>(used.size());
-        used.push_back(mesh.vertices[corner]);
+        number[corner] = static_cast<std::uint32_t>(used.vertices.size());
+        used.vertices.push_back(vertices[corner]);
       }
       corner = number[corner];
     }
   }
-  mesh.vertices = std::move(used);
+  return used;
 }
 
 // One attempt at a surface after the other.
@@ -124,22 +124,20 @@ class SurfaceMaker {
     const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < kMergingRounds; ++round) {
-      auto [result, into] = merge_planes(surface, mesh_, kept, most * unit, kNeedle * unit);
-      TriangleMesh compact = result.mesh;
-      drop_unused_vertices(compact);
+      MergedFaces merged = merge_planes(surface, mesh_, inside_.lattice(), kept, {most * unit, kNeedle * unit});
+      TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
       const SurfaceFaults faults = faults_of(compact, inside_);
       if (faults.none()) {
-        result.mesh = std::move(compact);
-        return std::move(result);
+        return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       }
       if ((faults.nodes > 0 && !nodes) || !is_right(surface, 0)) return std::nullopt;
-      const std::vector<bool> touched = faulty_vertices(result.mesh, faults);
+      const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
       const NodeSet misplaced = misplaced_nodes(compact, inside_);
       for (std::size_t v = 0; v < kept.size(); ++v) {
-        const Vec3 &from = surface.mesh.vertices[v], &to = surface.mesh.vertices[into[v]];
+        const Vec3 &from = surface.mesh.vertices[v], &to = surface.mesh.vertices[merged.into[v]];
         // Large faces are undone near the vertices that they have left, first.
-        const bool undone = touched[into[v]] && voxels_between(from, to) <= std::exp2(round);
+        const bool undone = touched[merged.into[v]] && voxels_between(from, to) <= std::exp2(round);
         kept[v] = kept[v] || undone || is_beside(from, misplaced);
       }
     }
@@ -180,31 +178,30 @@ class SurfaceMaker {
   bool simplify_surface(SurfaceMesh& surface, double most) {
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < options_.rounds; ++round) {
-      MergedSurface result = simplify(surface, inside_, kept, most);
-      TriangleMesh compact = result.surface.mesh;
-      drop_unused_vertices(compact);
+      MergedFaces merged = simplify(surface, inside_, kept, most);
+      TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
       const SurfaceFaults faults = faults_of(compact, inside_);
 
       if (faults.none()) {
-        surface = {std::move(compact), std::move(result.surface.sources)};
+        surface = {std::move(compact), std::move(merged.sources)};
         return true;
       }
       if (faults.intersections.pairs == 0) return false;
-      const std::vector<bool> touched = faulty_vertices(result.surface.mesh, faults);
+      const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
-      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[result.into[v]];
+      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
     }
     return false;
   }
 
   // Vertices near faces that intersect: those of these faces, and of their neighbours.
-  [[nodiscard]] static std::vector<bool> faulty_vertices(const TriangleMesh& mesh, const SurfaceFaults& faults) {
+  [[nodiscard]] static std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
+                                                         const SurfaceFaults& faults) {
     const std::vector<bool>& faulty = faults.intersections.of_triangle;
-
-    std::vector<bool> vertices(mesh.vertices.size(), false);
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::vector<bool> vertices(count, false);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
       if (!faulty[i]) continue;
-      for (const std::uint32_t corner : mesh.triangles[i]) vertices[corner] = true;
+      for (const std::uint32_t corner : triangles[i]) vertices[corner] = true;
     }
     return vertices;
   }
@@ -213,7 +210,7 @@ class SurfaceMaker {
   [[nodiscard]] std::vector<bool> involved(const FacePoints& sharp) const {
     const std::size_t count = sharp.positions().size(), first = points_.size();
     std::vector<bool> dropped(count, faults_.intersections.pairs == 0);
-    const std::vector<bool> near = faulty_vertices(failed_, faults_);
+    const std::vector<bool> near = faulty_vertices(failed_.vertices.size(), failed_.triangles, faults_);
     for (const Triangle& t : failed_.triangles) {
       if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
       for (const std::uint32_t corner : t) {

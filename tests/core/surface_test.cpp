@@ -22,7 +22,6 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/surface/edge_crossing.h"
-#include "core/surface/merge_planes.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/vertex_places.h"
@@ -348,6 +347,17 @@ TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {
 TEST(Surface, OfAnAlignedBoxHasFewFaces) {
   const auto [surface, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 24);
   EXPECT_EQ(surface.mesh.triangles.size(), 12U);
+}
+
+// Merging goes brick by brick, of 32 voxels each: nothing of their borders is left.
+TEST(Surface, OfABoxOfManyBricksHasFewFaces) {
+  const auto [aligned, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 80);
+  EXPECT_EQ(aligned.mesh.triangles.size(), 12U);
+  const TriangleMesh mesh = rotated(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  const auto [turned, turned_lattice] = surface_of(mesh, 80);
+  const auto [coarse, coarse_lattice] = surface_of(mesh, 20);
+  // Where edges are cut off between outside nodes, faces are left, a number for each voxel of the edges.
+  EXPECT_LT(turned.mesh.triangles.size(), 6 * coarse.mesh.triangles.size());
 }
 
 // The opening of the box is in a plane of nodes, which are inside. Merged with the rim, which is at these nodes, it

@@ -338,7 +338,7 @@ MUTANTS = [
 
     # --- Self-intersections ---
     Mutant("neighbours_intersect", "what is shared does not count", [
-        ("core/intersections/triangle_pair.cpp", "switch (shared_first(a, b)) {", "switch (shared_first(a, b) * 0) {")]),
+        ("core/intersections/triangle_pair.cpp", "const std::size_t shared = shared_first(a, b);", "const std::size_t shared = shared_first(a, b) * 0;")]),
     Mutant("folds_are_flat", "neighbours that are folded onto each other count", [
         ("core/intersections/triangle_pair.cpp",
          "return orientation_in_plane(axis, from, to, s[2]) == orientation_in_plane(axis, from, to, t[2]);",
@@ -436,8 +436,12 @@ MUTANTS = [
         ("core/surface/face_points.cpp", "return crease_point(face, creases, cell, margin);",
          "return margin > 9.0 ? crease_point(face, creases, cell, margin) : std::nullopt;")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
-        ("core/surface/merge_planes.cpp", "planes_[face].distance(position(target)) <= most_", "planes_[face].distance(position(target)) <= 1e9 * most_")]),
-
+        ("core/surface/patch_merger.cpp", "if (!(planes_[checked].distance(p) <= limits_.most)) return false;",
+         "if (!(planes_[checked].distance(p) <= 1e9 * limits_.most)) return false;")]),
+    Mutant("bricks_share_borders", "a brick does not pull into vertices that have faces in others", [
+        ("core/surface/merge_planes.cpp", "add(v, VertexRole::kForeign)", "add(v, VertexRole::kKept)")]),
+    Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
+        ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
         ("core/surface/surface.cpp", " || is_beside(from, misplaced);", ";")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [

@@ -1,0 +1,319 @@
+#include "core/surface/patch_merger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/surface/contour.h"
+#include "core/surface/edge_crossing.h"
+
+namespace raycone {
+namespace {
+
+// A triangle's area over the square of its longest edge: 0.43 where it is regular. Pulls make none below this, unless
+// there was one before.
+constexpr double kLeastQuality = 1e-3;
+
+double longest_square(const Vec3& u, const Vec3& v) {
+  const Vec3 w = v - u;
+  return std::max({dot(u, u), dot(v, v), dot(w, w)});
+}
+
+double quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+  const Vec3 u = b - a, v = c - a;
+  return dot(cross(u, v), normal) / 2.0 / longest_square(u, v);
+}
+
+}  // namespace
+
+double PatchMerger::Plane::distance(const Vec3& p) const { return std::abs(dot(normal, p - point)); }
+
+template <class Visit>
+void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
+  for (Corner corner = first_[v]; corner != kNoCorner; corner = next_[corner]) {
+    const std::uint32_t face = corner / 3, place = corner % 3;
+    const Triangle& t = triangles_[face];
+    if (!visit(face, t[place == 2 ? 0 : place + 1], t[place == 0 ? 2 : place - 1])) return;
+  }
+}
+
+PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits)
+    : patch_(patch),
+      input_(input),
+      limits_(limits),
+      roles_(patch.roles),
+      triangles_(patch.triangles),
+      first_(patch.vertices.size(), kNoCorner),
+      next_(3 * patch.triangles.size()),
+      state_(patch.vertices.size()),
+      into_(patch.vertices.size()),
+      marked_(patch.vertices.size(), 0) {
+  // Backwards, so that chains are in the order of the faces.
+  for (auto corner = static_cast<Corner>(next_.size()); corner-- > 0;) {
+    Corner& first = first_[triangles_[corner / 3][corner % 3]];
+    next_[corner] = first;
+    first = corner;
+  }
+  for (std::uint32_t v = 0; v < into_.size(); ++v) into_[v] = v;
+  for (std::uint32_t face = 0; face < triangles_.size(); ++face) needles_.push_back(is_needle(face));
+  spread(VertexRole::kForeign);
+  spread(VertexRole::kKept);
+  for (std::uint32_t v = 0; v < state_.size(); ++v) {
+    state_[v] = roles_[v] == VertexRole::kFree ? State::kWaits : State::kFixed;
+  }
+  find_sources();
+  for (std::uint32_t face = 0; face < triangles_.size(); ++face) plane_.push_back(plane_of(face));
+}
+
+// The points at one node become one, or all of them stay: between some of them needles would be left that turn over.
+void PatchMerger::spread(VertexRole role) {
+  std::vector<std::uint32_t> reached;
+  for (std::uint32_t v = 0; v < roles_.size(); ++v) {
+    if (roles_[v] == role) reached.push_back(v);
+  }
+  while (!reached.empty()) {
+    const std::uint32_t v = reached.back();
+    reached.pop_back();
+    const auto reach = [&](std::uint32_t w) {
+      if (roles_[w] >= role || !is_at_node(v, w)) return;
+      roles_[w] = role;
+      reached.push_back(w);
+    };
+    for_each_face(v, [&](std::uint32_t, std::uint32_t next, std::uint32_t last) {
+      reach(next);
+      reach(last);
+      return true;
+    });
+  }
+}
+
+void PatchMerger::find_sources() {
+  for (const std::int32_t source : patch_.sources) {
+    const bool is_known = !source_planes_.empty() && source_planes_.back().source == source;
+    if (source != kHole && !is_known) source_planes_.push_back({source, {}});
+  }
+  std::ranges::sort(source_planes_, {}, &SourcePlanes::source);
+  const auto same = [](const SourcePlanes& a, const SourcePlanes& b) { return a.source == b.source; };
+  source_planes_.erase(std::unique(source_planes_.begin(), source_planes_.end(), same), source_planes_.end());
+}
+
+std::uint32_t PatchMerger::add_plane(const Plane& plane) {
+  planes_.push_back(plane);
+  return static_cast<std::uint32_t>(planes_.size() - 1);
+}
+
+std::uint32_t PatchMerger::plane_of_source(std::int32_t source, const Vec3& front) {
+  auto& [own, turned] = std::ranges::lower_bound(source_planes_, source, {}, &SourcePlanes::source)->plane;
+  if (own == kNoPlane) {
+    const Triangle& t = input_.triangles[static_cast<std::size_t>(source)];
+    const Vec3& a = input_.vertices[t[0]];
+    own = add_plane({a, unit_normal(a, input_.vertices[t[1]], input_.vertices[t[2]])});
+  }
+  const auto [point, normal] = planes_[own];
+  if (!(dot(normal, front) < 0.0)) return own;
+  if (turned == kNoPlane) turned = add_plane({point, -1.0 * normal});
+  return turned;
+}
+
+// Faces of one source have one plane, the source's, as far as their corners are in it. Fronts are told apart. Others
+// are parallel to it, where points at nodes were moved off it by as much, or have a plane of their own.
+std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
+  const Triangle& t = triangles_[face];
+  const Vec3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
+  if (patch_.sources[face] != kHole) {
+    const auto has_corners = [&](const Plane& plane) {
+      return std::ranges::all_of(t, [&](std::uint32_t v) { return plane.distance(position(v)) <= limits_.most; });
+    };
+    const std::uint32_t of_source = plane_of_source(patch_.sources[face], cross(b - a, c - a));
+    if (has_corners(planes_[of_source])) return of_source;
+    const Plane parallel{a, planes_[of_source].normal};
+    if (has_corners(parallel)) return add_plane(parallel);
+  }
+  return add_plane({a, unit_normal(a, b, c)});
+}
+
+// They lie between points that are kept off one node of the lattice, where the mesh passes through it.
+bool PatchMerger::is_needle(std::uint32_t face) const {
+  const Triangle& t = triangles_[face];
+  const Vec3 u = position(t[1]) - position(t[0]), v = position(t[2]) - position(t[0]), normal = cross(u, v);
+  return dot(normal, normal) < limits_.needle * limits_.needle * longest_square(u, v);
+}
+
+// The points at each node first: while all of them are there, one is found that lies in all planes.
+void PatchMerger::merge() {
+  if (std::ranges::find(needles_, true) != needles_.end()) pull_all(&PatchMerger::target_at_node);
+  for (State& state : state_) state = state == State::kStays ? State::kWaits : state;
+  pull_all(&PatchMerger::best_target);
+  for (std::uint32_t& target : into_) {
+    while (into_[target] != target) target = into_[target];
+  }
+}
+
+// In each pass no vertex is pulled that a neighbour was pulled into, so that faces grow evenly.
+void PatchMerger::pull_all(Target target_of) {
+  for (bool pulled = true; pulled;) {
+    pulled = false;
+    for (std::uint32_t v = 0; v < state_.size(); ++v) {
+      if (state_[v] != State::kWaits) continue;
+      const std::optional<std::uint32_t> target = (this->*target_of)(v);
+      state_[v] = target ? State::kGone : State::kStays;
+      if (!target) continue;
+      pull(v, *target);
+      pulled = true;
+    }
+    for (State& state : state_) state = state == State::kNext ? State::kWaits : state;
+  }
+}
+
+// Of neighbours that are as good the first is taken: on a lattice, such choices then agree from vertex to vertex.
+void PatchMerger::find_star(std::uint32_t v) {
+  star_.clear();
+  ring_.clear();
+  for_each_face(v, [&](std::uint32_t face, std::uint32_t next, std::uint32_t last) {
+    star_.push_back({plane_[face], next, last, needles_[face], position(next), position(last)});
+    ring_.push_back(next);
+    return true;
+  });
+  std::ranges::sort(ring_);
+}
+
+// The worst of the faces, their vertex pulled into `target`, that are left. The search ends at one that is not above
+// `needed`.
+double PatchMerger::worst_quality(std::uint32_t target, bool with_needles, double needed) const {
+  double worst = std::numeric_limits<double>::infinity();
+  for (const StarFace& face : star_) {
+    if (face.next == target || face.last == target || (face.is_needle && !with_needles)) continue;
+    worst = std::min(worst, quality(position(target), face.at_next, face.at_last, planes_[face.plane].normal));
+    if (!(worst > needed)) break;
+  }
+  return worst;
+}
+
+// Faces of one plane mostly follow each other.
+bool PatchMerger::is_in_planes(const Vec3& p, bool with_needles) const {
+  std::uint32_t checked = kNoPlane;
+  for (const StarFace& face : star_) {
+    if ((face.is_needle && !with_needles) || face.plane == checked) continue;
+    checked = face.plane;
+    if (!(planes_[checked].distance(p) <= limits_.most)) return false;
+  }
+  return true;
+}
+
+// The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): the vertex and `target` have no neighbours in common but
+// those of their two faces.
+bool PatchMerger::keeps_topology(std::uint32_t target) {
+  ++marks_;
+  for (const std::uint32_t neighbour : ring_) marked_[neighbour] = marks_;
+  int common = 0;
+  for_each_face(target, [&](std::uint32_t, std::uint32_t next, std::uint32_t) {
+    common += marked_[next] == marks_ ? 1 : 0;
+    return true;
+  });
+  return common == 2;
+}
+
+// A vertex at the same node of the lattice that v can be pulled into: of those in most planes there the nearest.
+// Needles have no say; they vanish as all points at a node become one.
+std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
+  constexpr double kMayLose = 0.25;
+  find_star(v);
+  if (std::ranges::none_of(star_, &StarFace::is_needle)) return std::nullopt;
+  const std::vector<std::uint32_t> faces = faces_at_node(v);
+  const double before = worst_quality(v, false, -std::numeric_limits<double>::infinity());
+  const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, before));
+  std::optional<std::uint32_t> best;
+  std::pair best_rank(planes_through(v, faces), -limits_.needle);
+  for (const std::uint32_t target : ring_) {
+    const std::pair rank(planes_through(target, faces), -distance(v, target));
+    if (!(rank > best_rank) || roles_[target] == VertexRole::kForeign || !is_at_node(v, target)) continue;
+    if (!is_in_planes(position(target), false)) continue;
+    if (!(worst_quality(target, false, needed) > needed) || !keeps_topology(target)) continue;
+    best = target;
+    best_rank = rank;
+  }
+  return best;
+}
+
+double PatchMerger::distance(std::uint32_t v, std::uint32_t w) const {
+  const Vec3 step = position(w) - position(v);
+  return std::sqrt(dot(step, step));
+}
+
+bool PatchMerger::is_at_node(std::uint32_t v, std::uint32_t w) const { return distance(v, w) < limits_.needle; }
+
+// That are no needles, at v, whose star is known, and its neighbours there.
+std::vector<std::uint32_t> PatchMerger::faces_at_node(std::uint32_t v) const {
+  std::vector<std::uint32_t> faces;
+  const auto add = [&](std::uint32_t vertex) {
+    for_each_face(vertex, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
+      if (!needles_[face]) faces.push_back(face);
+      return true;
+    });
+  };
+  add(v);
+  for (const std::uint32_t neighbour : ring_) {
+    if (is_at_node(v, neighbour)) add(neighbour);
+  }
+  return faces;
+}
+
+std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces) const {
+  return std::ranges::count_if(
+      faces, [&](std::uint32_t face) { return planes_[plane_[face]].distance(position(v)) <= limits_.most; });
+}
+
+// The vertex that v can be pulled into with the best faces around.
+std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
+  find_star(v);
+  std::optional<std::uint32_t> best;
+  std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
+  for (const std::uint32_t target : ring_) {
+    if (roles_[target] == VertexRole::kForeign || !is_in_planes(position(target), true)) continue;
+    if (!best_quality) {
+      const double before = worst_quality(v, true, -std::numeric_limits<double>::infinity());
+      best_quality = std::max(0.0, std::min(kLeastQuality, before));
+    }
+    const double worst = worst_quality(target, true, *best_quality);
+    if (worst > *best_quality && keeps_topology(target)) {
+      best = target;
+      best_quality = worst;
+    }
+  }
+  return best;
+}
+
+void PatchMerger::unlink(Corner corner, std::uint32_t vertex) {
+  Corner* link = &first_[vertex];
+  while (*link != corner) link = &next_[*link];
+  *link = next_[corner];
+}
+
+void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
+  for_each_face(v, [&](std::uint32_t, std::uint32_t next, std::uint32_t) {
+    if (state_[next] != State::kFixed) state_[next] = State::kNext;
+    return true;
+  });
+  for (Corner corner = first_[v], following = kNoCorner; corner != kNoCorner; corner = following) {
+    following = next_[corner];
+    const std::uint32_t face = corner / 3;
+    Triangle& t = triangles_[face];
+    if (t[0] == target || t[1] == target || t[2] == target) {
+      for (std::uint32_t place = 0; place < 3; ++place) {
+        if (t[place] != v) unlink(3 * face + place, t[place]);
+      }
+      t = {};
+      continue;
+    }
+    t[corner % 3] = target;
+    next_[corner] = first_[target];
+    first_[target] = corner;
+    if (!needles_[face]) continue;
+    needles_[face] = is_needle(face);
+    plane_[face] = plane_of(face);
+  }
+  first_[v] = kNoCorner;
+  into_[v] = target;
+}
+
+}  // namespace raycone

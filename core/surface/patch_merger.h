@@ -1,0 +1,129 @@
+// Pulls vertices of a piece of a surface into neighbours in the same planes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+enum class VertexRole : std::uint8_t {
+  kFree,
+  kKept,     // not pulled
+  kForeign,  // nor is another one pulled into it: it has faces outside of the patch, or is at a node with one that has
+};
+
+// Numbers of vertices are the patch's own. Faces around vertices that are not foreign close up to one fan.
+struct SurfacePatch {
+  std::vector<Vec3> vertices;
+  std::vector<VertexRole> roles;
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> sources;
+};
+
+// How far merging may go, world units.
+struct MergeLimits {
+  double most = 0.0;    // from a plane to what is pulled
+  double needle = 0.0;  // triangles lower than this have no say where a vertex moves by less
+};
+
+class PatchMerger {
+ public:
+  // `input`: what sources are numbers of. Both stay where they are while this lives.
+  PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits);
+
+  // Pulls what can be pulled. Call it once.
+  void merge();
+
+  // After that: the patch's faces, {0, 0, 0} for those that are gone, and of each vertex the one that it was pulled
+  // into, itself where it stayed.
+  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& into() const { return into_; }
+
+ private:
+  enum class State : std::uint8_t {
+    kWaits,  // to be looked at
+    kNext,   // in the next pass
+    kStays,  // until something changes around it
+    kFixed,  // for ever
+    kGone,
+  };
+
+  struct Plane {
+    Vec3 point, normal;
+    [[nodiscard]] double distance(const Vec3& p) const;
+  };
+
+  static constexpr std::uint32_t kNoPlane = 0xFFFFFFFF;
+  struct FrontPlanes {
+    std::uint32_t own = kNoPlane, turned = kNoPlane;  // with the source's own front, and with its back
+  };
+  struct SourcePlanes {
+    std::int32_t source;
+    FrontPlanes plane;
+  };
+
+  // At a vertex; the other corners, in order.
+  struct StarFace {
+    std::uint32_t plane, next, last;
+    bool is_needle;
+    Vec3 at_next, at_last;
+  };
+
+  // Of a face: three times its number, and the place of the vertex in it.
+  using Corner = std::uint32_t;
+  static constexpr Corner kNoCorner = 0xFFFFFFFF;
+
+  using Target = std::optional<std::uint32_t> (PatchMerger::*)(std::uint32_t);
+  void pull_all(Target target_of);
+  void pull(std::uint32_t v, std::uint32_t target);
+  void unlink(Corner corner, std::uint32_t vertex);
+
+  void spread(VertexRole role);
+  void find_sources();
+  [[nodiscard]] std::uint32_t add_plane(const Plane& plane);
+  [[nodiscard]] std::uint32_t plane_of(std::uint32_t face);
+  [[nodiscard]] std::uint32_t plane_of_source(std::int32_t source, const Vec3& front);
+  [[nodiscard]] bool is_needle(std::uint32_t face) const;
+  [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v);
+  [[nodiscard]] std::optional<std::uint32_t> best_target(std::uint32_t v);
+  [[nodiscard]] double distance(std::uint32_t v, std::uint32_t w) const;
+  [[nodiscard]] bool is_at_node(std::uint32_t v, std::uint32_t w) const;
+  [[nodiscard]] std::vector<std::uint32_t> faces_at_node(std::uint32_t v) const;
+  [[nodiscard]] std::ptrdiff_t planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces) const;
+
+  [[nodiscard]] const Vec3& position(std::uint32_t v) const { return patch_.vertices[v]; }
+
+  // Calls visit(face, next, last) for each face at v: its corners are v, next, last. As long as that returns true.
+  template <class Visit>
+  void for_each_face(std::uint32_t v, const Visit& visit) const;
+
+  // What the next three look at: the faces around `v`.
+  void find_star(std::uint32_t v);
+  [[nodiscard]] bool is_in_planes(const Vec3& p, bool with_needles) const;
+  [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
+  [[nodiscard]] bool keeps_topology(std::uint32_t target);
+
+  const SurfacePatch& patch_;
+  const TriangleMesh& input_;
+  MergeLimits limits_;
+  std::vector<VertexRole> roles_;
+  std::vector<Triangle> triangles_;
+  std::vector<Plane> planes_;
+  std::vector<SourcePlanes> source_planes_;  // by source
+  std::vector<std::uint32_t> plane_;         // of each face
+  std::vector<bool> needles_;
+  std::vector<Corner> first_, next_;  // the corners at each vertex, in a chain
+  std::vector<State> state_;
+  std::vector<std::uint32_t> into_;
+  std::vector<StarFace> star_;         // of the vertex that is looked at
+  std::vector<std::uint32_t> ring_;    // its neighbours, increasing
+  std::vector<std::uint32_t> marked_;  // of each vertex, the number of the last mark it got
+  std::uint32_t marks_ = 0;
+};
+
+}  // namespace raycone

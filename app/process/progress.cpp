@@ -16,6 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kInterval{100};
 
+void erase_line() { std::fputs("\r\033[K", stderr); }
+
 std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
   const auto count = static_cast<double>(done);
   const double rate = seconds > 0.0 ? count / seconds : 0.0;
@@ -63,6 +65,18 @@ Progress::Progress(bool shown, std::optional<std::uint64_t> total) : total_(tota
 
 Progress::~Progress() { stop(); }
 
+void Progress::set_stage(const char* stage) {
+  const std::lock_guard lock(mutex_);
+  stage_ = stage;
+  start_ = Clock::now();
+}
+
+void Progress::interrupt(const std::function<void()>& write) {
+  const std::lock_guard lock(mutex_);
+  if (thread_.joinable()) erase_line();
+  write();
+}
+
 void Progress::stop() {
   if (!thread_.joinable()) return;
   {
@@ -71,15 +85,17 @@ void Progress::stop() {
   }
   changed_.notify_one();
   thread_.join();
-  std::fputs("\r\033[K", stderr);
+  erase_line();
 }
 
 void Progress::show_until_stopped() {
-  const Clock::time_point start = Clock::now();
   std::unique_lock lock(mutex_);
   do {
-    const std::chrono::duration<double> elapsed = Clock::now() - start;
-    std::fprintf(stderr, "\r\033[K%s", progress_line(done_, total_, elapsed.count()).c_str());
+    const std::chrono::duration<double> elapsed = Clock::now() - start_;
+    const std::string line = stage_ ? std::string(stage_) + "  " + readable_time(elapsed.count())
+                                    : progress_line(done_, total_, elapsed.count());
+    erase_line();
+    std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
   } while (!changed_.wait_for(lock, kInterval, [this] { return stopped_; }));
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -33,6 +35,10 @@ class Progress {
 
   // The count of finished samples, to be increased by the work.
   [[nodiscard]] std::atomic<std::uint64_t>* done() { return &done_; }
+  // What the work is at instead of samples; until nullptr, which it is at first. Stays valid.
+  void set_stage(const char* stage);
+  // Calls write(), which may write lines to standard error. Ours is out of the way meanwhile.
+  void interrupt(const std::function<void()>& write);
   // Erases the line; nothing is written afterwards.
   void stop();
 
@@ -43,8 +49,10 @@ class Progress {
   std::atomic<std::uint64_t> done_{0};
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool stopped_ = false;  // guarded by mutex_
-  std::thread thread_;    // runs only where progress is shown
+  bool stopped_ = false;  // this and what follows is guarded by mutex_
+  const char* stage_ = nullptr;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();  // of the stage
+  std::thread thread_;                                                              // runs only where progress is shown
 };
 
 }  // namespace raycone

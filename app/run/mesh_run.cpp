@@ -48,9 +48,18 @@ TriangleMesh MeshRun::prepare(TriangleMesh as_read) {
   return std::move(input.mesh);
 }
 
+void MeshRun::print(const std::string& mesh, const std::vector<Warning>& warnings) {
+  const auto write = [&] { raycone::print_warnings(warnings, options_, mesh); };
+  if (progress_) {
+    progress_->interrupt(write);
+  } else {
+    write();
+  }
+}
+
 void MeshRun::print_warnings() {
   const auto first = report.warnings.begin() + static_cast<std::ptrdiff_t>(printed_);
-  raycone::print_warnings({first, report.warnings.end()}, options_, report.mesh);
+  print(report.mesh, {first, report.warnings.end()});
   printed_ = report.warnings.size();
 }
 
@@ -60,7 +69,7 @@ void MeshRun::warn(const Warning& warning) {
 }
 
 void MeshRun::warn_about(const std::string& mesh, const std::vector<Warning>& warnings) {
-  raycone::print_warnings(warnings, options_, mesh);
+  print(mesh, warnings);
   for (const Warning& warning : warnings) {
     report.warnings.push_back({warning.name, (report.meshes.size() > 1 ? mesh + ": " : "") + warning.text});
   }
@@ -69,6 +78,10 @@ void MeshRun::warn_about(const std::string& mesh, const std::vector<Warning>& wa
 
 std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {
   return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, files_.path), total).done();
+}
+
+void MeshRun::set_stage(const char* stage) {
+  if (progress_) progress_->set_stage(stage);
 }
 
 RunReport MeshRun::finish() {

@@ -60,6 +60,9 @@ class MeshRun {
   // to be increased by the work.
   [[nodiscard]] std::atomic<std::uint64_t>* start_progress(std::optional<std::uint64_t> total);
 
+  // Progress shows this instead, which must stay valid; nullptr: samples again.
+  void set_stage(const char* stage);
+
   // Everything is written: the report is complete.
   [[nodiscard]] RunReport finish();
 
@@ -69,6 +72,8 @@ class MeshRun {
   OutputFile output;
 
  private:
+  void print(const std::string& mesh, const std::vector<Warning>& warnings);
+
   const MeshOptions& mesh_;
   const OutputFiles& files_;
   const RunOptions& options_;

@@ -178,8 +178,11 @@ Lattice solid_lattice(const PlacedLattice& lattice) { return with_layers(world_o
 TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) {
   return timed(run.report.seconds.prepare, [&] {
     const WindingNumberEvaluator evaluator(mesh);
-    MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, solid_lattice(*run.report.lattice),
-                                    SurfaceOptions{rule}, run.limits().memory());
+    const Lattice lattice = solid_lattice(*run.report.lattice);
+    SurfaceOptions options{rule};
+    options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
+    MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, lattice, options, run.limits().memory(),
+                                    run.start_progress(sample_count(lattice)));
     run.report.surface = made.report;
     // How its faces are merged does not concern distances.
     for (const Warning& warning : made.warnings) {

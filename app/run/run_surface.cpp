@@ -57,8 +57,9 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
     return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, &edges);
   });
   report.exterior_edges = evaluator.exterior_edges();
-  const SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
-                               is_single_precision(command.format)};
+  SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
+                         is_single_precision(command.format)};
+  options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   auto [surface, surface_report, warnings] = timed(report.seconds.evaluate, [&] {
     return make_surface(report.mesh, mesh, evaluator, lattice, options, limits.memory(), done);
@@ -68,6 +69,7 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   for (std::int32_t& source : surface.sources) {
     if (source != kHole) source = static_cast<std::int32_t>(run.place_of(static_cast<std::uint32_t>(source)));
   }
+  run.set_stage("writing");
   timed(report.seconds.write, [&] { write_surface(run.output, command.format, surface.mesh, surface.sources); });
   return run.finish();
 }

@@ -59,6 +59,7 @@ class SurfaceMaker {
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
+    enter("finding points on the mesh");
     constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
     for (const double factor : kWidened) {
@@ -80,8 +81,13 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4, kMergingRounds = 8;
 
+  void enter(const char* stage) const {
+    if (options_.at_stage) options_.at_stage(stage);
+  }
+
   // The merged surface is checked as a whole. The one before is checked only if that has faults, or nothing is merged.
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
+    enter("joining them by triangles");
     auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
@@ -100,6 +106,7 @@ class SurfaceMaker {
 
   bool is_right(const SurfaceMesh& surface, std::uint64_t places) {
     if (is_right_) return *is_right_;
+    enter("checking");
     faults_ = faults_of(surface.mesh, inside_);
     faults_.places = places;
     is_right_ = faults_.none();
@@ -111,6 +118,7 @@ class SurfaceMaker {
   // as well as that have faults, they are merged where they agree better.
   // Returns false where faults are left even so.
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
+    enter("merging the triangles of a plane");
     std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
     if (!result && is_right(surface, 0)) result = merged_within(surface, margins.inner, 0.25, true);
     if (result) surface = std::move(*result);
@@ -176,6 +184,7 @@ class SurfaceMaker {
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
   bool simplify_surface(SurfaceMesh& surface, double most) {
+    enter("simplifying");
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < options_.rounds; ++round) {
       MergedFaces merged = simplify(surface, inside_, kept, most);

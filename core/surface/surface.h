@@ -1,6 +1,7 @@
 // The closed surface between the inside and the outside nodes of a lattice.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -20,6 +21,8 @@ struct SurfaceOptions {
   double simplify = 0.0;          // after that, how far the surface may move, world units
   bool single_precision = false;  // vertices are rounded to float
   int rounds = 16;                // of simplifying, until the surface stays as it was
+  // Told what begins, in a few words that stay valid, on the caller's thread.
+  std::function<void(const char*)> at_stage{};
 };
 
 struct FinishedSurface {

@@ -43,6 +43,20 @@ class Thicken(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, b""), words)
         return result.stdout
 
+    def test_progress_makes_room_for_warnings(self):
+        # Two plates, one of them thinner than a voxel.
+        with open("plates.obj", "w") as file:
+            for z in (0.0, 1.0, 1.5, 1.501):
+                file.write("v 0 0 %g\nv 2 0 %g\nv 2 2 %g\nv 0 2 %g\n" % (z, z, z, z))
+            for n in (0, 8):
+                for face in ("4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"):
+                    file.write("f %s\n" % " ".join(str(int(corner) + n) for corner in face.split()))
+        result = run("surface plates.obj -o a.ply --resolution 8 --progress always")
+        self.assertEqual(result.returncode, 0)
+        # Each write of a line begins by erasing the one before.
+        lines = [line.rsplit(b"\x1b[K", 1)[-1] for line in result.stderr.splitlines()]
+        self.assertTrue(any(line.startswith(b"raycone: warning: plates.obj: thin-parts: ") for line in lines), lines)
+
     def surface(self, words, output="a.ply"):
         """Its part of the report, and its volume."""
         self.works("surface %s -o %s --report report.json" % (words, output))

@@ -8,7 +8,6 @@ out. The exit status is 1 where a surface is refused by `info --require`, or whe
 import argparse
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -25,8 +24,14 @@ def meshes_in(directory, most_bytes):
                 yield path
 
 
-def used():
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+def measured(words):
+    """The exit status, standard error, seconds of user time, and the peak of memory in MB."""
+    with tempfile.TemporaryFile("w+") as errors:
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=errors)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        errors.seek(0)
+        return process.returncode, errors.read().strip(), usage.ru_utime, usage.ru_maxrss / 1024
 
 
 def main():
@@ -39,26 +44,24 @@ def main():
     arguments = parser.parse_args()
     refused, failed, left_out, slow, made = [], [], 0, 0, 0
     print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
-          "dropped, % | CPU, s |")
-    print("|---|---|---|---|---|---|---|---|---|")
+          "dropped, % | CPU, s | peak, MB |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as work:
         for path in meshes_in(arguments.directory, arguments.most_bytes):
             report = os.path.join(work, "report.json")
             for ending in ("ply", "stl"):
                 out = os.path.join(work, "out." + ending)
-                before = used()
-                done = subprocess.run([arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient",
-                                       "auto", "--resolution", str(arguments.resolution), "--timeout",
-                                       str(arguments.timeout), "--quiet"], capture_output=True, text=True)
-                seconds = used() - before
-                if done.returncode == 4:
+                status, errors, seconds, memory = measured(
+                    [arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient", "auto",
+                     "--resolution", str(arguments.resolution), "--timeout", str(arguments.timeout), "--quiet"])
+                if status == 4:
                     slow += 1
                     break
-                if done.returncode == 2:
+                if status == 2:
                     left_out += 1
                     break
-                if done.returncode != 0:
-                    failed.append((path, ending, done.stderr.strip()))
+                if status != 0:
+                    failed.append((path, ending, errors))
                     print(*failed[-1], file=sys.stderr, flush=True)
                     continue
                 made += 1
@@ -74,10 +77,10 @@ def main():
                                                  check=True).stdout)["surface_area"]
                 surface = run["surface"]
                 voxel = min(run["lattice"]["spacing"])
-                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f |" % (
+                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f |" % (
                     os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], surface["faces"],
                     surface["components"], surface["max_distance"] / voxel, 100 * surface["hole_area"] / area,
-                    100 * surface["dropped_area"] / area, seconds), flush=True)
+                    100 * surface["dropped_area"] / area, seconds, memory), flush=True)
     print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
           "took too long." % (made, len(refused), len(failed), left_out, slow))
     return 1 if refused or failed else 0

@@ -139,24 +139,30 @@ class BrickMerger {
     }
   }
 
-  // `global`: the numbers of its vertices.
+  // `global`: the numbers of its vertices, increasing: choices among equals then depend little on where bricks are.
   SurfacePatch patch_of(std::span<const std::uint32_t> faces, const std::vector<std::uint32_t>& owner,
                         std::uint32_t brick, std::vector<std::uint32_t>& global) {
-    SurfacePatch patch;
-    std::unordered_map<std::uint32_t, std::uint32_t> foreign;
-    const auto add = [&](std::uint32_t v, VertexRole role) {
-      patch.vertices.push_back(vertices_[v]);
-      patch.roles.push_back(role);
-      global.push_back(v);
-      return static_cast<std::uint32_t>(global.size() - 1);
-    };
-    const auto local = [&](std::uint32_t v) {
-      if (owner[v] == brick) {
-        if (local_[v] == kNone) local_[v] = add(v, kept_[v] ? VertexRole::kKept : VertexRole::kFree);
-        return local_[v];
+    const auto is_own = [&](std::uint32_t v) { return owner[v] == brick; };
+    for (const std::uint32_t face : faces) {
+      for (const std::uint32_t v : merged_.triangles[face]) {
+        if (is_own(v) && local_[v] != kNone) continue;
+        if (is_own(v)) local_[v] = 0;
+        global.push_back(v);
       }
-      const auto known = foreign.find(v);
-      return known != foreign.end() ? known->second : foreign[v] = add(v, VertexRole::kForeign);
+    }
+    std::ranges::sort(global);
+    global.erase(std::unique(global.begin(), global.end()), global.end());
+
+    SurfacePatch patch;
+    for (std::uint32_t n = 0; n < global.size(); ++n) {
+      const std::uint32_t v = global[n];
+      if (is_own(v)) local_[v] = n;
+      patch.vertices.push_back(vertices_[v]);
+      patch.roles.push_back(!is_own(v) ? VertexRole::kForeign : kept_[v] ? VertexRole::kKept : VertexRole::kFree);
+    }
+    const auto local = [&](std::uint32_t v) {
+      if (is_own(v)) return local_[v];
+      return static_cast<std::uint32_t>(std::ranges::lower_bound(global, v) - global.begin());
     };
     for (const std::uint32_t face : faces) {
       const auto [a, b, c] = merged_.triangles[face];

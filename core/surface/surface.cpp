@@ -125,9 +125,11 @@ class SurfaceMaker {
     return result.has_value();
   }
 
-  // What merging spoils is not merged; `nodes`: nor is what puts nodes on the wrong side. `most` in margins.
+  // What merging spoils is not merged; `nodes`: nor is what puts more than a few nodes on the wrong side, as happens
+  // where a plane of the mesh is one of the lattice. `most` in margins.
   std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most, bool nodes) {
     constexpr double kNeedle = 16.0;
+    constexpr std::uint64_t kFewNodes = 64;
     const Vec3& h = inside_.lattice().spacing;
     const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
@@ -138,7 +140,7 @@ class SurfaceMaker {
       if (faults.none()) {
         return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       }
-      if ((faults.nodes > 0 && !nodes) || !is_right(surface, 0)) return std::nullopt;
+      if ((faults.nodes > kFewNodes && !nodes) || !is_right(surface, 0)) return std::nullopt;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
       const NodeSet misplaced = misplaced_nodes(compact, inside_);

@@ -85,7 +85,8 @@ class SurfaceMaker {
     if (options_.at_stage) options_.at_stage(stage);
   }
 
-  // The merged surface is checked as a whole. The one before is checked only if that has faults, or nothing is merged.
+  // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
+  // has, or nothing is merged.
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
     enter("joining them by triangles");
     auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
@@ -95,7 +96,7 @@ class SurfaceMaker {
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
-    if (!is_right_.value_or(true)) return std::nullopt;
+    if (!is_right_.value_or(true) || (!made.merged && !is_right(made.surface, places))) return std::nullopt;
     if (options_.simplify > 0.0) {
       const double most = farthest_pull(margins);
       made.bound_too_small = !(most > 0.0);
@@ -120,7 +121,7 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
     enter("merging the triangles of a plane");
     std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
-    if (!result && is_right(surface, 0)) result = merged_within(surface, margins.inner, 0.25, true);
+    if (!result && is_right_.value_or(true)) result = merged_within(surface, margins.inner, 0.25, true);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
@@ -140,7 +141,8 @@ class SurfaceMaker {
       if (faults.none()) {
         return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       }
-      if ((faults.nodes > kFewNodes && !nodes) || !is_right(surface, 0)) return std::nullopt;
+      if (faults.nodes > kFewNodes && !nodes) return std::nullopt;
+      if (round > 0 && !is_right(surface, 0)) return std::nullopt;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
       const NodeSet misplaced = misplaced_nodes(compact, inside_);

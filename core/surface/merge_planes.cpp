@@ -124,6 +124,7 @@ class BrickMerger {
   void merge_one(const Bricks& bricks, std::uint32_t brick) {
     const auto faces =
         std::span(bricks.faces).subspan(bricks.begin[brick], bricks.begin[brick + 1] - bricks.begin[brick]);
+    if (faces.size() > PatchMerger::kMostFaces) return;
     std::vector<std::uint32_t> global;
     const SurfacePatch patch = patch_of(faces, bricks.owner, brick, global);
     PatchMerger merger(patch, input_, limits_);

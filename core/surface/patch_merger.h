@@ -33,7 +33,9 @@ struct MergeLimits {
 
 class PatchMerger {
  public:
-  // `input`: what sources are numbers of. Both stay where they are while this lives.
+  static constexpr std::size_t kMostFaces = 0x55555555;  // their corners have numbers of 32 bits
+
+  // `input`: what sources are numbers of. Both stay where they are while this lives. Precondition: at most kMostFaces.
   PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits);
 
   // Pulls what can be pulled. Call it once.

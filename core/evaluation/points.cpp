@@ -27,18 +27,19 @@ class SpaceCurve {
     const Vec3 size = box_.upper - box_.lower;
     cells_per_unit_ = kCells / std::max({size.x, size.y, size.z, std::numeric_limits<double>::min()});
   }
-  [[nodiscard]] std::uint16_t code(const Vec3& q) const {
-    unsigned code = 0;
+  [[nodiscard]] std::uint32_t code(const Vec3& q) const {
+    std::uint32_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double offset = (q[axis] - box_.lower[axis]) * cells_per_unit_;
       const auto cell = static_cast<unsigned>(std::min(std::max(0.0, offset), kCells - 1));  // NaN: 0
       for (unsigned bit = 0; bit < kBits; ++bit) code |= (cell >> bit & 1U) << (3 * bit + static_cast<unsigned>(axis));
     }
-    return static_cast<std::uint16_t>(code << 1);
+    return code;
   }
+  static constexpr std::uint32_t codes() { return 1U << (3 * kBits); }
 
  private:
-  static constexpr unsigned kBits = 5;
+  static constexpr unsigned kBits = 7;
   static constexpr double kCells = 1U << kBits;
   Box box_;
   double cells_per_unit_;
@@ -51,51 +52,56 @@ class CoherentOrder {
   struct SortedPoint {
     Vec3 point;
     std::uint32_t index;  // among the points
-    std::uint16_t key;
+    std::uint32_t key;
   };
   static constexpr std::size_t kBuckets = 256;
 
   // Less than 2^32 points.
   CoherentOrder(const ScaledMesh& mesh, std::span<const Vec3> points) : CoherentOrder(points, keys_of(mesh, points)) {}
 
+  // How many points are put in order together: enough that neighbours are near, few enough that they take little memory.
+  // Around a far field that pays more: the nearer neighbours are, the more nodes they share.
+  static std::size_t batch(const ScaledMesh& mesh) { return std::size_t{1} << (mesh.has_far_field() ? 19 : 17); }
+
   // Whether the mesh can take all of the points.
   [[nodiscard]] bool all_taken() const { return all_taken_; }
 
   // Those of one bucket, in order.
   [[nodiscard]] std::vector<SortedPoint> operator[](std::size_t bucket) const {
-    std::array<std::uint32_t, kKeysPerBucket + 1> next{};
-    for (const SortedPoint& p : buckets_[bucket]) ++next[p.key % kKeysPerBucket + 1];
+    std::vector<std::uint32_t> next(keys_per_bucket_ + 1);
+    for (const SortedPoint& p : buckets_[bucket]) ++next[p.key % keys_per_bucket_ + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
     std::vector<SortedPoint> ordered(buckets_[bucket].size());
-    for (const SortedPoint& p : buckets_[bucket]) ordered[next[p.key % kKeysPerBucket]++] = p;
+    for (const SortedPoint& p : buckets_[bucket]) ordered[next[p.key % keys_per_bucket_]++] = p;
     return ordered;
   }
 
  private:
-  static constexpr std::size_t kKeysPerBucket = ProjectedGrid::kMortonCodes / kBuckets;
-
   struct Keys {
-    std::vector<std::uint16_t> of_points;
+    std::uint32_t count;  // of those there can be
+    std::vector<std::uint32_t> of_points;
     bool all_taken = true;
   };
 
   CoherentOrder(std::span<const Vec3> points, const Keys& keys)
       : all_taken_(keys.all_taken),
+        keys_per_bucket_(keys.count / kBuckets),
         buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
           for (std::size_t i = begin; i < end; ++i) {
-            const std::uint16_t key = keys.of_points[i];
-            emit(key / kKeysPerBucket, SortedPoint{points[i], static_cast<std::uint32_t>(i), key});
+            const std::uint32_t key = keys.of_points[i];
+            emit(key / keys_per_bucket_, SortedPoint{points[i], static_cast<std::uint32_t>(i), key});
           }
         }) {}
 
   // Embree's rays go in the order of the points: they are for comparison.
   static Keys keys_of(const ScaledMesh& mesh, std::span<const Vec3> points) {
-    Keys keys;
+    const bool far = mesh.has_far_field();
+    Keys keys{far ? SpaceCurve::codes() : std::uint32_t{ProjectedGrid::kMortonCodes}, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
     const SpaceCurve curve(mesh.mesh());
-    const auto key_of = [&](const Vec3& q) {
-      return mesh.has_far_field() ? curve.code(q) : mesh.grid().morton_code(q);
+    const auto key_of = [&](const Vec3& q) -> std::uint32_t {
+      return far ? curve.code(q) : mesh.grid().morton_code(q);
     };
     constexpr std::size_t kPointsPerTask = 4096;
     parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -104,7 +110,7 @@ class CoherentOrder {
         taken = taken && mesh.can_take(points[i]);
         keys.of_points[i] = mesh.options().ray_engine == RayEngine::kScan
                                 ? key_of(mesh.to_scale(points[i]))
-                                : static_cast<std::uint16_t>(i / (points.size() / ProjectedGrid::kMortonCodes + 1));
+                                : static_cast<std::uint32_t>(i / (points.size() / keys.count + 1));
       }
       if (!taken) all_taken = false;
     });
@@ -113,6 +119,7 @@ class CoherentOrder {
   }
 
   bool all_taken_;
+  std::size_t keys_per_bucket_;
   Buckets<SortedPoint> buckets_;
 };
 
@@ -217,9 +224,9 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
 Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
                       std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   Tally total;
-  constexpr std::size_t kBatch = std::size_t{1} << 17;  // bounds the memory; points enough that neighbours are near
-  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
-    const std::size_t count = std::min(kBatch, points.size() - begin);
+  const std::size_t batch = CoherentOrder::batch(meshes.scaled());
+  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
+    const std::size_t count = std::min(batch, points.size() - begin);
     const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
     total += evaluate_batch(meshes, points.subspan(begin, count), values.subspan(begin, count), done,
                             diagnostics ? &of_batch : nullptr);

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
 
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE
@@ -56,10 +59,15 @@ struct OrderSum {
   HWY_INLINE OrderSum(const SourceNode& node, const double* coefficients, int m)
       : coefficient(coefficients + 2 * multipole_index(m, m, node.order)), step(&kSteps[multipole_index(m, m)]) {}
 
-  template <bool kMixed>
+  // The term of degree n, where the lane's own degree is not less.
   HWY_INLINE void add(int n, Lanes degrees, Lanes wz, Lanes inverse) {
-    Lanes used = b;
-    if constexpr (kMixed) used = hn::IfThenElseZero(hn::Ge(degrees, hn::Set(d, kDegrees[static_cast<unsigned>(n)])), b);
+    const auto used = hn::Ge(degrees, hn::Set(d, kDegrees[static_cast<unsigned>(n)]));
+    add_used(hn::IfThenElseZero(used, b), wz, inverse);
+  }
+  HWY_INLINE void add(Lanes wz, Lanes inverse) { add_used(b, wz, inverse); }
+
+ private:
+  HWY_INLINE void add_used(Lanes used, Lanes wz, Lanes inverse) {
     re = hn::Add(re, hn::Mul(hn::Set(d, coefficient[0]), used));
     im = hn::Add(im, hn::Mul(hn::Set(d, coefficient[1]), used));
     const Lanes next = hn::Sub(hn::Mul(wz, b), hn::Mul(hn::Set(d, *step), hn::Mul(inverse, before)));
@@ -70,95 +78,150 @@ struct OrderSum {
   }
 };
 
-// The expansion cut off behind degree p; where kMixed, behind the lane's own degree, which p is the largest of. The
-// same bits either way.
-template <bool kMixed>
-HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, int p, Lanes degrees,
+// Where the lanes cut an expansion off: behind degree `all` at least, `most` at most, each behind its own of `degrees`.
+struct Degrees {
+  int all, most;
+  Lanes each;  // of no meaning where all = most
+};
+
+// The sum over m, from the highest order down: each time what is there times (x + iy) / r^2, and the order's sum.
+struct Expansion {
+  const SourceNode& node;
+  const double* coefficients;
+  const Degrees& degrees;
+  Lanes wx, wy, wz, inverse;
+  Lanes re, im;
+
+  [[nodiscard]] HWY_INLINE OrderSum order(int m) const { return {node, coefficients, m}; }
+
+  // Orders that follow one another, from the highest down to m. Their sums are made together, so that the processor has
+  // more to do than to wait for a recurrence.
+  template <class... Orders>
+  HWY_INLINE void add_orders(int m, Orders... orders) {
+    const int all_begun = m + static_cast<int>(sizeof...(orders)) - 1;  // degree
+    int first = all_begun;
+    (add_terms(orders, first--, all_begun), ...);
+    int n = all_begun;
+    for (; n <= degrees.all; ++n) (orders.add(wz, inverse), ...);
+    for (; n <= degrees.most; ++n) (orders.add(n, degrees.each, wz, inverse), ...);
+    (add(orders), ...);
+  }
+
+ private:
+  // Of degrees [n, end).
+  HWY_INLINE void add_terms(OrderSum& order, int n, int end) const {
+    for (; n < end; ++n) {
+      if (n <= degrees.all) {
+        order.add(wz, inverse);
+      } else {
+        order.add(n, degrees.each, wz, inverse);
+      }
+    }
+  }
+
+  HWY_INLINE void add(const OrderSum& order) {
+    const Lanes next_re = hn::Add(hn::Sub(hn::Mul(re, wx), hn::Mul(im, wy)), order.re);
+    im = hn::Add(hn::Add(hn::Mul(re, wy), hn::Mul(im, wx)), order.im);
+    re = next_re;
+  }
+};
+
+HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, const Degrees& degrees,
                            const LanesOfPoints& r) {
   const Lanes scale = hn::Set(d, 1 / node.unit);
   const LanesOfPoints s{hn::Mul(r.x, scale), hn::Mul(r.y, scale), hn::Mul(r.z, scale)};
   const Lanes inverse = hn::Div(hn::Set(d, 1.0), square_of(s));
-  const Lanes wx = hn::Mul(s.x, inverse), wy = hn::Mul(s.y, inverse), wz = hn::Mul(s.z, inverse);
-  Lanes re = hn::Zero(d), im = hn::Zero(d);
-  const auto add_order = [&](const OrderSum& order) {  // times (x + iy) / r^2, plus it
-    const Lanes next_re = hn::Add(hn::Sub(hn::Mul(re, wx), hn::Mul(im, wy)), order.re);
-    im = hn::Add(hn::Add(hn::Mul(re, wy), hn::Mul(im, wx)), order.im);
-    re = next_re;
-  };
-  // Two orders at a time, so that the processor has more to do than to wait for a recurrence.
-  int m = p;
-  for (; m >= 1; m -= 2) {
-    OrderSum upper(node, coefficients, m), lower(node, coefficients, m - 1);
-    lower.template add<kMixed>(m - 1, degrees, wz, inverse);
-    for (int n = m; n <= p; ++n) {
-      upper.template add<kMixed>(n, degrees, wz, inverse);
-      lower.template add<kMixed>(n, degrees, wz, inverse);
-    }
-    add_order(upper);
-    add_order(lower);
+  Expansion sum{node,    coefficients, degrees,    hn::Mul(s.x, inverse), hn::Mul(s.y, inverse), hn::Mul(s.z, inverse),
+                inverse, hn::Zero(d),  hn::Zero(d)};
+  // As many together as there are registers for. What they leave over is of the highest orders, the shortest ones.
+  constexpr int kTogether = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
+  int m = degrees.most;
+  for (; (m + 1) % kTogether != 0; --m) sum.add_orders(m, sum.order(m));
+  if constexpr (kTogether == 4) {
+    for (; m >= 0; m -= 4) sum.add_orders(m - 3, sum.order(m), sum.order(m - 1), sum.order(m - 2), sum.order(m - 3));
+  } else {
+    for (; m >= 0; m -= 2) sum.add_orders(m - 1, sum.order(m), sum.order(m - 1));
   }
-  if (m == 0) {
-    OrderSum last(node, coefficients, 0);
-    for (int n = 0; n <= p; ++n) last.template add<kMixed>(n, degrees, wz, inverse);
-    add_order(last);
-  }
-  return hn::Mul(re, hn::Sqrt(inverse));
+  return hn::Mul(sum.re, hn::Sqrt(inverse));
 }
 
-// The expansion at lanes that are far enough for one of its degrees, each cut off as early as its distance allows.
-HWY_INLINE Lanes multipole_at(const SourceNode& node, const double* coefficients, hn::Mask<Doubles> accepted,
-                              Lanes square, const LanesOfPoints& r) {
-  const auto needs = [&](int p) {  // lanes that degrees up to p do not serve
-    return hn::And(accepted, hn::Lt(square, hn::Set(d, node.square_of_distance[static_cast<std::size_t>(p)])));
+// The degrees that serve lanes as far away as `square` says, none above the node's order.
+HWY_INLINE Degrees degrees_at(const SourceNode& node, hn::Mask<Doubles> accepted, Lanes square) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto degree_at = [&](double distance, int p) {
+    while (p > 1 && distance >= node.square_of_distance[static_cast<std::size_t>(p - 1)]) --p;
+    return p;
   };
-  int p = node.order;
-  while (hn::AllFalse(d, needs(p - 1))) --p;
-  const auto all = needs(p - 1);
-  if (hn::CountTrue(d, all) == hn::CountTrue(d, accepted)) {
-    return multipole<false>(node, coefficients, p, hn::Zero(d), r);
+  const double nearest = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(accepted, square, hn::Set(d, kInfinity))));
+  const double farthest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(accepted, square)));
+  const int most = degree_at(nearest, node.order), all = degree_at(farthest, most);
+  Lanes each = hn::Set(d, kDegrees[static_cast<unsigned>(all)]);
+  for (int k = all; k < most; ++k) {
+    const auto served = hn::Ge(square, hn::Set(d, node.square_of_distance[static_cast<std::size_t>(k)]));
+    each = hn::Add(each, hn::IfThenElse(served, hn::Zero(d), hn::Set(d, 1.0)));
   }
-  Lanes degrees = hn::Set(d, 1.0);
-  for (int k = 1; k < p; ++k) degrees = hn::Add(degrees, hn::IfThenElseZero(needs(k), hn::Set(d, 1.0)));
-  return multipole<true>(node, coefficients, p, degrees, r);
+  return {all, most, each};
 }
 
-// Walks the tree with the lanes from sample i on. A lane that has taken a node as far is out until the node is over.
-void sum_group(const SourceTree& tree, const SampleTile& samples, std::size_t i, FarTile& result) {
-  const std::span<const SourceNode> nodes = tree.nodes();
-  const double* coefficients = tree.coefficients().data();
-  const LanesOfPoints q = points_at(samples, i);
-  const auto counted = hn::FirstN(d, samples.count - i);
-  Lanes far = hn::Zero(d), until = hn::Zero(d);
-  for (std::size_t k = 0; k < nodes.size();) {
-    const SourceNode& node = nodes[k];
-    auto near = hn::Ge(hn::Set(d, static_cast<double>(k)), until);
-    const LanesOfPoints r = seen_from(node.centre, q);
+// Samples on their way through the tree. A lane that has taken a node as far is out until the node is over.
+struct Walk {
+  const SourceTree& tree;
+  const SampleTile& samples;
+  FarTile& result;
+  alignas(64) Tile until{};
+
+  // Lanes from sample i on that have not taken a node above node k.
+  [[nodiscard]] HWY_INLINE hn::Mask<Doubles> open(std::size_t i, std::size_t k) const {
+    return hn::Ge(hn::Set(d, static_cast<double>(k)), hn::Load(d, &until[i]));
+  }
+  [[nodiscard]] HWY_INLINE std::size_t count(hn::Mask<Doubles> lanes, std::size_t i) const {
+    return hn::CountTrue(d, hn::And(lanes, hn::FirstN(d, samples.count - i)));
+  }
+
+  // Takes node k where it is far enough; whether it is too near for any of the lanes from sample i on.
+  HWY_INLINE bool take(std::size_t k, std::size_t i) {
+    const SourceNode& node = tree.nodes()[k];
+    const auto entered = open(i, k);
+    const LanesOfPoints r = seen_from(node.centre, points_at(samples, i));
     const Lanes square = square_of(r);
     const double least = node.square_of_distance[static_cast<std::size_t>(node.order)];
-    const auto accepted = hn::And(near, hn::Ge(square, hn::Set(d, least)));
-    if (!hn::AllFalse(d, accepted)) {
-      const Lanes value = multipole_at(node, coefficients + node.first_coefficient, accepted, square, r);
-      far = hn::IfThenElse(accepted, hn::Add(far, value), far);
-      until = hn::IfThenElse(accepted, hn::Set(d, static_cast<double>(node.next)), until);
-      near = hn::AndNot(accepted, near);
-      result.far_terms += hn::CountTrue(d, hn::And(accepted, counted));
-      if (hn::AllFalse(d, near)) {
-        k = node.next;
-        continue;
-      }
-    }
-    for (std::size_t chunk = node.first_chunk; chunk < node.last_chunk; ++chunk) {
-      multiply_chunk(result.near, tree.corners().chunk(chunk), samples, i, near);
-    }
-    result.near_terms += (node.own_end - node.begin) * hn::CountTrue(d, hn::And(near, counted));
-    ++k;
+    const auto accepted = hn::And(entered, hn::Ge(square, hn::Set(d, least)));
+    if (hn::AllFalse(d, accepted)) return !hn::AllFalse(d, entered);
+    const double* coefficients = tree.coefficients().data() + node.first_coefficient;
+    const Lanes value = multipole(node, coefficients, degrees_at(node, accepted, square), r);
+    const Lanes far = hn::Load(d, &result.far[i]);
+    hn::Store(hn::IfThenElse(accepted, hn::Add(far, value), far), d, &result.far[i]);
+    const Lanes next = hn::Set(d, static_cast<double>(node.next));
+    hn::Store(hn::IfThenElse(accepted, next, hn::Load(d, &until[i])), d, &until[i]);
+    result.far_terms += count(accepted, i);
+    return !hn::AllTrue(d, hn::Or(accepted, hn::Not(entered)));
   }
-  hn::Store(far, d, &result.far[i]);
-}
 
+  HWY_INLINE void multiply_own(std::size_t k) {
+    const SourceNode& node = tree.nodes()[k];
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+      const auto near = open(i, k);
+      if (hn::AllFalse(d, near)) continue;
+      for (std::size_t chunk = node.first_chunk; chunk < node.last_chunk; ++chunk) {
+        multiply_chunk(result.near, tree.corners().chunk(chunk), samples, i, near);
+      }
+      result.near_terms += (node.own_end - node.begin) * count(near, i);
+    }
+  }
+};
+
+// Node by node for all samples: neighbours in space need much the same nodes, which come from memory once.
 void sum_here(const SourceTree& tree, const SampleTile& samples, FarTile& result) {
   set_ones(result.near);
-  for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) sum_group(tree, samples, i, result);
+  result.far.fill(0.0);
+  Walk walk{tree, samples, result};
+  const std::span<const SourceNode> nodes = tree.nodes();
+  for (std::size_t k = 0; k < nodes.size();) {
+    bool near = false;
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) near |= walk.take(k, i);
+    if (near && nodes[k].first_chunk < nodes[k].last_chunk) walk.multiply_own(k);
+    k = near ? k + 1 : nodes[k].next;
+  }
   set_arguments(result.near, samples.count);
 }
 
@@ -166,8 +229,8 @@ void add_multipole_here(const SourceTree& tree, std::uint32_t number, int p, con
   const SourceNode& node = tree.nodes()[number];
   const double* coefficients = tree.coefficients().data() + node.first_coefficient;
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-    const LanesOfPoints r = seen_from(node.centre, points_at(samples, i));
-    const Lanes value = multipole<false>(node, coefficients, p, hn::Zero(d), r);
+    const Lanes value =
+        multipole(node, coefficients, {p, p, hn::Zero(d)}, seen_from(node.centre, points_at(samples, i)));
     hn::Store(hn::Add(hn::Load(d, &values[i]), value), d, &values[i]);
   }
 }

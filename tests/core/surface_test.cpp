@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
@@ -22,6 +23,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/surface/edge_crossing.h"
+#include "core/surface/merge_planes.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/vertex_places.h"
@@ -358,6 +360,39 @@ TEST(Surface, OfABoxOfManyBricksHasFewFaces) {
   const auto [coarse, coarse_lattice] = surface_of(mesh, 20);
   // Where edges are cut off between outside nodes, faces are left, a number for each voxel of the edges.
   EXPECT_LT(turned.mesh.triangles.size(), 6 * coarse.mesh.triangles.size());
+}
+
+// With the vertices that faces have.
+TriangleMesh compacted(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  TriangleMesh mesh;
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  for (Triangle t : triangles) {
+    for (std::uint32_t& corner : t) {
+      const auto [at, is_new] = numbers.try_emplace(corner, static_cast<std::uint32_t>(mesh.vertices.size()));
+      if (is_new) mesh.vertices.push_back(vertices[corner]);
+      corner = at->second;
+    }
+    mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+// Bricks that meet share vertices, and so would share edges that each of them makes by itself. With limits that are
+// wide vertices of curved parts are pulled, too: faces may cross one another then, but every edge is still one of two
+// faces.
+TEST(MergedFaces, CloseUpWhereBricksMeet) {
+  for (const TriangleMesh& mesh : {rotated(test::box_mesh({0, 0, 0}, {1, 1.5, 0.7})), rotated(cylinder())}) {
+    const auto [fine, lattice] = surface_of(mesh, 80, {.rule = {}, .merge_planes = false});
+    const NodeSet nodes = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+    const std::vector<bool> kept(fine.mesh.vertices.size(), false);
+    for (const double most : {1e-9, 0.01, 0.3}) {
+      const MergedFaces merged = merge_planes(fine, mesh, lattice, kept, {most * lattice.spacing.x, 0.0});
+      EXPECT_LT(4 * merged.triangles.size(), fine.mesh.triangles.size());
+      const SurfaceFaults faults = faults_of(compacted(fine.mesh.vertices, merged.triangles), nodes);
+      EXPECT_EQ(faults.edges, 0U) << most;
+      EXPECT_EQ(faults.links, 0U) << most;
+    }
+  }
 }
 
 // The opening of the box is in a plane of nodes, which are inside. Merged with the rim, which is at these nodes, it

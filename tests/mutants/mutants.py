@@ -438,8 +438,8 @@ MUTANTS = [
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/patch_merger.cpp", "if (!(planes_[checked].distance(p) <= limits_.most)) return false;",
          "if (!(planes_[checked].distance(p) <= 1e9 * limits_.most)) return false;")]),
-    Mutant("bricks_share_borders", "a brick does not pull into vertices that have faces in others", [
-        ("core/surface/merge_planes.cpp", "!is_own(v) ? VertexRole::kForeign", "!is_own(v) ? VertexRole::kKept")]),
+    Mutant("bricks_own_borders", "vertices that have faces in two bricks are neither's", [
+        ("core/surface/merge_planes.cpp", "met[corner] && result.owner[corner] != brick ? kNone : brick", "brick")]),
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [

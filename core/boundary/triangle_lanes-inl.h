@@ -145,8 +145,8 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
 }
 
 // Multiplies the factors of triangles [begin, end) onto the products of those of the samples from i on that are
-// `active`.
-template <class Rays>
+// `active`. `kCertain`: it is known beforehand that all factors are trusted.
+template <bool kCertain = false, class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, const Rays& rays,
                                const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                hn::Mask<Doubles> active) {
@@ -155,7 +155,7 @@ HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTrian
   auto trusted = active;
   for (std::size_t n = begin; n < end; ++n) {
     const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
-    trusted = hn::And(trusted, factors.trusted);
+    if constexpr (!kCertain) trusted = hn::And(trusted, factors.trusted);
     z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
   }
   trusted = hn::And(trusted, is_sound(z));

@@ -76,31 +76,74 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
   return kUnit * direct_cost(mesh) * samples;
 }
 
+namespace {
+
+// What a block's sums become.
+class BlockValues {
+ public:
+  BlockValues(const ScaledMesh& mesh, const LatticeAxes& axes, std::span<double> values)
+      : mesh_(mesh), axes_(axes), values_(values), doubt_(mesh.doubt_of_blocks()) {}
+
+  // The samples from (x, y, z) on, all with the same crossings, less those of the caps; `first` is the first one's
+  // value.
+  void set(std::size_t first, const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,
+           double cap_crossings) const {
+    const std::span<double> values = values_.subspan(first, sums.size());
+    const double whole = crossings - cap_crossings;
+    double least = 1.0;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      values[i] = whole + sums[i];
+      least = std::min(least, gap_to_half_integer(values[i]));
+    }
+    if (least <= doubt_) sum_doubtful(values, sample, static_cast<std::int64_t>(crossings));
+  }
+
+ private:
+  void sum_doubtful(std::span<double> values, const std::array<std::size_t, 3>& sample, std::int64_t crossings) const {
+    LatticeTile tile(mesh_, SetValue{values}, LatticeTile<SetValue>::Sum::kDirect);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (gap_to_half_integer(values[i]) > doubt_) continue;
+      tile.add(i, {axes_[0][sample[0] + i], axes_[1][sample[1]], axes_[2][sample[2]]}, crossings);
+    }
+    tile.evaluate();
+  }
+
+  const ScaledMesh& mesh_;
+  const LatticeAxes& axes_;
+  std::span<double> values_;
+  double doubt_;
+};
+
+}  // namespace
+
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     std::span<double> values, std::span<const double> cap_crossings,
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done) {
   std::array<SampleRange, 3> part;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto begin = static_cast<std::uint32_t>(block.first[a] - lattice.index_min[a]);
     part[a] = {begin, begin + static_cast<std::uint32_t>(block.counts[a])};
   }
-  const bool counts = mesh.counts_crossings();
-  const double doubt = mesh.doubt_of_blocks();
+  const BlockValues of_block(mesh, axes, values);
   mesh.blocks().sums.for_each_row(
       axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
         const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
-        const std::size_t first = row * part[0].size() + x - part[0].begin;
-        LatticeTile doubtful(mesh, SetValue{values}, LatticeTile<SetValue>::Sum::kDirect);
-        for (std::size_t i = 0; i < sums.size(); ++i) {
-          const std::size_t n = first + i;
-          const double w = (counts ? values[n] - cap_crossings[n] : 0.0) + sums[i];
-          if (gap_to_half_integer(w) > doubt) {
-            values[n] = w;
-            continue;
-          }
-          doubtful.add(n, {axes[0][x + i], axes[1][y], axes[2][z]}, counts ? static_cast<std::int64_t>(values[n]) : 0);
+        const std::size_t start = row * part[0].size();  // of the row's values
+        const std::size_t in_row = x - part[0].begin;
+        const auto set = [&](std::size_t begin, std::size_t end, double n, double caps) {
+          of_block.set(start + begin, {part[0].begin + begin, y, z}, sums.subspan(begin - in_row, end - begin), n,
+                       caps);
+          return true;
+        };
+        if (mesh.counts_crossings()) {
+          const CrossingsOfRow of_row = crossings(row);
+          of_row.mesh.for_each(in_row, in_row + sums.size(), [&](std::size_t begin, std::size_t end, double n) {
+            return of_row.caps.for_each(
+                begin, end, [&](std::size_t from, std::size_t to, double caps) { return set(from, to, n, caps); });
+          });
+        } else {
+          set(in_row, in_row + sums.size(), 0.0, 0.0);
         }
-        doubtful.evaluate();
         if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
       });
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
-#include "core/crossings/lattice_rows.h"
+#include "core/crossings/lattice_sums.h"
 #include "core/data/lattice.h"
 #include "core/evaluation/scaled_mesh.h"
 #include "core/far/lattice_blocks.h"
@@ -22,11 +24,18 @@ namespace raycone {
 // are looked at, which takes their trees; without, what a direct sum takes.
 [[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field);
 
-// `values` are the crossings of the samples of `block`, x fastest, and `cap_crossings` those of mesh.blocks().caps; of
-// no account where values do not depend on crossings. Turns each into the winding number within the tolerance. A value
-// that may be a half-integer, where rules have their thresholds, is as ScaledMesh::set_values() sets it. `done`, where
-// given, grows by one per sample. Needs DefaultFloatingPoint.
+// The crossings of row j + k * block.counts[1] of a block: of its mesh, and of mesh.blocks().caps.
+struct CrossingsOfRow {
+  RowRuns mesh, caps;
+};
+
+// Sets `values` of the samples of `block`, x fastest, to winding numbers within the tolerance. `crossings` is asked for
+// each row, several times and by several threads; never where values do not depend on crossings. Values of samples that
+// have been set already are not among what it may look at. A value that may be a half-integer, where rules have their
+// thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs
+// DefaultFloatingPoint.
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     std::span<double> values, std::span<const double> cap_crossings, std::atomic<std::uint64_t>* done);
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
+                     std::atomic<std::uint64_t>* done);
 
 }  // namespace raycone

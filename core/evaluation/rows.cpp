@@ -120,15 +120,35 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
   return on_surface;
 }
 
-std::vector<double> crossings_of(const TriangleMesh& caps, const LatticeRows& rows) {
-  std::vector<double> crossings(rows.size() * rows.xs.size());
-  LatticeSums sums(rows.size(), rows.xs.size(), crossings, nullptr);
+// Of caps, finished.
+void sum_crossings(const TriangleMesh& caps, const LatticeRows& rows, LatticeSums& sums) {
   scan_triangles(caps, rows, std::nullopt, sums);
   sums.arrange();
-  parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) sums.finish(row);
   });
-  return crossings;
+}
+
+// Of a block that the scaled mesh can take, by blocks of samples.
+Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice,
+                              const LatticeBlock& block, const LatticeRows& rows, std::span<double> values,
+                              std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const std::size_t samples = rows.xs.size();
+  // Diagnostics take the crossings of each sample, and leave them in `values`.
+  LatticeSums sums = diagnostics               ? LatticeSums(rows.size(), samples, values, diagnostics)
+                     : mesh.counts_crossings() ? LatticeSums(rows.size(), samples)
+                                               : LatticeSums(rows.size(), samples, {}, nullptr);
+  collect_crossings(mesh, lattice, block, rows, sums);
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, nullptr, diagnostics, true);
+  LatticeSums of_caps(rows.size(), samples);
+  sum_crossings(mesh.blocks().caps, rows, of_caps);
+  const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
+    const std::span<const double> each = values.subspan(row * samples, samples);
+    return {diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};
+  };
+  evaluate_blocks(mesh, axes, lattice, block, crossings_of_row, values, done);
+  if (diagnostics) bound_all_errors(mesh, rows, values, *diagnostics);
+  return {sums.ties(), on_surface};
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
@@ -136,19 +156,15 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
-  const bool counts = mesh.counts_crossings() || diagnostics;
   const bool scaled = &mesh == &meshes.scaled();
-  const std::optional<LatticeAxes> axes = scaled ? axes_for_blocks(mesh, lattice) : std::nullopt;
+  if (const std::optional<LatticeAxes> axes = scaled ? axes_for_blocks(mesh, lattice) : std::nullopt) {
+    return evaluate_part_by_blocks(mesh, *axes, lattice, block, rows, values, done, diagnostics);
+  }
+  const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   collect_crossings(mesh, lattice, block, rows, sums);
-  const bool in_bricks = !axes && mesh.has_far_field();
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, axes || in_bricks);
-  if (axes) {
-    const std::vector<double> cap_crossings =
-        mesh.counts_crossings() ? crossings_of(mesh.blocks().caps, rows) : std::vector<double>();
-    evaluate_blocks(mesh, *axes, lattice, block, values, cap_crossings, done);
-    if (diagnostics) bound_all_errors(mesh, rows, values, *diagnostics);
-  }
+  const bool in_bricks = mesh.has_far_field();
+  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, in_bricks);
   if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
   return {sums.ties(), on_surface};
 }

@@ -18,6 +18,10 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
+using Eight = std::array<double, 8>;
+
+HWY_INLINE Lanes load(const Eight& eight, std::size_t first = 0) { return hn::Load(d, &eight[first]); }
+
 // A chunk as seen from a group of samples.
 class TrianglesOfChunk {
  public:
@@ -58,30 +62,126 @@ class TrianglesOfChunk {
   }
 
  private:
-  using Eight = std::array<double, 8>;
   struct Corner {
     alignas(64) Eight x, y, z, norm;
   };
-  static HWY_INLINE Lanes load(const Eight& eight) { return hn::Load(d, eight.data()); }
 
   const SharedCorners::Chunk& chunk_;
   const SampleTile& samples_;
   std::array<Corner, 3 * SharedCorners::kInChunk> corners_;
 };
 
+// A chunk as seen from a tile of rows. What x contributes to a product is the same in all rows, what y and z contribute
+// is one number of each: of every product one sum is left to each sample.
+class TrianglesOfRows {
+ public:
+  TrianglesOfRows(const SharedCorners::Chunk& chunk, const SampleTile& samples) : chunk_(chunk) {
+    alignas(64) Eight ys;
+    for (std::size_t row = 0; row < ys.size(); ++row) ys[row] = samples.y[std::min(8 * row, samples.count - 8)];
+    for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) {
+      set_corners(i, hn::Load(d, &samples.x[i]), load(ys, i), samples.z[0]);
+      for (std::size_t n = 0; n < chunk_.triangles.size(); ++n) set_triangle(n, i);
+    }
+  }
+
+  // Looks at the corners from the samples from i on.
+  void begin(std::size_t i) {
+    row_ = i / 8;
+    in_row_ = i % 8;
+    for (std::size_t n = 0; n < chunk_.corners.size(); ++n) {
+      const Corner& corner = corners_[n];
+      hn::Store(hn::Sqrt(sum(corner.square)), d, norms_[n].data());
+    }
+  }
+
+  [[nodiscard]] HWY_INLINE TriangleFactors factors(std::size_t n) const {
+    const auto& [a, b, c] = chunk_.places[n];
+    const Products& p = products_[n];
+    return factors_of(chunk_.triangles[n],
+                      {load(norms_[a]), load(norms_[b]), load(norms_[c]), sum(p.ab), sum(p.bc), sum(p.ca)}, sum(p.side),
+                      sum(p.terms));
+  }
+
+ private:
+  // By x for the samples of a row, by y and z for the rows.
+  struct Sum {
+    alignas(64) Eight by_x, by_row;
+  };
+  struct Corner {
+    alignas(64) Eight x, y;
+    double z;
+    Sum square;
+  };
+  struct Products {
+    Sum ab, bc, ca, side, terms;
+  };
+
+  [[nodiscard]] HWY_INLINE Lanes sum(const Sum& s) const {
+    return hn::Add(load(s.by_x, in_row_), hn::Set(d, s.by_row[row_]));
+  }
+
+  // Of samples and of rows from i on.
+  void set_corners(std::size_t i, Lanes qx, Lanes qy, double qz) {
+    for (std::size_t n = 0; n < chunk_.corners.size(); ++n) {
+      const Vec3& p = chunk_.corners[n];
+      Corner& corner = corners_[n];
+      const Lanes x = hn::Sub(hn::Set(d, p.x), qx), y = hn::Sub(hn::Set(d, p.y), qy);
+      corner.z = p.z - qz;
+      hn::Store(x, d, &corner.x[i]);
+      hn::Store(y, d, &corner.y[i]);
+      hn::Store(hn::Mul(x, x), d, &corner.square.by_x[i]);
+      hn::Store(hn::Add(hn::Mul(y, y), hn::Set(d, corner.z * corner.z)), d, &corner.square.by_row[i]);
+    }
+  }
+  void set_triangle(std::size_t n, std::size_t i) {
+    const SolidTriangle& t = chunk_.triangles[n];
+    const auto& [at_a, at_b, at_c] = chunk_.places[n];
+    const Corner &a = corners_[at_a], &b = corners_[at_b], &c = corners_[at_c];
+    Products& products = products_[n];
+    const auto set_product = [&](const Corner& v, const Corner& w, Sum& product) {
+      hn::Store(hn::Mul(load(v.x, i), load(w.x, i)), d, &product.by_x[i]);
+      hn::Store(hn::Add(hn::Mul(load(v.y, i), load(w.y, i)), hn::Set(d, v.z * w.z)), d, &product.by_row[i]);
+    };
+    set_product(a, b, products.ab);
+    set_product(b, c, products.bc);
+    set_product(c, a, products.ca);
+    const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), load(a.x, i));
+    const Lanes ny = hn::Mul(hn::Set(d, t.normal.y), load(a.y, i)), nz = hn::Set(d, t.normal.z * a.z);
+    hn::Store(nx, d, &products.side.by_x[i]);
+    hn::Store(hn::Abs(nx), d, &products.terms.by_x[i]);
+    hn::Store(hn::Add(ny, nz), d, &products.side.by_row[i]);
+    hn::Store(hn::Add(hn::Abs(ny), hn::Abs(nz)), d, &products.terms.by_row[i]);
+  }
+
+  const SharedCorners::Chunk chunk_;
+  std::size_t row_ = 0, in_row_ = 0;
+  std::array<Corner, 3 * SharedCorners::kInChunk> corners_;
+  alignas(64) std::array<Eight, 3 * SharedCorners::kInChunk> norms_;
+  std::array<Products, SharedCorners::kInChunk> products_;
+};
+
 HWY_INLINE TriangleFactors factors_at(const TrianglesOfChunk& triangles, const SolidTriangle&, std::size_t n,
                                       const SampleTile&, std::size_t) {
   return triangles.factors(n);
 }
+HWY_INLINE TriangleFactors factors_at(const TrianglesOfRows& triangles, const SolidTriangle&, std::size_t n,
+                                      const SampleTile&, std::size_t) {
+  return triangles.factors(n);
+}
 
-// Multiplies the factors of a chunk onto the products of those of the samples from i on that are `active`.
-HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk& chunk, const SampleTile& samples,
-                               std::size_t i, hn::Mask<Doubles> active) {
-  TrianglesOfChunk views(chunk, samples);
+// Multiplies the factors of a chunk onto the products of those of the samples from i on that are `active`. `small`: it
+// looks small from all of these.
+template <class Views>
+HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
+                               const SampleTile& samples, std::size_t i, hn::Mask<Doubles> active, bool small) {
   views.begin(i);
   for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
-    multiply_block(products, chunk.triangles, views, samples, i, begin,
-                   std::min(begin + kFactorsPerBlock, chunk.triangles.size()), active);
+    const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());
+    if (small) {
+      multiply_block<true>(products, chunk.triangles, views, samples, i, begin, end, active);
+    } else {
+      multiply_block(products, chunk.triangles, views, samples, i, begin, end, active);
+    }
   }
 }
 

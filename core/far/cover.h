@@ -1,6 +1,8 @@
 // Lists of triangles as the tree of sources sees them from afar.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,21 +35,28 @@ struct Cover {
 // Sums of a cover at the samples of tiles.
 class CoverSums {
  public:
-  CoverSums(const SourceTree& tree, const Cover& cover, SharedCornersKernel shared_corners, const FarKernel& far)
-      : tree_(tree),
-        cover_(cover),
-        triangles_(gathered(tree, cover.triangles)),
-        corners_(triangles_),
-        shared_corners_(shared_corners),
-        far_(far) {}
+  // All samples must be within the box.
+  CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, SharedCornersKernel shared_corners,
+            const FarKernel& far)
+      : tree_(tree), cover_(cover), shared_corners_(shared_corners), far_(far) {
+    triangles_.reserve(cover.triangles.size());
+    for (const std::uint32_t n : cover.triangles) triangles_.push_back(tree.triangles()[n]);
+    const auto small = static_cast<std::size_t>(
+        std::stable_partition(triangles_.begin(), triangles_.end(),
+                              [&](const SolidTriangle& t) { return looks_small_from(t, samples); }) -
+        triangles_.begin());
+    corners_ = SharedCorners::without_groups(triangles_);
+    corners_.add_group(small, true);
+    corners_.add_group(triangles_.size() - small);
+  }
 
   // visit(i, turns, rest) for each sample of the tile: the sum of both, the turns being whole.
   template <class Visit>
-  void evaluate(SampleTile& tile, const Visit& visit) {
+  void evaluate(SampleTile& tile, TileShape shape, const Visit& visit) {
     tile.fill_up();
     Tile far{};
     for (const auto& [node, degree] : cover_.expansions) far_.add_multipole(tree_, node, degree, tile, far);
-    if (corners_.chunks() > 0) shared_corners_(corners_, tile, products_);
+    if (corners_.chunks() > 0) shared_corners_(corners_, tile, shape, products_);
     for (std::size_t i = 0; i < tile.count; ++i) {
       if (corners_.chunks() > 0) {
         visit(i, static_cast<double>(products_.turns(i)), products_.argument[i] + far[i]);
@@ -58,16 +67,9 @@ class CoverSums {
   }
 
  private:
-  static std::vector<SolidTriangle> gathered(const SourceTree& tree, std::span<const std::uint32_t> numbers) {
-    std::vector<SolidTriangle> all;
-    all.reserve(numbers.size());
-    for (const std::uint32_t n : numbers) all.push_back(tree.triangles()[n]);
-    return all;
-  }
-
   const SourceTree& tree_;
   const Cover& cover_;
-  std::vector<SolidTriangle> triangles_;
+  std::vector<SolidTriangle> triangles_;  // first those that look small
   SharedCorners corners_;
   SharedCornersKernel shared_corners_;
   FarKernel far_;

@@ -202,8 +202,12 @@ struct Walk {
     for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
       const auto near = open(i, k);
       if (hn::AllFalse(d, near)) continue;
-      for (std::size_t chunk = node.first_chunk; chunk < node.last_chunk; ++chunk) {
-        multiply_chunk(result.near, tree.corners().chunk(chunk), samples, i, near);
+      const Lanes square = square_of(seen_from(node.centre, points_at(samples, i)));
+      const bool small = hn::AllTrue(d, hn::Ge(square, hn::Set(d, node.square_of_small)));
+      for (std::size_t n = node.first_chunk; n < node.last_chunk; ++n) {
+        const SharedCorners::Chunk chunk = tree.corners().chunk(n);
+        TrianglesOfChunk views(chunk, samples);
+        multiply_chunk(result.near, chunk, views, samples, i, near, small);
       }
       result.near_terms += (node.own_end - node.begin) * count(near, i);
     }

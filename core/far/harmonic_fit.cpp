@@ -239,7 +239,7 @@ HarmonicFit::HarmonicFit() {
 }
 
 void HarmonicFit::fit(std::span<const double> values, std::span<Coefficients> polynomials,
-                      MatrixKernel multiply) const {
+                      const MatrixKernel& kernel) const {
   std::vector<double> mixed(values.begin(), values.end());  // sums over mirror images, with the sign of each parity
   constexpr std::size_t kNumbers = kOctant * kTogether;
   for (const std::size_t step : {4U, 2U, 1U}) {
@@ -258,8 +258,8 @@ void HarmonicFit::fit(std::span<const double> values, std::span<Coefficients> po
   for (std::size_t parity = 0; parity < 8; ++parity) {
     const ParityClass& c = classes_[parity];
     coefficients.resize(c.places.size() * kTogether);
-    multiply({c.matrix.data(), kOctant, 1}, {&mixed[parity * kNumbers], kTogether}, {coefficients.data(), kTogether},
-             c.places.size(), kOctant, kTogether);
+    kernel.multiply({c.matrix.data(), kOctant, 1}, {&mixed[parity * kNumbers], kTogether},
+                    {coefficients.data(), kTogether}, c.places.size(), kOctant, kTogether);
     for (std::size_t term = 0; term < c.places.size(); ++term) {
       for (std::size_t f = 0; f < polynomials.size(); ++f) {
         polynomials[f][c.places[term]] = coefficients[term * kTogether + f];

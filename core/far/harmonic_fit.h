@@ -29,7 +29,7 @@ class HarmonicFit {
   [[nodiscard]] const Vec3& node(std::size_t n) const { return nodes_[n]; }
 
   // The value of function f at node n is values[n * kTogether + f]. Sets the first polynomials.size() of kTogether.
-  void fit(std::span<const double> values, std::span<Coefficients> polynomials, MatrixKernel multiply) const;
+  void fit(std::span<const double> values, std::span<Coefficients> polynomials, const MatrixKernel& kernel) const;
 
   // No value of a fit exceeds the largest value at the nodes by this factor; rounding of a fit is within kRounding of
   // that value.

@@ -43,9 +43,24 @@ void set_chebyshev(std::vector<double>& rows, std::size_t degree, std::span<cons
   }
 }
 
+// Each row of coefficients times the matrix. Rows that are padded to the same length are multiplied together.
+void set_along_x(const Coefficients& polynomial, const Matrix& matrix, Coefficients& along_x,
+                 const MatrixKernel& kernel) {
+  std::array<std::vector<RaggedRow>, kPadded / 8> rows;
+  for (std::size_t terms = kTerms; terms > 0; --terms) {
+    for (std::size_t k = 0; k + terms <= kTerms; ++k) {
+      const std::size_t row = kRows.begin(kTerms - terms - k, k);
+      rows[(terms - 1) / 8].push_back({&polynomial[row], terms, &along_x[row]});
+    }
+  }
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    kernel.multiply_ragged(rows[n], {matrix[0].data(), kPadded}, 8 * (n + 1));
+  }
+}
+
 }  // namespace
 
-Coefficients on_cube(const Coefficients& polynomial, const Cube& from, const Cube& to, MatrixKernel multiply) {
+Coefficients on_cube(const Coefficients& polynomial, const Cube& from, const Cube& to, const MatrixKernel& kernel) {
   const double stretch = to.half / from.half;
   const Vec3 shift = to.centre - from.centre;
   std::array<Matrix, 3> parts;
@@ -53,13 +68,7 @@ Coefficients on_cube(const Coefficients& polynomial, const Cube& from, const Cub
     parts[static_cast<std::size_t>(axis)] = chebyshev_of_part(shift[axis] / from.half, stretch);
   }
   Coefficients along_x{}, along_y{}, all{};
-  for (std::size_t k = 0; k < kTerms; ++k) {
-    for (std::size_t j = 0; j + k < kTerms; ++j) {
-      const std::size_t row = kRows.begin(j, k), terms = kTerms - j - k;
-      multiply({&polynomial[row], 0, 1}, {parts[0][0].data(), kPadded}, {&along_x[row], 0}, 1, terms,
-               (terms + 7) / 8 * 8);
-    }
-  }
+  set_along_x(polynomial, parts[0], along_x, kernel);
   // Rows with fewer terms follow those with more, so that sums over rows need none beyond their own length.
   const auto add_row = [](double factor, const double* row, double* sum, std::size_t terms) {
     for (std::size_t i = 0; i < terms; ++i) sum[i] += factor * row[i];
@@ -106,15 +115,16 @@ std::span<const double> GridValues::evaluate(const Coefficients& polynomial, std
   layers_.resize(terms * layer);
   values_.resize(layer * zs.size());
   for (std::size_t k = 0; k < terms; ++k) {
+    ragged_.clear();
     for (std::size_t j = 0; j + k < terms; ++j) {
-      multiply_({&polynomial[kRows.begin(j, k)], 0, 1}, {along_x_.data(), row}, {&rows_[j * row], row}, 1,
-                terms - j - k, row);
+      ragged_.push_back({&polynomial[kRows.begin(j, k)], terms - j - k, &rows_[j * row]});
     }
-    multiply_({along_y_.data(), 1, row_size(ys.size())}, {rows_.data(), row}, {&layers_[k * layer], row}, ys.size(),
-              terms - k, row);
+    kernel_.multiply_ragged(ragged_, {along_x_.data(), row}, row);
+    kernel_.multiply({along_y_.data(), 1, row_size(ys.size())}, {rows_.data(), row}, {&layers_[k * layer], row},
+                     ys.size(), terms - k, row);
   }
-  multiply_({along_z_.data(), 1, row_size(zs.size())}, {layers_.data(), layer}, {values_.data(), layer}, zs.size(),
-            terms, layer);
+  kernel_.multiply({along_z_.data(), 1, row_size(zs.size())}, {layers_.data(), layer}, {values_.data(), layer},
+                   zs.size(), terms, layer);
   return values_;
 }
 

@@ -46,7 +46,7 @@ using Coefficients = std::array<double, kRows.size()>;
 
 // The same polynomial on a cube within the other, but for rounding.
 [[nodiscard]] Coefficients on_cube(const Coefficients& polynomial, const Cube& from, const Cube& to,
-                                   MatrixKernel multiply);
+                                   const MatrixKernel& kernel);
 
 struct Truncation {
   std::size_t degree;
@@ -59,7 +59,7 @@ struct Truncation {
 // The values of a polynomial up to a degree at all (x, y, z) of three lists, x fastest.
 class GridValues {
  public:
-  explicit GridValues(MatrixKernel multiply) : multiply_(multiply) {}
+  explicit GridValues(const MatrixKernel& kernel) : kernel_(kernel) {}
 
   // Valid until the next call: row (y, z) begins at (z * ys.size() + y) * row_size(xs.size()).
   [[nodiscard]] std::span<const double> evaluate(const Coefficients& polynomial, std::size_t degree, const Cube& cube,
@@ -68,9 +68,10 @@ class GridValues {
   [[nodiscard]] static std::size_t row_size(std::size_t samples) { return (samples + 7) / 8 * 8; }
 
  private:
-  MatrixKernel multiply_;
+  MatrixKernel kernel_;
   std::vector<double> along_x_, along_y_, along_z_;  // T_i of each sample: row i
-  std::vector<double> rows_, layers_, values_;       // with x, then y, then z put in
+  std::vector<RaggedRow> ragged_;
+  std::vector<double> rows_, layers_, values_;  // with x, then y, then z put in
 };
 
 }  // namespace raycone

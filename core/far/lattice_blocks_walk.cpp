@@ -6,7 +6,7 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
                                  const LatticeBlocks::Sink& sink) const {
   const std::size_t degree =
       block.field ? truncation(block.field->coefficients, kTruncationShare * blocks_.tolerance_).degree : 0;
-  GridValues grid(multiply_);
+  GridValues grid(matrices_);
   std::vector<double> numbers;
   std::array<std::size_t, 3> first, last, begin, end;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -58,26 +58,22 @@ void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std:
   }
   const Cover cover = cover_at_samples(block, first, last);
   count_terms(cover, (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]));
-  CoverSums cover_sums(blocks_.tree_, cover, shared_corners_, far_);
+  CoverSums cover_sums(blocks_.tree_, cover, box_of(first, last), shared_corners_, far_);
   SampleTile tile;
-  std::array<std::size_t, kTile> places;
-  const auto finish = [&] {
-    cover_sums.evaluate(tile, [&](std::size_t i, double turns, double rest) {
-      double& sum = sums.numbers[places[i]];
-      sum = turns + (rest + sum);
-    });
-    tile.clear();
-  };
   for (std::size_t z = begin[2]; z < end[2]; ++z) {
+    tile.clear();
     for (std::size_t y = begin[1]; y < end[1]; ++y) {
-      for (std::size_t x = begin[0]; x < end[0]; ++x) {
-        places[tile.count] = sums.place(x, y, z);
-        tile.add({axes_[0][x], axes_[1][y], axes_[2][z]});
-        if (tile.count == kTile) finish();
+      for (std::size_t i = 0; i < kSubBlock[0]; ++i) {
+        tile.add({axes_[0][std::min(begin[0] + i, end[0] - 1)], axes_[1][y], axes_[2][z]});
       }
     }
+    cover_sums.evaluate(tile, TileShape::kInRows, [&](std::size_t i, double turns, double rest) {
+      const std::size_t in_row = i % kSubBlock[0];
+      if (begin[0] + in_row >= end[0]) return;
+      double& sum = sums.numbers[sums.place(begin[0] + in_row, begin[1] + i / kSubBlock[0], z)];
+      sum = turns + (rest + sum);
+    });
   }
-  if (tile.count > 0) finish();
 }
 
 }  // namespace raycone

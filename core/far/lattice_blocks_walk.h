@@ -81,7 +81,7 @@ class LatticeBlocksWalk {
         axes_(axes),
         shared_corners_(shared_corners_kernel(blocks.level_)),
         far_(far_kernel(blocks.level_)),
-        multiply_(matrix_kernel(blocks.level_)) {
+        matrices_(matrix_kernel(blocks.level_)) {
     double levels = 3.0, samples = 1.0;
     for (const std::vector<double>& axis : axes) samples *= static_cast<double>(axis.size());
     for (; samples > kLargeBlock; samples /= 8) ++levels;
@@ -157,12 +157,12 @@ class LatticeBlocksWalk {
       add_at_nodes(division.far[n], division.children[n].cube, n, values);
     }
     if (!any) return;  // the parent's field, if any, does for all
-    HarmonicFit::instance().fit(values, fits, multiply_);
+    HarmonicFit::instance().fit(values, fits, matrices_);
     for (std::size_t n = 0; n < fits.size(); ++n) {
       if (division.far[n].cost == 0.0) continue;
       SampleBlock& child = division.children[n];
       if (child.field) {
-        const Coefficients other = on_cube(child.field->coefficients, child.field->cube, child.cube, multiply_);
+        const Coefficients other = on_cube(child.field->coefficients, child.field->cube, child.cube, matrices_);
         for (std::size_t i = 0; i < other.size(); ++i) fits[n][i] += other[i];
       }
       child.field = std::make_shared<const FieldOnCube>(FieldOnCube{child.cube, fits[n]});
@@ -184,13 +184,19 @@ class LatticeBlocksWalk {
     return axes_[axis][block.last[axis] - 1] - axes_[axis][block.first[axis]];
   }
 
+  // Cut so that sub-blocks are whole, but for those at the end of the lattice.
+  [[nodiscard]] static std::size_t middle_of(const SampleBlock& block, std::size_t axis) {
+    const std::size_t half = block.count(axis) / 2, step = kSubBlock[axis];
+    return block.first[axis] + (half < step ? half : (half + step / 2) / step * step);
+  }
+
   // The block cut in two along its longer axes.
   [[nodiscard]] std::vector<SampleBlock> halves(const SampleBlock& block) const {
     const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
     std::vector<SampleBlock> pieces{{block.first, block.last, {}, {}, 0.0, block.field}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (block.count(axis) < 2 || length(block, axis) <= 0.6 * longest) continue;
-      const std::size_t middle = block.first[axis] + block.count(axis) / 2, count = pieces.size();
+      const std::size_t middle = middle_of(block, axis), count = pieces.size();
       for (std::size_t n = 0; n < count; ++n) {
         SampleBlock upper = pieces[n];
         pieces[n].last[axis] = upper.first[axis] = middle;
@@ -254,10 +260,13 @@ class LatticeBlocksWalk {
     return box;
   }
 
-  [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const {
+  [[nodiscard]] static Box box_of(const Cube& cube) {
     const Vec3 half{cube.half, cube.half, cube.half};
-    return cover_in(blocks_.tree_, far, {cube.centre - half, cube.centre + half},
-                    kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
+    return {cube.centre - half, cube.centre + half};
+  }
+
+  [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const {
+    return cover_in(blocks_.tree_, far, box_of(cube), kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
   }
   [[nodiscard]] Cover cover_at_samples(const SampleBlock& block, const std::array<std::size_t, 3>& first,
                                        const std::array<std::size_t, 3>& last) const {
@@ -267,7 +276,7 @@ class LatticeBlocksWalk {
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const {
     if (far.cost == 0.0) return;
     const HarmonicFit& fit = HarmonicFit::instance();
-    CoverSums sums(blocks_.tree_, far, shared_corners_, far_);
+    CoverSums sums(blocks_.tree_, far, box_of(cube), shared_corners_, far_);
     count_terms(far, HarmonicFit::kNodes);
     SampleTile nodes;
     for (std::size_t begin = 0; begin < HarmonicFit::kNodes; begin += kTile) {
@@ -275,7 +284,7 @@ class LatticeBlocksWalk {
       for (std::size_t n = begin; n < std::min(begin + kTile, HarmonicFit::kNodes); ++n) {
         nodes.add(cube.centre + cube.half * fit.node(n));
       }
-      sums.evaluate(nodes, [&](std::size_t i, double turns, double rest) {
+      sums.evaluate(nodes, TileShape::kScattered, [&](std::size_t i, double turns, double rest) {
         values[(begin + i) * HarmonicFit::kTogether + place] = turns + rest;
       });
     }
@@ -294,7 +303,7 @@ class LatticeBlocksWalk {
   const LatticeAxes& axes_;
   SharedCornersKernel shared_corners_;
   FarKernel far_;
-  MatrixKernel multiply_;
+  MatrixKernel matrices_;
   double far_budget_;
 };
 

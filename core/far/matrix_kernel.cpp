@@ -1,5 +1,9 @@
 #include "core/far/matrix_kernel.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/far/matrix_kernel.cpp"
@@ -61,6 +65,39 @@ void multiply_here(const MatrixView& a, const RowsView<const double>& b, const R
   }
 }
 
+// Four rows up to the least of their depths, then each by itself.
+HWY_INLINE void four_ragged_rows(const RaggedRow* rows, const double* b, std::size_t b_row, std::size_t lane) {
+  const std::size_t depth = std::min({rows[0].depth, rows[1].depth, rows[2].depth, rows[3].depth});
+  Lanes s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
+  for (std::size_t k = 0; k < depth; ++k) {
+    const Lanes v = hn::LoadU(d, b + k * b_row);
+    s0 = hn::Add(s0, hn::Mul(hn::Set(d, rows[0].numbers[k]), v));
+    s1 = hn::Add(s1, hn::Mul(hn::Set(d, rows[1].numbers[k]), v));
+    s2 = hn::Add(s2, hn::Mul(hn::Set(d, rows[2].numbers[k]), v));
+    s3 = hn::Add(s3, hn::Mul(hn::Set(d, rows[3].numbers[k]), v));
+  }
+  const auto finish = [&](const RaggedRow& row, Lanes sum) {
+    for (std::size_t k = depth; k < row.depth; ++k) {
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, row.numbers[k]), hn::LoadU(d, b + k * b_row)));
+    }
+    hn::StoreU(sum, d, row.out + lane);
+  };
+  finish(rows[0], s0);
+  finish(rows[1], s1);
+  finish(rows[2], s2);
+  finish(rows[3], s3);
+}
+
+void multiply_ragged_here(std::span<const RaggedRow> rows, const RowsView<const double>& b, std::size_t width) {
+  for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
+    std::size_t r = 0;
+    for (; r + 4 <= rows.size(); r += 4) four_ragged_rows(&rows[r], b.numbers + lane, b.row, lane);
+    for (; r < rows.size(); ++r) {
+      one_row({rows[r].numbers, 0, 1}, b.numbers + lane, b.row, rows[r].out + lane, rows[r].depth);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace raycone
@@ -72,11 +109,11 @@ namespace raycone {
 MatrixKernel matrix_kernel([[maybe_unused]] SimdLevel level) {
 #if HWY_ARCH_X86
   const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_here);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_here);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_here);
+  if (available == SimdLevel::kAvx512) return {HWY_CHOOSE_AVX3(multiply_here), HWY_CHOOSE_AVX3(multiply_ragged_here)};
+  if (available == SimdLevel::kAvx2) return {HWY_CHOOSE_AVX2(multiply_here), HWY_CHOOSE_AVX2(multiply_ragged_here)};
+  if (available == SimdLevel::kSse4) return {HWY_CHOOSE_SSE4(multiply_here), HWY_CHOOSE_SSE4(multiply_ragged_here)};
 #endif
-  return &HWY_STATIC_DISPATCH(multiply_here);
+  return {&HWY_STATIC_DISPATCH(multiply_here), &HWY_STATIC_DISPATCH(multiply_ragged_here)};
 }
 
 }  // namespace raycone

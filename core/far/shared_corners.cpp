@@ -16,12 +16,24 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-void multiply_chunks_here(const SharedCorners& triangles, const SampleTile& samples, ProductTile& products) {
-  set_ones(products);
+template <class Views>
+void multiply_chunk_at_all(ProductTile& products, const SharedCorners::Chunk& chunk, const SampleTile& samples) {
   const auto every = hn::FirstN(d, hn::Lanes(d));
+  Views views(chunk, samples);
+  for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+    multiply_chunk(products, chunk, views, samples, i, every, chunk.small);
+  }
+}
+
+void multiply_chunks_here(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
+                          ProductTile& products) {
+  set_ones(products);
   for (std::size_t n = 0; n < triangles.chunks(); ++n) {
-    const SharedCorners::Chunk chunk = triangles.chunk(n);
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) multiply_chunk(products, chunk, samples, i, every);
+    if (shape == TileShape::kInRows) {
+      multiply_chunk_at_all<TrianglesOfRows>(products, triangles.chunk(n), samples);
+    } else {
+      multiply_chunk_at_all<TrianglesOfChunk>(products, triangles.chunk(n), samples);
+    }
   }
   set_arguments(products, samples.count);
 }
@@ -49,10 +61,24 @@ SharedCorners::SharedCorners(std::span<const SolidTriangle> triangles) : triangl
   add_group(triangles.size());
 }
 
-void SharedCorners::add_group(std::size_t count) {
+bool looks_small_from(const SolidTriangle& triangle, const Box& box) {
+  constexpr double kLeast = 0x1p-40;         // distance: beyond it no factor is too small to be trusted
+  double gap = 0.0, side = kLeast * kLeast;  // squares
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [lower, upper] = std::minmax({triangle.a[axis], triangle.b[axis], triangle.c[axis]});
+    const double away = std::max({lower - box.upper[axis], box.lower[axis] - upper, 0.0});
+    gap += away * away;
+  }
+  for (const Vec3& v : {triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c}) {
+    side = std::max(side, dot(v, v));
+  }
+  return gap > side * (1 + 0x1p-40) && triangle.normal.x == triangle.normal.x;
+}
+
+void SharedCorners::add_group(std::size_t count, bool small) {
   const std::size_t begin = places_.size();
   for (std::size_t n = begin; n < begin + count; ++n) {
-    if ((n - begin) % kInChunk == 0) chunks_.push_back({n, corners_.size()});
+    if ((n - begin) % kInChunk == 0) chunks_.push_back({n, corners_.size(), small});
     const auto place_of = [&](const Vec3& corner) {
       const std::size_t first = chunks_.back().corners;
       std::size_t place = corners_.size();
@@ -69,10 +95,10 @@ void SharedCorners::add_group(std::size_t count) {
 
 SharedCorners::Chunk SharedCorners::chunk(std::size_t n) const {
   const Begin begin = chunks_[n];
-  const Begin end = n + 1 < chunks_.size() ? chunks_[n + 1] : Begin{places_.size(), corners_.size()};
+  const Begin end = n + 1 < chunks_.size() ? chunks_[n + 1] : Begin{places_.size(), corners_.size(), false};
   const std::size_t count = end.triangles - begin.triangles;
   return {triangles_.subspan(begin.triangles, count), std::span(places_).subspan(begin.triangles, count),
-          std::span(corners_).subspan(begin.corners, end.corners - begin.corners)};
+          std::span(corners_).subspan(begin.corners, end.corners - begin.corners), begin.small};
 }
 
 }  // namespace raycone

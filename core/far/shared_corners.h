@@ -9,6 +9,7 @@
 
 #include "core/boundary/sample_tile.h"
 #include "core/boundary/solid_angle_kernel.h"
+#include "core/data/triangle_mesh.h"
 #include "core/machine/simd.h"
 
 namespace raycone {
@@ -29,13 +30,14 @@ class SharedCorners {
     return none;
   }
 
-  // The next `count` of the triangles. No chunk has triangles of two groups.
-  void add_group(std::size_t count);
+  // The next `count` of the triangles. No chunk has triangles of two groups. `small`: looks_small_from() all samples.
+  void add_group(std::size_t count, bool small = false);
 
   struct Chunk {
     std::span<const SolidTriangle> triangles;
     std::span<const std::array<std::uint8_t, 3>> places;  // of each one's a, b, c among the corners
     std::span<const Vec3> corners;
+    bool small;
   };
   [[nodiscard]] std::size_t chunks() const { return chunks_.size(); }
   [[nodiscard]] Chunk chunk(std::size_t n) const;
@@ -43,6 +45,7 @@ class SharedCorners {
  private:
   struct Begin {
     std::size_t triangles, corners;
+    bool small;
   };
   std::span<const SolidTriangle> triangles_;
   std::vector<std::array<std::uint8_t, 3>> places_;
@@ -50,8 +53,20 @@ class SharedCorners {
   std::vector<Begin> chunks_;
 };
 
-// As SolidAngleKernel, with the bits that it has for samples with a ray each.
-using SharedCornersKernel = void (*)(const SharedCorners& triangles, const SampleTile& samples, ProductTile& products);
+// Whether the triangle is so far from a box, for its size, that nobody needs to look whether its factors can be
+// trusted: they can at all points of the box. Its sides then appear under 60 degrees at most, so that two corners have
+// a . b >= |a||b| / 2. Hence Re z_T >= 2.5 |a||b||c|, and the absolute terms of Im z_T are below 2 |a||b||c|.
+[[nodiscard]] bool looks_small_from(const SolidTriangle& triangle, const Box& box);
+
+// How the samples of a tile lie.
+enum class TileShape {
+  kScattered,
+  kInRows,  // sample 8 j + i is (x_i, y_j, z): rows of eight
+};
+
+// As SolidAngleKernel, with the bits that it has for samples with a ray each, whatever the shape.
+using SharedCornersKernel = void (*)(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
+                                     ProductTile& products);
 
 // That of the level, of the best one where the level is not available.
 [[nodiscard]] SharedCornersKernel shared_corners_kernel(SimdLevel level);

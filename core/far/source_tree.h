@@ -21,6 +21,8 @@ struct SourceNode {
   double unit = 1;    // of length, for its multipole; a power of two, radius <= unit <= 2 radius
   double radius = 0;  // no point of its triangles is farther from the centre
   double area = 0;
+  // From so far on, squared, its own triangles look small (looks_small_from()).
+  double square_of_small = 0;
   std::uint32_t begin = 0, own_end = 0, end = 0, next = 0;
   std::uint32_t first_chunk = 0, last_chunk = 0;  // of its own triangles in corners(): up to, without the last
   int order = 0;                                  // of its expansion; 0: there is none
@@ -58,6 +60,7 @@ class SourceTree {
   // Of all of `placed`, which it sorts; they become the triangles from `begin` on.
   std::uint32_t build_node(std::span<PlacedTriangle> placed, std::uint32_t begin);
   static void sort_by_middles(std::span<PlacedTriangle> placed);
+  [[nodiscard]] double square_of_small(const SourceNode& node) const;
   void measure(SourceNode& node) const;
   void expand();
   [[nodiscard]] Multipole expansion_of(const SourceNode& node) const;

@@ -498,5 +498,10 @@ MUTANTS = [
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
-        ("core/evaluation/lattice_far.cpp", "gap_to_half_integer(w) > doubt", "gap_to_half_integer(w) >= 0.0")]),
+        ("core/evaluation/lattice_far.cpp", "if (least <= doubt_)", "if (least < 0.0)")]),
+    Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [
+        ("core/far/shared_corners.cpp", "gap > side * (1 + 0x1p-40)", "gap > 0.9 * side")]),
+    Mutant("small_nodes_too_near", "triangles of a node look small from beyond its radius and their longest side only", [
+        ("core/far/source_tree.cpp", "const double distance = node.radius + std::sqrt(longest);",
+         "const double distance = 0.0 * node.radius * std::sqrt(longest);")]),
 ]

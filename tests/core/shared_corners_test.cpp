@@ -1,0 +1,114 @@
+#include "core/far/shared_corners.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/boundary/solid_angles.h"
+#include "core/machine/floating_point.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::array kLevels{SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512};
+constexpr double kStep = 1.0 / 64;
+
+// A fan around a point, whose triangles share corners.
+std::vector<SolidTriangle> fan_at(const Vec3& centre, double size) {
+  test::Random random(7);
+  TriangleMesh mesh{{centre}, {}};
+  for (std::uint32_t n = 1; n <= 40; ++n) {
+    Vec3 rim = centre;
+    for (int axis = 0; axis < 3; ++axis) rim[axis] += size * test::uniform(random, -1, 1);
+    mesh.vertices.push_back(rim);
+    if (n > 1) mesh.triangles.push_back({0, n - 1, n});
+  }
+  return solid_faces(mesh).triangles;
+}
+
+// Rows of eight along x, at one z.
+SampleTile rows(std::size_t count, const Vec3& first) {
+  SampleTile tile;
+  tile.clear();
+  for (std::size_t n = 0; n < 8 * count; ++n) {
+    tile.add(first + kStep * Vec3{static_cast<double>(n % 8), static_cast<double>(n / 8), 0.0});
+  }
+  return tile;
+}
+
+Box box_of(const SampleTile& tile) {
+  Box box{tile.query(0), tile.query(0)};
+  for (std::size_t i = 0; i < tile.count; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = std::min(box.lower[axis], tile.query(i)[axis]);
+      box.upper[axis] = std::max(box.upper[axis], tile.query(i)[axis]);
+    }
+  }
+  return box;
+}
+
+std::vector<double> sums_of(std::span<const SolidTriangle> triangles, bool small, const SampleTile& tile,
+                            TileShape shape, SimdLevel level) {
+  const DefaultFloatingPoint guard;
+  SharedCorners corners = SharedCorners::without_groups(triangles);
+  corners.add_group(triangles.size(), small);
+  ProductTile products;
+  shared_corners_kernel(level)(corners, tile, shape, products);
+  std::vector<double> sums(tile.count);
+  for (std::size_t i = 0; i < tile.count; ++i) {
+    sums[i] = static_cast<double>(products.turns(i)) + products.argument[i];
+  }
+  return sums;
+}
+
+bool all_look_small(std::span<const SolidTriangle> triangles, const Box& box) {
+  return std::ranges::all_of(triangles, [&](const SolidTriangle& t) { return looks_small_from(t, box); });
+}
+
+// The fan's corners lie among the samples, some on them, so that many factors are ties or not to be trusted.
+TEST(SharedCorners, RowsHaveTheBitsOfScatteredSamples) {
+  const std::vector<SolidTriangle> triangles = fan_at({4 * kStep, 3 * kStep, 0.0}, 0.1);
+  for (const std::size_t count : {1U, 3U, 8U}) {
+    const SampleTile tile = rows(count, {0.0, 0.0, 0.0});
+    ASSERT_FALSE(all_look_small(triangles, box_of(tile)));
+    const std::vector<double> scattered = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kSse4);
+    for (const SimdLevel level : kLevels) {
+      EXPECT_EQ(sums_of(triangles, false, tile, TileShape::kInRows, level), scattered);
+      EXPECT_EQ(sums_of(triangles, false, tile, TileShape::kScattered, level), scattered);
+    }
+  }
+}
+
+// What is known to look small is not looked at again: nothing changes by that.
+TEST(SharedCorners, TrianglesThatLookSmallNeedNoSecondLook) {
+  const std::vector<SolidTriangle> triangles = fan_at({0.5, 0.0, 0.1}, 0.1);
+  const SampleTile tile = rows(8, {0.0, 0.0, 0.0});
+  ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
+  for (const SimdLevel level : kLevels) {
+    for (const TileShape shape : {TileShape::kScattered, TileShape::kInRows}) {
+      EXPECT_EQ(sums_of(triangles, true, tile, shape, level), sums_of(triangles, false, tile, shape, level));
+    }
+  }
+  // The control: among the triangles, the second look is needed.
+  const std::vector<SolidTriangle> around = fan_at({4 * kStep, 3 * kStep, 0.0}, 0.1);
+  EXPECT_NE(sums_of(around, true, tile, TileShape::kInRows, SimdLevel::kBest),
+            sums_of(around, false, tile, TileShape::kInRows, SimdLevel::kBest));
+}
+
+TEST(SharedCorners, ATriangleLooksSmallBeyondItsLongestSide) {
+  const SolidTriangle triangle = fan_at({0.0, 0.0, 0.0}, 0.1).front();
+  double longest = 0.0;
+  for (const Vec3& side : {triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c}) {
+    longest = std::max(longest, std::sqrt(dot(side, side)));
+  }
+  const double right = std::max({triangle.a.x, triangle.b.x, triangle.c.x});
+  const auto plane_at = [](double x) { return Box{{x, -1.0, -1.0}, {x, 1.0, 1.0}}; };
+  EXPECT_FALSE(looks_small_from(triangle, plane_at(right + 0.99 * longest)));
+  EXPECT_TRUE(looks_small_from(triangle, plane_at(right + 1.01 * longest)));
+}
+
+}  // namespace
+}  // namespace raycone

@@ -9,6 +9,7 @@
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
+#include "app/run/mesh_warnings.h"
 
 namespace raycone {
 namespace {
@@ -36,7 +37,9 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
       samples_(field),
       draw_(field.verify) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
-  if (!field.labels_only()) run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+  if (field.labels_only()) return;
+  run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
+  if (const auto warning = tolerance_not_kept(field.tolerance, evaluator_.accuracy())) run.warn(*warning);
 }
 
 void FieldRun::set_solid(TriangleMesh surface) {

@@ -83,6 +83,16 @@ bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
   return true;
 }
 
+std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
+  if (!(tolerance > 0.0) || bound <= tolerance) return std::nullopt;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "values are within %.2g of the true ones for sure, not within %.2g, because sums round; --diagnostics "
+                "bounds each value",
+                bound, tolerance);
+  return Warning{"tolerance", text};
+}
+
 Warning nothing_inside(const Rule& rule) {
   return {"empty", "no sample is inside by the rule " + name_of(rule) +
                        "; --orient auto helps where faces are reversed, a finer lattice where the mesh is thin"};

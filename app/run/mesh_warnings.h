@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/data/placed_lattice.h"
@@ -29,6 +30,9 @@ namespace raycone {
 // Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
 // own, is not flat), and the lattice reaches around it but for a voxel.
 [[nodiscard]] bool should_have_inside(const Box& box, const PlacedLattice& lattice);
+
+// `tolerance`, where values are promised within `bound` only: 0 of closed meshes. A tolerance of 0 asks for no promise.
+[[nodiscard]] std::optional<Warning> tolerance_not_kept(double tolerance, double bound);
 
 // `empty`
 [[nodiscard]] Warning nothing_inside(const Rule& rule);

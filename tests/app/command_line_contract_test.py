@@ -146,6 +146,18 @@ class Tolerances(Contract):
         for tolerance in ("0", "1e-13"):
             self.works([*WORKING["lattice"], "--tolerance", tolerance])
         self.refused([*WORKING["lattice"], "--tolerance", "-1"], "--tolerance -1: expected")
+
+    def test_a_tolerance_that_is_not_kept_is_said(self):
+        def warned(mesh, *words):
+            result = run(["lattice", os.path.join(MESHES, mesh), "-o", "out.csv", "--resolution", "3", *words])
+            return result.returncode, ": tolerance: values are within 1e-10 " in result.stderr
+
+        self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12"), (0, True))
+        self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12", "--strict"), (2, True))
+        for words in ([], ["--tolerance", "0"], ["--tolerance", "1e-12", "--field", "inside"]):
+            self.assertEqual(warned("open_box.obj", *words), (0, False), words)
+        self.assertEqual(warned("cube.obj", "--tolerance", "1e-12"), (0, False))
+
         self.refused([*WORKING["lattice"], "--field", "sdf", "--band", "al"], "--band al: expected a positive number")
 
 

@@ -10,6 +10,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
@@ -181,6 +182,7 @@ Command parse_slice(const Values& values) {
   refuse_idle_depfile(values, command.output);
   check_format(values, command.output.path);
   command.framed = !values.given("--no-legend");
+  command.run.options = given_options(values, option_names(slice_spec()));
   if (values.given("--values")) command.values = values.text("--values");
   if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
   if (command.values && command.values == command.output.report) {

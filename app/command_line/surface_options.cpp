@@ -7,6 +7,7 @@
 
 #include "app/command_line/common_options.h"
 #include "app/command_line/field_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
@@ -93,6 +94,7 @@ Command parse_surface(const Values& values) {
   command.output = parse_output_files(values);
   command.format = parse_surface_format(values, command.output.path);
   refuse_idle_depfile(values, command.output);
+  command.run.options = given_options(values, option_names(surface_spec()));
   return command;
 }
 

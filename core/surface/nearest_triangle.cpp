@@ -58,9 +58,9 @@ void NearestTriangle::build(std::uint32_t begin, std::uint32_t end) {
   branches_[number].next = static_cast<std::uint32_t>(branches_.size());
 }
 
-std::uint32_t NearestTriangle::of(const Vec3& point) const {
+std::uint32_t NearestTriangle::of(const Vec3& point, std::uint32_t guess) const {
   const Vec3 p = scale_(point);
-  std::pair best(std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max());
+  std::pair best(triangles_[guess].squared(p), guess);
   for (std::size_t n = 0; n < branches_.size();) {
     const Branch& branch = branches_[n];
     if (squared_to_box(branch.box, p) > beyond_error(best.first)) {

@@ -16,8 +16,9 @@ class NearestTriangle {
   // Precondition: the mesh has a triangle, and the vertices that triangles use are finite.
   explicit NearestTriangle(const TriangleMesh& mesh);
 
-  // Of those whose computed distances are least, the first. Thread-safe.
-  [[nodiscard]] std::uint32_t of(const Vec3& p) const;
+  // Of those whose computed distances are least, the first. `guess`: the nearer that triangle is, the sooner it is
+  // found. Thread-safe.
+  [[nodiscard]] std::uint32_t of(const Vec3& p, std::uint32_t guess = 0) const;
 
  private:
   // Triangles [begin, end) of order_; what it is made of follows it, up to `next`.

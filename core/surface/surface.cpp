@@ -10,6 +10,7 @@
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "core/surface/cell_triangles.h"
+#include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/simplify.h"
 #include "core/surface/thicken.h"
@@ -102,6 +103,8 @@ class SurfaceMaker {
       made.bound_too_small = !(most > 0.0);
       made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
     }
+    const Vec3& h = inside_.lattice().spacing;
+    settle_sources(mesh_, options_.thickness + std::min({h.x, h.y, h.z}) / 4, made.surface);
     return made;
   }
 

@@ -23,6 +23,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/surface/edge_crossing.h"
+#include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
@@ -336,6 +337,67 @@ TEST(Surface, MeetsTheRimOfAHole) {
     for (int n = 1; n < 200; ++n) rim.push_back(a + (n / 200.0) * (b - a));
   }
   EXPECT_GT(part_at(rim, surface.mesh, lattice.spacing.x), 0.6);
+}
+
+// The area of the faces that have one of the triangles of a plane as their source, by planes, which all of them are in.
+std::map<std::pair<int, double>, double> areas_by_plane(const SurfaceMesh& surface, const TriangleMesh& input) {
+  std::map<std::pair<int, double>, double> areas;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const Triangle& source = input.triangles[static_cast<std::size_t>(surface.sources[face])];
+    const Vec3 &a = input.vertices[source[0]], &b = input.vertices[source[1]], &c = input.vertices[source[2]];
+    const Triangle& t = surface.mesh.triangles[face];
+    const Vec3 &p = surface.mesh.vertices[t[0]], &q = surface.mesh.vertices[t[1]], &r = surface.mesh.vertices[t[2]];
+    const Vec3 normal = cross(q - p, r - p);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (a[axis] == b[axis] && b[axis] == c[axis]) areas[{axis, a[axis]}] += std::sqrt(dot(normal, normal)) / 2;
+    }
+  }
+  return areas;
+}
+
+// The lattice has nodes in the planes of the boxes, so that many lattice edges meet the mesh on its edges, where a
+// point is on several triangles. The boxes overlap, too, and have parallel sides a voxel apart.
+TEST(Surface, HasTheSourcesWhosePlanesItsFacesAreIn) {
+  TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const std::map<std::pair<int, double>, double> ones{{{0, 0.0}, 1.0}, {{0, 1.0}, 1.0}, {{1, 0.0}, 1.0},
+                                                      {{1, 1.0}, 1.0}, {{2, 0.0}, 1.0}, {{2, 1.0}, 1.0}};
+  for (const std::int64_t side : {11, 13, 24}) {
+    for (const bool merged : {true, false}) {
+      const auto [surface, lattice] = surface_of(mesh, side, {.rule = {}, .merge_planes = merged});
+      const auto areas = areas_by_plane(surface, mesh);
+      ASSERT_EQ(areas.size(), ones.size());
+      for (const auto& [plane, area] : areas) EXPECT_NEAR(area, ones.at(plane), 1e-6);
+    }
+  }
+}
+
+// What is wrong is mended; what may be right, and holes, are left alone.
+TEST(FaceSources, AreSettledWhereTheyCannotBe) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh input = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  SurfaceMesh surface{input, {}};
+  std::vector<std::int32_t> own(input.triangles.size());
+  std::iota(own.begin(), own.end(), 0);
+  surface.sources.assign(own.size(), 5);
+  surface.sources[7] = kHole;
+  own[7] = kHole;
+  const SurfaceMesh before = surface;
+  settle_sources(input, 10.0, surface);
+  EXPECT_NE(surface.sources, before.sources);
+  EXPECT_NE(surface.sources, own);  // parallel planes are within 10 of each other
+  settle_sources(input, 0.1, surface);
+  for (std::size_t face = 0; face < own.size(); ++face) {
+    if (own[face] == kHole) {
+      EXPECT_EQ(surface.sources[face], kHole);
+      continue;
+    }
+    const Triangle& t = input.triangles[static_cast<std::size_t>(surface.sources[face])];
+    const Triangle& expected = input.triangles[face];
+    const auto normal = [&](const Triangle& u) {
+      return unit_normal(input.vertices[u[0]], input.vertices[u[1]], input.vertices[u[2]]);
+    };
+    EXPECT_EQ(dot(normal(t), normal(expected)), 1.0);
+  }
 }
 
 TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {

@@ -25,6 +25,7 @@
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/sharpen.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/vertex_places.h"
@@ -325,6 +326,84 @@ TEST(Surface, KeepsSharpEdges) {
     const double volume = mesh_statistics(mesh).signed_volume.value_or(0.0);
     EXPECT_NEAR(mesh_statistics(surface.mesh).signed_volume.value_or(0.0), volume, 0.01 * volume);
   }
+}
+
+// A lattice whose nodes are not in the planes of a box sees the whole of some edges pass between outside nodes: without
+// sharpening these are cut off from end to end.
+TEST(Surface, KeepsEdgesThatPassBetweenOutsideNodes) {
+  const TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  double least_without = 1.0;  // the control
+  for (const Vec3& shift : {Vec3{0.1, 0.1, 0.1}, Vec3{0.03, 0.11, 0.07}, Vec3{0.12, 0.02, 0.05}}) {
+    const double h = 1.0 / 20;
+    const Lattice lattice{-1.0 * shift, {h, h, h}, {-1, -1, -1}, {30, 30, 30}};
+    const WindingNumberEvaluator evaluator(mesh);
+    const NodeSet nodes = nodes_inside(evaluator, Rule{}, lattice);
+    const auto of_edges_kept = [&](const SurfaceOptions& options) {
+      const SurfaceMesh surface = closed_surface(mesh, evaluator, nodes, options).surface;
+      EXPECT_TRUE(faults_of(surface.mesh, nodes).none());
+      if (options.merge_planes) {
+        EXPECT_EQ(surface.mesh.triangles.size(), 12U);
+      }
+      return part_at(points_of_edges(mesh), surface.mesh, h);
+    };
+    least_without = std::min(least_without, of_edges_kept({.rule = {}, .merge_planes = false}));
+    EXPECT_GT(of_edges_kept({}), 0.999);
+  }
+  EXPECT_LT(least_without, 0.9);
+}
+
+// At arbitrary angles, a quarter of each edge passes so.
+TEST(Surface, KeepsEdgesOfTurnedParts) {
+  for (const TriangleMesh& shape : {test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}), wedge()}) {
+    const TriangleMesh mesh = rotated(shape);
+    const auto [surface, lattice] = surface_of(mesh, 24);
+    EXPECT_GT(part_at(points_of_edges(mesh), surface.mesh, lattice.spacing.x), 0.97);
+    EXPECT_LE(largest_distance_of(surface.mesh.vertices, mesh), 1e-8 * lattice.spacing.x);
+    const double volume = mesh_statistics(mesh).signed_volume.value_or(0.0);
+    EXPECT_NEAR(mesh_statistics(surface.mesh).signed_volume.value_or(0.0), volume, 1e-3 * volume);
+  }
+}
+
+// A prism over the unit square of x and z whose corner (1, 1) is cut off by a tenth. Its first two faces are the cut.
+TriangleMesh cut_box() {
+  const std::array<std::pair<double, double>, 5> outline{{{1, 0.9}, {0.9, 1}, {0, 1}, {0, 0}, {1, 0}}};
+  TriangleMesh mesh;
+  for (const auto& [x, z] : outline) {
+    mesh.vertices.push_back({x, 0, z});
+    mesh.vertices.push_back({x, 1, z});
+  }
+  for (std::uint32_t side = 0; side < 5; ++side) {
+    const std::uint32_t a = 2 * side, b = 2 * ((side + 1) % 5);
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b + 1, b}, {a, a + 1, b + 1}});
+  }
+  for (std::uint32_t side = 1; side < 4; ++side) {
+    mesh.triangles.insert(mesh.triangles.end(), {{0, 2 * side, 2 * side + 2}, {1, 2 * side + 3, 2 * side + 1}});
+  }
+  return mesh;
+}
+
+// Faces that lead across an edge are taken back to where the planes meet; not where the mesh has no such edge.
+TEST(Sharpening, PullsNothingOffTheMesh) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh cut = cut_box(), whole_box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  ASSERT_GT(mesh_statistics(cut).signed_volume.value_or(0.0), 0.99);
+  const auto on_the_top = [](const TriangleMesh& mesh) {
+    for (std::int32_t face = 0;; ++face) {
+      const Triangle& t = mesh.triangles[static_cast<std::size_t>(face)];
+      if (std::ranges::all_of(t, [&](std::uint32_t v) { return mesh.vertices[v].z == 1.0; })) return face;
+    }
+  };
+  SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size())};
+  std::iota(surface.sources.begin(), surface.sources.end(), 0);
+  surface.sources[0] = surface.sources[1] = on_the_top(cut);
+  const std::vector<bool> none(cut.vertices.size(), false);
+  const SharpenLimits limits{1e-9, 0.2, false};
+  EXPECT_EQ(sharpened(surface, cut, none, limits).pulls, 0U);
+  for (std::int32_t& source : surface.sources) source %= 12;  // triangles of the whole box
+  settle_sources(whole_box, 0.01, surface);
+  const SharpenedSurface sharp = sharpened(surface, whole_box, none, limits);
+  EXPECT_EQ(sharp.pulls, 2U);
+  EXPECT_NEAR(mesh_statistics(sharp.surface.mesh).signed_volume.value_or(0.0), 1.0, 1e-12);
 }
 
 // The surface over the opening of a box meets the walls at the rim.

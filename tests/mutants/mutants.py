@@ -499,6 +499,8 @@ MUTANTS = [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
         ("core/evaluation/lattice_far.cpp", "if (least <= doubt_)", "if (least < 0.0)")]),
+    Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [
+        ("core/surface/sharpen.cpp", "return distance <= limits_.off;", "return distance <= 1e9 * limits_.off;")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
         ("core/surface/face_sources.cpp", "*corner - source.a)) <= off)", "*corner - source.a)) <= 1e9 * off)")]),
     Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [

@@ -1,0 +1,33 @@
+// Sharp edges where a lattice does not see them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/surface/contour.h"
+
+namespace raycone {
+
+struct SharpenLimits {
+  double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
+  double reach = 0.0;  // how far a vertex is pulled at most, likewise
+  bool single_precision = false;  // vertices are rounded to float
+};
+
+// Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
+// mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
+// such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
+// stay in them and keep their fronts; what is left of strips vanishes between them. Whether faces intersect now, or
+// nodes have changed sides, is not looked at. Vertices keep their numbers; some are no longer used.
+struct SharpenedSurface {
+  SurfaceMesh surface;
+  std::vector<std::uint32_t> into;  // of each vertex, what it was pulled into; itself, where it stayed
+  std::size_t pulls = 0;
+};
+
+// Vertices of `kept` stay. The same for any number of threads. Needs DefaultFloatingPoint.
+[[nodiscard]] SharpenedSurface sharpened(const SurfaceMesh& surface, const TriangleMesh& input,
+                                         const std::vector<bool>& kept, const SharpenLimits& limits);
+
+}  // namespace raycone

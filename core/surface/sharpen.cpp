@@ -31,16 +31,16 @@ class Sharpener {
             const SharpenLimits& limits)
       : input_(input), kept_(kept), limits_(limits), mesh_(surface.mesh), sources_(surface.sources) {
     find_strips();
-    find_faces();
+    if (has_planes()) find_faces();
   }
 
   SharpenedSurface sharpen() {
     std::vector<std::uint32_t> into(mesh_.vertices.size());
     std::iota(into.begin(), into.end(), 0U);
     std::size_t pulls = 0;
-    // An edge at a corner may only be pulled together when those that lead there are.
-    constexpr int kPasses = 4;
-    for (int pass = 0; pass < kPasses; ++pass) {
+    // What leads to a corner can be pulled there only after what is before it on the edge.
+    constexpr int kPasses = 32;
+    for (int pass = 0; pass < kPasses && !faces_.empty(); ++pass) {
       const std::size_t before = pulls;
       for (const auto& [square, u, v] : edges_of_strips()) pulls += pull(into[u], into[v], into) ? 1 : 0;
       if (pulls == before) break;
@@ -57,6 +57,11 @@ class Sharpener {
   enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
 
   void find_strips();
+  // Whether it is planes that the mesh is made of: nine of ten faces are in one. Of CAD parts that is so of 93 to 99
+  // per cent, of scans of less than 70; there, what is pulled would hardly ever pass the check.
+  [[nodiscard]] bool has_planes() const {
+    return 10 * std::ranges::count(placed_, Placed::kInPlane) >= 9 * std::ssize(placed_);
+  }
   [[nodiscard]] Placed placed(std::size_t face) const;
   void find_faces();
   [[nodiscard]] std::vector<Edge> edges_of_strips() const;
@@ -95,7 +100,7 @@ class Sharpener {
 
 // Faces over holes are in no plane, and belong to no strip.
 Sharpener::Placed Sharpener::placed(std::size_t face) const {
-  constexpr double kTurned = 0.9986295347545738;  // cosine of 3 degrees
+  constexpr double kTurned = 0.992546151641322;  // cosine of 7 degrees
   if (sources_[face] == kHole) return Placed::kInPlane;
   const Plane plane = plane_of(sources_[face]);
   const Triangle& t = mesh_.triangles[face];
@@ -154,9 +159,8 @@ bool Sharpener::pull(std::uint32_t u, std::uint32_t v, std::vector<std::uint32_t
   if (u == v || kept_[u] || kept_[v]) return false;
   const auto leads_to_v = [&](std::uint32_t face) { return placed_[face] != Placed::kInPlane && has(face, v); };
   if (!std::ranges::any_of(faces(u), leads_to_v)) return false;
-  if (!is_link_sound(u, v)) return false;
   const std::optional<Vec3> place = place_for(u, v);
-  if (!place || !keeps_fronts(u, v, *place) || !keeps_fronts(v, u, *place)) return false;
+  if (!place || !is_link_sound(u, v) || !keeps_fronts(u, v, *place) || !keeps_fronts(v, u, *place)) return false;
   for (const std::uint32_t face : faces(v)) {
     if (has(face, u)) {
       gone_[face] = 1;
@@ -265,10 +269,11 @@ std::optional<Vec3> Sharpener::meeting_point(std::span<const Plane> planes, cons
          (of_c / determinant) * cross(a, b);
 }
 
-// Whether the faces of a vertex that are left are not turned over when it moves; those of strips may turn.
+// Whether the faces of a vertex that are left have an area, and are not turned over, when it moves. Those of strips may
+// turn.
 bool Sharpener::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const {
-  for (const std::uint32_t face : faces(vertex)) {
-    if (has(face, other) || placed_[face] != Placed::kInPlane) continue;
+  return std::ranges::all_of(faces(vertex), [&](std::uint32_t face) {
+    if (has(face, other)) return true;
     std::array<Vec3, 3> before, after;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t corner = mesh_.triangles[face][i];
@@ -277,9 +282,8 @@ bool Sharpener::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Ve
     }
     const Vec3 was = cross(before[1] - before[0], before[2] - before[0]);
     const Vec3 is = cross(after[1] - after[0], after[2] - after[0]);
-    if (!(dot(was, is) > 0.0)) return false;
-  }
-  return true;
+    return placed_[face] == Placed::kInPlane ? dot(was, is) > 0.0 : dot(is, is) > 0.0;
+  });
 }
 
 SurfaceMesh Sharpener::left() const {

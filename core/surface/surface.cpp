@@ -95,13 +95,11 @@ class SurfaceMaker {
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
+    if (places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
-    const std::size_t faces = made.surface.sources.size();
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
     if (!is_right_.value_or(true) || (!made.merged && !is_right(made.surface, places))) return std::nullopt;
-    // Of a part with sharp edges planes leave few faces. Others would pay for little with a second check.
-    if (made.surface.sources.size() < faces / 2 && options_.thickness == 0.0) sharpen(made.surface, margins);
     if (options_.simplify > 0.0) {
       const double most = farthest_pull(margins);
       made.bound_too_small = !(most > 0.0);
@@ -163,12 +161,11 @@ class SurfaceMaker {
     return std::nullopt;
   }
 
-  // Sharp edges that the lattice does not see. Around faults nothing is pulled; where that does not help, nothing at
-  // all.
+  // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells. Around faults
+  // nothing is pulled; where that does not help, nothing at all.
   void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins) {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     constexpr int kSharpeningRounds = 4;
-    enter("sharpening edges");
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
     const SharpenLimits limits{kOff * margins.inner * most, kReach * least, options_.single_precision};
@@ -180,12 +177,11 @@ class SurfaceMaker {
       SurfaceMesh compact{used_part(sharp.surface.mesh.vertices, sharp.surface.mesh.triangles), sharp.surface.sources};
       const SurfaceFaults faults = faults_of(compact.mesh, inside_);
       if (faults.none()) {
-        std::optional<SurfaceMesh> merged = merged_within(compact, margins.inner, 2.5, false);
-        surface = merged ? std::move(*merged) : std::move(compact);
+        surface = std::move(compact);
+        is_right_ = true;
         return;
       }
-      const std::vector<bool> touched =
-          faulty_vertices(surface.mesh.vertices.size(), sharp.surface.mesh.triangles, faults);
+      const std::vector<bool> touched = faulty_vertices(kept.size(), sharp.surface.mesh.triangles, faults);
       const NodeSet misplaced = misplaced_nodes(compact.mesh, inside_);
       const std::vector<bool> before = kept;
       for (std::size_t v = 0; v < kept.size(); ++v) {

@@ -491,8 +491,10 @@ MUTANTS = [
         ("core/boundary/change_bound.cpp", "second += 2 * source.length / cube;",
          "second += 0.2 * source.length / cube;")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.bend + mesh_.doubt()",
-         "const double needed = 0 * candidate.bend + mesh_.doubt()")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + mesh_.doubt()",
+         "const double needed = 0 * grid.bend + mesh_.doubt()")]),
+    Mutant("interpolation_between_wrong_nodes", "a sample is interpolated between the nodes around it", [
+        ("core/evaluation/rule_blocks.cpp", "nodes[node + 1] <= i) ++node;", "nodes[node + 1] <= i + 2) ++node;")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

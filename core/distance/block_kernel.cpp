@@ -185,45 +185,15 @@ void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, 
   close(near);
 }
 
-// Triangles at some places of the packs.
-class PlacedTriangles {
- public:
-  PlacedTriangles(const DistanceTree& tree, hn::Vec<Places> places) : pack_(tree.packs().front()), places_(places) {}
-  HWY_INLINE Lanes operator()(const TrianglePack::Column& column) const {
-    return hn::GatherIndex(d, column.data(), places_);
-  }
-  HWY_INLINE const TrianglePack& pack() const { return pack_; }
-
- private:
-  const TrianglePack& pack_;
-  hn::Vec<Places> places_;
-};
-
 // Puts copies of the triangles side by side, so that many looks at them take no gathering. Places are then those in
 // `packs`.
 void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<TrianglePack>& packs) {
   const std::size_t count = (near.count + kWidth - 1) / kWidth;
   if (packs.size() < count) packs.resize(count);
-  const Places integers;
-  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const PlacedTriangles triangles(tree, hn::LoadU(integers, &near.places[n]));
-    const TrianglePack& from = triangles.pack();
-    TrianglePack& to = packs[n / kWidth];
-    const auto copy = [&](const TrianglePack::Column& column, TrianglePack::Column& copied) {
-      hn::Store(triangles(column), d, &copied[n % kWidth]);
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t axis = 0; axis < 3; ++axis) copy(from.corners[k][axis], to.corners[k][axis]);
-      copy(from.inverse_square[k], to.inverse_square[k]);
-      copy(from.to_v[k], to.to_v[k]);
-      copy(from.to_w[k], to.to_w[k]);
-    }
-    copy(from.sure_from, to.sure_from);
-    copy(from.sure_up_to, to.sure_up_to);
-    copy(from.direction_from, to.direction_from);
-    copy(from.shape, to.shape);
-    const std::size_t place = n / kWidth * kStride + n % kWidth;
-    hn::StoreU(hn::Iota(integers, static_cast<std::int64_t>(place)), integers, &near.places[n]);
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const auto place = static_cast<std::size_t>(near.places[n]);
+    packs[n / kWidth].copy(n % kWidth, tree.packs()[place / kStride], place % kStride);
+    near.places[n] = static_cast<std::int64_t>(n / kWidth * kStride + n % kWidth);
   }
 }
 

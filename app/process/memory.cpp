@@ -19,8 +19,7 @@ constexpr int kKept = 1 << 26;
     mallopt(M_MMAP_THRESHOLD, static_cast<int>(kLargeBlock)) + mallopt(M_TRIM_THRESHOLD, kKept);
 
 // Nothing where there is no memory left.
-void* allocate(std::size_t size) {
-  if (size < kLargeBlock) return std::malloc(size > 0 ? size : 1);
+void* allocate_large(std::size_t size) {
   const std::size_t whole_pages = (size + kHugePage - 1) / kHugePage * kHugePage;
   if (whole_pages < size) return nullptr;
   void* const block = std::aligned_alloc(kHugePage, whole_pages);
@@ -28,14 +27,30 @@ void* allocate(std::size_t size) {
   return block;
 }
 
+void* allocate(std::size_t size) {
+  return size < kLargeBlock ? std::malloc(size > 0 ? size : 1) : allocate_large(size);
+}
+
+// `alignment`: extended, as the columns of kernels have it.
+void* allocate(std::size_t size, std::size_t alignment) {
+  if (size >= kLargeBlock && alignment <= kHugePage) return allocate_large(size);
+  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
+  return whole < size ? nullptr : std::aligned_alloc(alignment, whole > 0 ? whole : alignment);
+}
+
 }  // namespace
 
-// The forms for arrays and for alignments that are not extended call this one; free() is what the standard library's
-// operator delete calls.
+// The forms for arrays call these; free() is what the standard library's operator delete calls.
 void* operator new(std::size_t size) {
   if (void* const block = allocate(size)) return block;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (void* const block = allocate(size, static_cast<std::size_t>(alignment))) return block;
   throw std::bad_alloc();
 }
 
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t /*size*/) noexcept { std::free(block); }
+void operator delete(void* block, std::align_val_t /*alignment*/) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept { std::free(block); }

@@ -175,9 +175,8 @@ void FieldSamples::derive() {
     }
     for (std::vector<double>* const distances : {&distances_, &solid_distances_}) {
       if (distances->empty()) continue;
-      for (std::size_t n = begin; n < end; ++n) {
-        if (sides_[n] != 0) (*distances)[n] = -(*distances)[n];
-      }
+      double* const numbers = distances->data();  // which lets the compiler take several at once
+      for (std::size_t n = begin; n < end; ++n) numbers[n] = sides_[n] != 0 ? -numbers[n] : numbers[n];
     }
   });
 }

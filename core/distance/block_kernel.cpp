@@ -27,6 +27,21 @@ constexpr std::size_t kWidth = TrianglePack::kWidth;
 constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
 constexpr std::size_t kPartSide = 4, kGroupSide = 2, kGroup = 8;  // samples
 using Places = hn::RebindToSigned<Doubles>;
+using Unsigned = hn::RebindToUnsigned<Doubles>;
+
+// For each set of lanes, a bit each: the numbers of those that are in it, a byte each, from the lowest byte on.
+constexpr std::array<std::uint64_t, std::size_t{1} << kWidth> kFront = [] {
+  std::array<std::uint64_t, std::size_t{1} << kWidth> front{};
+  for (std::size_t set = 0; set < front.size(); ++set) {
+    std::size_t shift = 0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      if ((set >> lane & 1) == 0) continue;
+      front[set] |= static_cast<std::uint64_t>(lane) << shift;
+      shift += 8;
+    }
+  }
+  return front;
+}();
 
 // Whatever is compressed into a list may write this far beyond its end.
 void make_room(NearTriangles& list, std::size_t count) {
@@ -85,21 +100,48 @@ HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangl
        hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))}};
 }
 
+// Moves the wanted lanes to the front, in their order. Not Highway's CompressStore(): as one instruction into memory,
+// Zen 4 takes more than a hundred cycles for it; and not its Compress(), which copies a table before each use (1.0.3).
+class ToFront {
+ public:
+  explicit HWY_INLINE ToFront(LaneMask wanted) : indices_(indices_of(wanted)), count_(hn::CountTrue(d, wanted)) {}
+  HWY_INLINE std::size_t count() const { return count_; }
+  // Writes a whole vector.
+  template <class Tag>
+  HWY_INLINE void store(Tag tag, hn::Vec<Tag> lanes, hn::TFromD<Tag>* to) const {
+    hn::StoreU(hn::BitCast(tag, hn::TableLookupLanes(hn::BitCast(d, lanes), indices_)), tag, to);
+  }
+
+ private:
+  using Indices = decltype(hn::IndicesFromVec(d, hn::Vec<Places>()));
+  static HWY_INLINE Indices indices_of(LaneMask wanted) {
+    std::array<std::uint8_t, 8> bits{};  // as many as Highway may write
+    hn::StoreMaskBits(d, wanted, bits.data());
+    const Unsigned integers;
+    const auto bytes = hn::Shr(hn::Set(integers, kFront[bits[0]]), hn::ShiftLeft<3>(hn::Iota(integers, 0)));
+    return hn::IndicesFromVec(d, hn::BitCast(Places(), hn::And(bytes, hn::Set(integers, kWidth - 1))));
+  }
+
+  Indices indices_;
+  std::size_t count_;
+};
+
 HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
                        LaneMask wanted) {
   const std::size_t at = list.count;
-  hn::CompressStore(bearings.distances, wanted, d, &list.distances[at]);
-  hn::CompressStore(bearings.away.x, wanted, d, &list.away[0][at]);
-  hn::CompressStore(bearings.away.y, wanted, d, &list.away[1][at]);
-  hn::CompressStore(bearings.away.z, wanted, d, &list.away[2][at]);
-  hn::CompressStore(boxes.lower.x, wanted, d, &list.lower[0][at]);
-  hn::CompressStore(boxes.lower.y, wanted, d, &list.lower[1][at]);
-  hn::CompressStore(boxes.lower.z, wanted, d, &list.lower[2][at]);
-  hn::CompressStore(boxes.upper.x, wanted, d, &list.upper[0][at]);
-  hn::CompressStore(boxes.upper.y, wanted, d, &list.upper[1][at]);
-  hn::CompressStore(boxes.upper.z, wanted, d, &list.upper[2][at]);
-  const Places integers;
-  list.count += hn::CompressStore(places, hn::RebindMask(integers, wanted), integers, &list.places[at]);
+  const ToFront front(wanted);
+  front.store(d, bearings.distances, &list.distances[at]);
+  front.store(d, bearings.away.x, &list.away[0][at]);
+  front.store(d, bearings.away.y, &list.away[1][at]);
+  front.store(d, bearings.away.z, &list.away[2][at]);
+  front.store(d, boxes.lower.x, &list.lower[0][at]);
+  front.store(d, boxes.lower.y, &list.lower[1][at]);
+  front.store(d, boxes.lower.z, &list.lower[2][at]);
+  front.store(d, boxes.upper.x, &list.upper[0][at]);
+  front.store(d, boxes.upper.y, &list.upper[1][at]);
+  front.store(d, boxes.upper.z, &list.upper[2][at]);
+  front.store(Places(), places, &list.places[at]);
+  list.count += front.count();
 }
 
 // The samples of a box from its middle.
@@ -123,10 +165,11 @@ struct Middle {
 
 double square_of_reach(double reach) { return beyond_error(reach * kSlack * (reach * kSlack)); }
 
-// The triangles of packs that are near the block.
-void find_near(const BlockTask& task, const Middle& middle, NearTriangles& near) {
+// The triangles of packs that are near the block; their bearings from its middle where these are wanted.
+void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, NearTriangles& near) {
   const VectorLanes center = in_all_lanes(middle.center);
   const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  Bearings bearings{hn::Zero(d), in_all_lanes({})};
   make_room(near, task.packs.size() * kWidth);
   for (const std::uint32_t number : task.packs) {
     const TrianglePack& pack = task.tree.packs()[number];
@@ -134,33 +177,31 @@ void find_near(const BlockTask& task, const Middle& middle, NearTriangles& near)
       const BoxLanes boxes = boxes_of(pack, i);
       const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
       if (hn::AllFalse(d, wanted)) continue;
+      if (with_bearings) bearings = bearings_from(center, PackedTriangles(pack, i));
       const Places integers;
-      append(near, boxes, bearings_from(center, PackedTriangles(pack, i)),
-             hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
+      append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
     }
   }
   close(near);
 }
 
-// Triangles at some places of the packs.
-class PlacedTriangles {
- public:
-  PlacedTriangles(const DistanceTree& tree, hn::Vec<Places> places) : pack_(tree.packs().front()), places_(places) {}
-  HWY_INLINE Lanes operator()(const TrianglePack::Column& column) const {
-    return hn::GatherIndex(d, column.data(), places_);
+// Puts copies of the triangles side by side, so that many looks at them take no gathering. Places are then those in
+// `packs`.
+void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<TrianglePack>& packs) {
+  const std::size_t count = (near.count + kWidth - 1) / kWidth;
+  if (packs.size() < count) packs.resize(count);
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const auto place = static_cast<std::size_t>(near.places[n]);
+    packs[n / kWidth].copy(n % kWidth, tree.packs()[place / kStride], place % kStride);
+    near.places[n] = static_cast<std::int64_t>(n / kWidth * kStride + n % kWidth);
   }
-  HWY_INLINE const TrianglePack& pack() const { return pack_; }
+}
 
- private:
-  const TrianglePack& pack_;
-  hn::Vec<Places> places_;
-};
-
-void take_bearings(const Vec3& p, const DistanceTree& tree, NearTriangles& near) {
+// `near`: all of `packs`, in their order.
+void take_bearings(const Vec3& p, const std::vector<TrianglePack>& packs, NearTriangles& near) {
   const VectorLanes ps = in_all_lanes(p);
-  const Places integers;
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const Bearings bearings = bearings_from(ps, PlacedTriangles(tree, hn::LoadU(integers, &near.places[n])));
+    const Bearings bearings = bearings_from(ps, PackedTriangles(packs[n / kWidth], n % kWidth));
     hn::StoreU(bearings.distances, d, &near.distances[n]);
     hn::StoreU(bearings.away.x, d, &near.away[0][n]);
     hn::StoreU(bearings.away.y, d, &near.away[1][n]);
@@ -211,6 +252,7 @@ void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles&
     const LaneMask wanted =
         hn::And(hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box),
                 hn::Le(bearings.distances, hn::Add(within, gained)));
+    if (hn::AllFalse(d, wanted)) continue;
     append(fewer, boxes, bearings, hn::LoadU(integers, &near.places[n]), wanted);
   }
   close(fewer);
@@ -219,7 +261,7 @@ void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles&
 // Eight samples; the last ones are repeated where there are fewer.
 struct Group {
   alignas(64) std::array<double, kGroup> x, y, z, least;
-  std::array<std::size_t, kGroup> index;  // in BlockTask::squares
+  std::array<std::size_t, kGroup> index;  // in BlockScratch::squares
 
   Group(const BlockTask& task, const SampleBox& box) {
     const LatticeRows& rows = task.rows;
@@ -230,7 +272,7 @@ struct Group {
       x[n] = rows.xs[i];
       y[n] = rows.ys[j];
       z[n] = rows.zs[k];
-      index[n] = (k * rows.ys.size() + j) * rows.xs.size() + i;
+      index[n] = index_in_block({i - task.block.begin[0], j - task.block.begin[1], k - task.block.begin[2]});
     }
     least.fill(kNowhere);
   }
@@ -280,12 +322,21 @@ HWY_INLINE Lanes least_distances(const Bearings& bearings, const VectorLanes& fr
                  dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
 }
 
-// The number of the triangle that seems to be nearest to the box.
-HWY_INLINE std::size_t likely_nearest(const NearTriangles& near, const VectorLanes& center) {
+// Sets `bounds`, one per triangle, to what its squares are not below at any sample of the box `here`; `slack`: of the
+// largest distance that counts. Returns the number of the triangle that seems to be nearest to the box.
+HWY_INLINE std::size_t find_bounds(const NearTriangles& near, const Middle& middle, const Middle& here, double slack,
+                                   std::vector<double>& bounds) {
+  const VectorLanes from = in_all_lanes(here.center - middle.center), extent = in_all_lanes(here.extent);
+  const VectorLanes twice_center = in_all_lanes(2.0 * here.center);
   Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
+  if (bounds.size() < near.count + kWidth) bounds.resize(near.count + kWidth);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
     const BoxLanes boxes = boxes_of(near, n);
-    const VectorLanes to_box = minus(plus(boxes.lower, boxes.upper), plus(center, center));
+    const Lanes distances = hn::Sub(least_distances(bearings_of(near, n), from, extent), hn::Set(d, slack));
+    const Lanes positive = hn::Max(distances, hn::Zero(d));
+    const Lanes squares = squared_between(boxes.lower, boxes.upper, here.lower, here.upper);
+    hn::StoreU(hn::Max(squares, hn::Mul(positive, positive)), d, &bounds[n]);
+    const VectorLanes to_box = minus(plus(boxes.lower, boxes.upper), twice_center);
     const Lanes square = dot(to_box, to_box);
     const LaneMask nearer = hn::Lt(square, least);
     least = hn::IfThenElse(nearer, square, least);
@@ -296,53 +347,49 @@ HWY_INLINE std::size_t likely_nearest(const NearTriangles& near, const VectorLan
       hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere)))));
 }
 
-// Whether the triangle's half-space, of the bearing from `middle`, leaves it nearer to a sample than what was found.
+// Whether the triangle's box and its half-space, of the bearing from `middle`, leave it nearer to a sample than what
+// was found.
 HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, const Vec3& middle, double slack,
                               const Group& group) {
   const Lanes distance = hn::Set(d, near.distances[number] - slack);
   const VectorLanes away = in_all_lanes({near.away[0][number], near.away[1][number], near.away[2][number]});
+  const VectorLanes lower = in_all_lanes({near.lower[0][number], near.lower[1][number], near.lower[2][number]});
+  const VectorLanes upper = in_all_lanes({near.upper[0][number], near.upper[1][number], near.upper[2][number]});
   LaneMask nearer = hn::FirstN(d, 0);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const Lanes least = hn::Load(d, &group.least[n]);
     const Lanes bound = hn::Max(hn::Add(distance, dot(away, minus(ps, in_all_lanes(middle)))), hn::Zero(d));
-    nearer = hn::Or(nearer, hn::Le(hn::Mul(bound, bound), hn::Load(d, &group.least[n])));
+    const Lanes limit = hn::Add(hn::Mul(least, hn::Set(d, 1 + 1e-8)), hn::Set(d, 1e-19));  // beyond_error()
+    nearer = hn::Or(
+        nearer, hn::And(hn::Le(hn::Mul(bound, bound), least), hn::Lt(squared_between(lower, upper, ps, ps), limit)));
   }
   return !hn::AllFalse(d, nearer);
 }
 
-// `near` with bearings from `middle`.
-void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middle, const NearTriangles& near) {
+// Of the triangles of scratch.of_part, with bearings from `middle`.
+void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middle, BlockScratch& scratch) {
+  const NearTriangles& near = scratch.of_part;
   const Middle here(task.rows, box);
   Group group(task, box);
-  const std::vector<TrianglePack>& packs = task.tree.packs();
   const auto look_at = [&](std::size_t number) {
     const auto place = static_cast<std::size_t>(near.places[number]);
-    return beyond_error(lower_to(packs[place / kStride], place % kStride, group));
+    return beyond_error(lower_to(scratch.packed[place / kStride], place % kStride, group));
   };
-  const VectorLanes from = in_all_lanes(here.center - middle.center);
-  const std::size_t first = likely_nearest(near, in_all_lanes(here.center));
+  const double slack = slack_of(task.reach * kSlack, middle.radius);
+  const std::size_t first = find_bounds(near, middle, here, slack, scratch.bounds);
   double most = std::min(square_of_reach(task.reach), look_at(first));
-  const double slack = slack_of(std::sqrt(most), middle.radius);
-  const VectorLanes extent = in_all_lanes(here.extent);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const BoxLanes boxes = boxes_of(near, n);
-    const Lanes squares = squared_between(boxes.lower, boxes.upper, here.lower, here.upper);
-    const Lanes distances = hn::Sub(least_distances(bearings_of(near, n), from, extent), hn::Set(d, slack));
-    const auto below = [&](double square) {
-      return hn::And(hn::Lt(squares, hn::Set(d, square)), hn::Le(distances, hn::Set(d, std::sqrt(square))));
-    };
-    LaneMask wanted = below(most);
+    const Lanes bounds = hn::LoadU(d, &scratch.bounds[n]);
+    LaneMask wanted = hn::Le(bounds, hn::Set(d, most));
     while (!hn::AllFalse(d, wanted)) {
       const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, wanted));
       const bool worth_it = n + lane != first && may_be_nearer(near, n + lane, middle.center, slack, group);
       if (worth_it) most = std::min(most, look_at(n + lane));
-      wanted = hn::AndNot(hn::FirstN(d, lane + 1), worth_it ? hn::And(wanted, below(most)) : wanted);
+      wanted = hn::AndNot(hn::FirstN(d, lane + 1), worth_it ? hn::Le(bounds, hn::Set(d, most)) : wanted);
     }
   }
-  for (std::size_t n = 0; n < kGroup; ++n) {
-    double& square = task.squares[group.index[n]];
-    square = std::min(square, group.least[n]);
-  }
+  for (std::size_t n = 0; n < kGroup; ++n) scratch.squares[group.index[n]] = group.least[n];
 }
 
 // visit(part) of the parts of a box, of `side` samples along each axis.
@@ -365,17 +412,26 @@ HWY_INLINE void for_each_part(const SampleBox& box, std::size_t side, const Visi
   }
 }
 
-void fill_block(const BlockTask& task, BlockScratch& scratch) {
+// The triangles near the block, copied together.
+void find_triangles(const BlockTask& task, BlockScratch& scratch) {
   const Middle middle(task.rows, task.block);
-  find_near(task, middle, scratch.all);
-  keep_near(task, middle, scratch.all, scratch.of_block);
+  // Half-spaces tell nothing of triangles that are nearer than the block is large.
+  const bool is_far = task.reach > 2 * middle.radius;
+  find_near(task, middle, is_far, is_far ? scratch.all : scratch.of_block);
+  if (is_far) keep_near(task, middle, scratch.all, scratch.of_block);
+  pack_together(task.tree, scratch.of_block, scratch.packed);
+}
+
+void fill_block(const BlockTask& task, BlockScratch& scratch) {
+  scratch.squares.fill(kNowhere);
+  find_triangles(task, scratch);
   if (scratch.of_block.count == 0) return;
   for_each_part(task.block, kPartSide, [&](const SampleBox& part) {
     const Middle of_part(task.rows, part);
-    take_bearings(of_part.center, task.tree, scratch.of_block);
+    take_bearings(of_part.center, scratch.packed, scratch.of_block);
     keep_near(task, of_part, scratch.of_block, scratch.of_part);
     if (scratch.of_part.count == 0) return;
-    for_each_part(part, kGroupSide, [&](const SampleBox& box) { fill_group(task, box, of_part, scratch.of_part); });
+    for_each_part(part, kGroupSide, [&](const SampleBox& box) { fill_group(task, box, of_part, scratch); });
   });
 }
 

@@ -22,10 +22,15 @@ struct SampleBox {
 // The largest side of a block that a kernel takes.
 inline constexpr std::size_t kBlockSide = 8;
 
+// The place of a sample among all of a block's, by its number along each axis.
+[[nodiscard]] constexpr std::size_t index_in_block(const std::array<std::size_t, 3>& sample) {
+  return (sample[2] * kBlockSide + sample[1]) * kBlockSide + sample[0];
+}
+
 // Triangles that may be near some samples, in columns of equal length.
 struct NearTriangles {
   std::array<std::vector<double>, 3> lower, upper;  // their boxes
-  std::vector<std::int64_t> places;                 // in the packs: of the first column's number, counted in numbers
+  std::vector<std::int64_t> places;                 // in packs: of the first column's number, counted in numbers
   std::vector<double> distances;                    // from the middle of part of the samples; 0 where not sure
   std::array<std::vector<double>, 3> away;          // directions in which these distances grow; 0 where not sure
   std::size_t count = 0;
@@ -34,7 +39,10 @@ struct NearTriangles {
 // What a task keeps from block to block.
 struct BlockScratch {
   std::vector<std::uint32_t> packs;
-  NearTriangles all, of_block, of_part;
+  NearTriangles all, of_block, of_part;  // places: in the tree's packs, of the others in `packed`
+  std::vector<TrianglePack> packed;      // those of the block
+  std::vector<double> bounds;            // below the squares of those of the part, at all samples of a group
+  std::array<double, kBlockSide * kBlockSide * kBlockSide> squares;  // by index_in_block()
 };
 
 // Samples and what is known about their nearest triangles.
@@ -44,11 +52,10 @@ struct BlockTask {
   SampleBox block;                       // each side at most kBlockSide
   double reach;                          // a triangle that is farther than this from all samples counts for none
   std::span<const std::uint32_t> packs;  // all that have a triangle that counts
-  std::span<double> squares;             // of all samples of `rows`, x fastest
 };
 
-// Lowers the squares of the block's samples to those of the nearest triangles (core/distance/triangle_distance.h) where
-// these are not above reach^2. Needs DefaultFloatingPoint.
+// Sets scratch.squares to those of the nearest triangles (core/distance/triangle_distance.h) where these are not above
+// reach^2, else to larger numbers or infinity. Needs DefaultFloatingPoint.
 using BlockKernel = void (*)(const BlockTask& task, BlockScratch& scratch);
 
 // That of the level, of the best one where the level is not available. Results are the same for every level.

@@ -105,11 +105,10 @@ struct DistanceEvaluator::Implementation {
     const LatticeRows rows = rows_in_scale(lattice, block, to_unit);
     // No sample that is not far is farther from the mesh than four times kFar.
     const double unit_band = std::min(to_unit(band), 4 * kFar);
-    fill_band(nearest(), rows, unit_band, distances);
-    constexpr std::size_t kGrain = std::size_t{1} << 14;
-    parallel_for(distances.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) distances[n] = std::min(to_world(std::sqrt(distances[n])), band);
-    });
+    const auto finish = [&](std::span<double> squares) {
+      for (double& number : squares) number = std::min(to_world(std::sqrt(number)), band);
+    };
+    fill_band(nearest(), rows, unit_band, {finish, band}, distances);
   }
 
   double far_beyond = kFar;  // in units; none is near a mesh that is the origin

@@ -24,14 +24,17 @@ Box box_of_columns(const Boxes& boxes) {
   return all;
 }
 
-std::vector<TrianglePack> make_packs(const TriangleMesh& mesh) {
+// Sets `boxes` to those of the packs. Not a vector, which would clear the packs first: they are much memory, and
+// clearing takes as long as filling.
+std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<Box> boxes) {
   const std::vector<std::uint32_t> triangles = triangles_in_runs(mesh, kWidth);
-  std::vector<TrianglePack> packs((triangles.size() + kWidth - 1) / kWidth);
+  auto packs = std::make_unique_for_overwrite<TrianglePack[]>(boxes.size());
   constexpr std::size_t kPacksPerTask = 256;
-  parallel_for(packs.size(), kPacksPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(boxes.size(), kPacksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t first = n * kWidth;
       packs[n].set(mesh, std::span(triangles).subspan(first, std::min(kWidth, triangles.size() - first)));
+      boxes[n] = box_of_columns(packs[n]);
     }
   });
   return packs;
@@ -56,9 +59,12 @@ void DistanceTree::Node::set(std::size_t child, const Box& box) {
 Box DistanceTree::Node::box() const { return box_of_columns(*this); }
 
 DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
-    : packs_(make_packs(mesh)), simd_(level), search_(nearest_search(level)), find_packs_(pack_search(level)) {
-  std::vector<Box> boxes(packs_.size());
-  for (std::size_t n = 0; n < packs_.size(); ++n) boxes[n] = box_of_columns(packs_[n]);
+    : pack_count_((mesh.triangles.size() + kWidth - 1) / kWidth),
+      simd_(level),
+      search_(nearest_search(level)),
+      find_packs_(pack_search(level)) {
+  std::vector<Box> boxes(pack_count_);
+  packs_ = make_packs(mesh, boxes);
   while (boxes.size() > 1) {
     Level above((boxes.size() + kWidth - 1) / kWidth);
     for (std::size_t n = 0; n < boxes.size(); ++n) above[n / kWidth].set(n % kWidth, boxes[n]);

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
@@ -42,13 +45,14 @@ class DistanceTree {
     find_packs_(*this, box, limit, found);
   }
 
-  [[nodiscard]] const std::vector<TrianglePack>& packs() const { return packs_; }
+  [[nodiscard]] std::span<const TrianglePack> packs() const { return {packs_.get(), pack_count_}; }
   // From the parents of packs to the root; none where there is one pack.
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
   [[nodiscard]] SimdLevel simd() const { return simd_; }
 
  private:
-  std::vector<TrianglePack> packs_;
+  std::size_t pack_count_;
+  std::unique_ptr<TrianglePack[]> packs_;
   std::vector<Level> levels_;
   SimdLevel simd_;
   double (*search_)(const DistanceTree& tree, const Vec3& p, double limit);

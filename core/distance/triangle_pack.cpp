@@ -28,4 +28,17 @@ void TrianglePack::set(const TriangleMesh& mesh, std::span<const std::uint32_t> 
   }
 }
 
+void TrianglePack::copy(std::size_t slot, const TrianglePack& from, std::size_t from_slot) {
+  for (std::size_t n = 0; n < 3; ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) corners[n][axis][slot] = from.corners[n][axis][from_slot];
+    inverse_square[n][slot] = from.inverse_square[n][from_slot];
+    to_v[n][slot] = from.to_v[n][from_slot];
+    to_w[n][slot] = from.to_w[n][from_slot];
+  }
+  sure_from[slot] = from.sure_from[from_slot];
+  sure_up_to[slot] = from.sure_up_to[from_slot];
+  direction_from[slot] = from.direction_from[from_slot];
+  shape[slot] = from.shape[from_slot];
+}
+
 }  // namespace raycone

@@ -28,6 +28,9 @@ struct alignas(64) TrianglePack {
   // To one to eight triangles of `mesh`; the last one fills the rest.
   void set(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles);
 
+  // Sets a slot to one of another pack, but for its box.
+  void copy(std::size_t slot, const TrianglePack& from, std::size_t from_slot);
+
   [[nodiscard]] Vec3 corner(std::size_t corner, std::size_t slot) const {
     const Columns& at = corners[corner];
     return {at[0][slot], at[1][slot], at[2][slot]};

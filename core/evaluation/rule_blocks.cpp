@@ -21,12 +21,19 @@ namespace {
 constexpr std::array<std::size_t, 3> kSides{kTile, 32, 32};
 constexpr std::size_t kFew = 4;
 constexpr std::size_t kRow = 32;
+constexpr std::size_t kHopeless = 8 * kFew;  // where certificates failed: parts are as few as that
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 
-// Of interpolation between corners: the largest blocks, and by how much it may be off, turns. It leaves the more
-// samples undecided the larger a block is; of a smaller one, corners are too many of its samples.
-constexpr std::size_t kInterpolated = 1024;
+// Of interpolation between nodes: the largest blocks, by how much it may be off, turns, and how many cells there are
+// along the longest side at most. It leaves the more samples undecided the larger cells are, this share of all per turn
+// that it may be off (measured); of smaller ones, nodes are too many.
+constexpr std::size_t kInterpolated = 8192;
 constexpr double kMostBend = 0.04;
+constexpr std::size_t kMostCells = 4;
+constexpr double kUndecided = 5.0;
+// Larger blocks than this are divided, unless interpolation leaves so few samples to evaluate, of each.
+constexpr std::size_t kSmall = 1024;
+constexpr double kWorthIt = 1.0 / 16;
 
 // Rounding of sums and differences of a few numbers of turns, beside the doubt of values; times their magnitude.
 constexpr double kRounding = 1e-12;
@@ -41,15 +48,33 @@ struct Block {
   [[nodiscard]] bool is_row() const { return count(1) == 1 && count(2) == 1; }
 };
 
+// Samples that a grid of nodes consists of: their numbers along each axis, the first and the last of a block included.
+struct NodeGrid {
+  std::array<std::vector<std::size_t>, 3> along;
+  double bend = 0.0;  // turns by which samples are at most off what is interpolated between nodes
+
+  [[nodiscard]] std::size_t size() const { return along[0].size() * along[1].size() * along[2].size(); }
+  [[nodiscard]] std::size_t index(const std::array<std::size_t, 3>& node) const {
+    return (node[2] * along[1].size() + node[1]) * along[0].size() + node[0];
+  }
+};
+
+// Of a sample along one axis: the nodes around it, and how far it is from the one to the other.
+struct PlaceInGrid {
+  std::size_t node, next;
+  double fraction;
+};
+
 // A block in which the rest is smooth: w less the crossings of the closed mesh or, in a row, which does not pass
-// through the cone, less those of the mesh. It is known well enough once it is known at one sample, or at all corners.
+// through the cone, less those of the mesh. It is known well enough once it is known at one sample, or at some nodes.
 struct Candidate {
   Block block;
   bool closed;
   double change;  // from the sample in the middle to others at most, turns
-  double bend;    // from what is interpolated between the corners, likewise
-  std::vector<std::array<std::size_t, 3>> samples;
-  std::array<double, 8> rest{};  // at each of them
+  double second;  // bound of second derivatives, turns per square unit
+  NodeGrid nodes;
+  std::vector<std::array<std::size_t, 3>> samples;  // one in the middle, or the nodes
+  std::vector<double> rest;                         // at each of them
 };
 
 bool overlap(const Box& a, const Box& b) {
@@ -94,9 +119,11 @@ class RuleBlocks {
       std::vector<Candidate> interpolated;
       for (Candidate& candidate : candidates) {
         if (decide(candidate)) continue;
-        if (candidate.block.size() <= kInterpolated && candidate.bend <= kMostBend) {
-          candidate.samples = corners_of(candidate.block);
+        if (choose_nodes(candidate)) {
           interpolated.push_back(std::move(candidate));
+        } else if (candidate.block.size() <= kHopeless) {
+          candidate.block.caps.clear();
+          undecided.push_back(std::move(candidate.block));
         } else {
           divide(std::move(candidate.block), parts);
         }
@@ -165,30 +192,6 @@ class RuleBlocks {
     return distance_to_threshold(side_.rule(), w) - kRounding * std::abs(w) > needed;
   }
 
-  // A number for each corner: bit a is set on the upper side of axis a. visit(number, which of those that are told from
-  // others it is).
-  template <class Visit>
-  static void for_each_corner(const Block& block, const Visit& visit) {
-    std::size_t flat = 0, next = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) flat |= (block.count(axis) == 1 ? 1U : 0U) << axis;
-    std::array<std::size_t, 8> which{};
-    for (std::size_t n = 0; n < 8; ++n) {
-      which[n] = (n & flat) == 0 ? next++ : which[n & ~flat];
-      visit(n, which[n]);
-    }
-  }
-  [[nodiscard]] static std::vector<std::array<std::size_t, 3>> corners_of(const Block& block) {
-    std::vector<std::array<std::size_t, 3>> corners;
-    for_each_corner(block, [&](std::size_t n, std::size_t which) {
-      if (which < corners.size()) return;
-      corners.push_back(block.first);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if ((n >> axis & 1) != 0) corners.back()[axis] = block.last[axis] - 1;
-      }
-    });
-    return corners;
-  }
-
   [[nodiscard]] Block block(std::size_t n) const;
   void sort_caps();
   void look_at(Block block, std::vector<Candidate>& candidates, std::vector<Block>& parts,
@@ -197,7 +200,10 @@ class RuleBlocks {
   void evaluate_each(const Block& whole, std::span<const Block> blocks) const;
   void evaluate(std::span<Candidate> candidates) const;
   [[nodiscard]] bool decide(const Candidate& candidate) const;
+  [[nodiscard]] NodeGrid grid_of(const Candidate& candidate, std::size_t cells) const;
+  [[nodiscard]] bool choose_nodes(Candidate& candidate) const;
   void interpolate(const Candidate& candidate, std::vector<Block>& undecided) const;
+  [[nodiscard]] std::vector<PlaceInGrid> places_along(const Block& block, const NodeGrid& grid, std::size_t axis) const;
   void divide(Block block, std::vector<Block>& parts) const;
 
   const ScaledMesh& mesh_;
@@ -265,23 +271,21 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
   divide(std::move(block), parts);
 }
 
-// A multilinear interpolation is off by an eighth of the squares of the block's extents times the second derivatives.
 Candidate RuleBlocks::candidate_of(Block block, const Box& box) const {
-  Candidate candidate{std::move(block), false, 0.0, 0.0, {{}}};
+  Candidate candidate{std::move(block), false, 0.0, 0.0, {}, {{}}, {}};
   candidate.closed = candidate.block.caps.empty();
-  double to_farthest = 0.0, extents = 0.0;  // squares
+  double to_farthest = 0.0;  // its square
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double lower = box.lower[static_cast<int>(axis)], upper = box.upper[static_cast<int>(axis)];
     std::size_t& middle = candidate.samples.front()[axis];
     middle = candidate.block.first[axis] + candidate.block.count(axis) / 2;
     const double x = coordinates(axis)[middle], extent = std::max(x - lower, upper - x);
     to_farthest += extent * extent;
-    extents += (upper - lower) * (upper - lower);
   }
   const double radius = std::sqrt(to_farthest);
   const ChangeBound::Bounds bounds = changes_.in(box, kMostChange / radius);
   candidate.change = radius * bounds.gradient * (1 + kRounding);
-  candidate.bend = extents / 8 * bounds.second * (1 + kRounding);
+  candidate.second = bounds.second;
   return candidate;
 }
 
@@ -292,6 +296,7 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
   };
   std::vector<Place> places;
   for (Candidate& candidate : candidates) {
+    candidate.rest.resize(candidate.samples.size());
     for (std::size_t n = 0; n < candidate.samples.size(); ++n) places.push_back({&candidate, n});
   }
   LatticeTile tile(mesh_, [&](std::size_t index, const Vec3&, double w) {
@@ -318,30 +323,83 @@ bool RuleBlocks::decide(const Candidate& candidate) const {
   });
 }
 
-// Sets the sides that are certain by interpolation between the corners. Adds the other samples, in runs.
+// So many cells along the longest side, fewer along others. A multilinear interpolation is off by an eighth of the
+// squares of a cell's extents times the second derivatives.
+NodeGrid RuleBlocks::grid_of(const Candidate& candidate, std::size_t cells) const {
+  const Block& block = candidate.block;
+  const Vec3 size = box_of(block).upper - box_of(block).lower;
+  const double longest = std::max({size.x, size.y, size.z});
+  NodeGrid grid;
+  double extents = 0.0;  // squares
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t steps = block.count(axis) - 1;
+    const double share = longest > 0.0 ? size[static_cast<int>(axis)] / longest : 0.0;
+    const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(cells)));
+    const std::size_t parts = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(steps, 1));
+    std::vector<std::size_t>& nodes = grid.along[axis];
+    double extent = 0.0;
+    for (std::size_t n = 0; n <= parts && (n == 0 || steps > 0); ++n) {
+      nodes.push_back(block.first[axis] + n * steps / parts);
+      if (n > 0) extent = std::max(extent, coordinates(axis)[nodes[n]] - coordinates(axis)[nodes[n - 1]]);
+    }
+    extents += extent * extent;
+  }
+  grid.bend = extents / 8 * candidate.second * (1 + kRounding);
+  return grid;
+}
+
+// Makes the nodes that leave fewest samples to evaluate the candidate's samples. Returns whether that is worth it.
+bool RuleBlocks::choose_nodes(Candidate& candidate) const {
+  const std::size_t size = candidate.block.size();
+  if (size > kInterpolated) return false;
+  const auto samples = static_cast<double>(size);
+  double least = samples;
+  for (std::size_t cells = 1; cells <= kMostCells; ++cells) {
+    NodeGrid grid = grid_of(candidate, cells);
+    const double cost = static_cast<double>(grid.size()) + std::min(kUndecided * grid.bend, 1.0) * samples;
+    if (cells > 1 && !(cost < least)) continue;
+    least = cost;
+    candidate.nodes = std::move(grid);
+  }
+  if (!(candidate.nodes.bend <= kMostBend) || !(least < samples) || (size > kSmall && least > kWorthIt * samples))
+    return false;
+  const auto& [xs, ys, zs] = candidate.nodes.along;
+  candidate.samples.clear();
+  for (const std::size_t k : zs) {
+    for (const std::size_t j : ys) {
+      for (const std::size_t i : xs) candidate.samples.push_back({i, j, k});
+    }
+  }
+  return true;
+}
+
+// Sets the sides that are certain by interpolation between the nodes. Adds the other samples, in runs.
 void RuleBlocks::interpolate(const Candidate& candidate, std::vector<Block>& undecided) const {
   const Block& block = candidate.block;
-  std::array<double, 8> r;  // at all corners
-  for_each_corner(block, [&](std::size_t n, std::size_t which) { r[n] = candidate.rest[which]; });
+  const NodeGrid& grid = candidate.nodes;
   double largest = 0.0;
-  for (const double rest : r) largest = std::max(largest, std::abs(rest));
-  const double needed = candidate.bend + mesh_.doubt() + 8 * kRounding * (1 + largest);
-  const auto fraction = [&](std::size_t axis, std::size_t i) {
-    const std::vector<double>& all = coordinates(axis);
-    const double first = all[block.first[axis]], last = all[block.last[axis] - 1];
-    return last > first ? (all[i] - first) / (last - first) : 0.0;
-  };
+  for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
+  const double needed = grid.bend + mesh_.doubt() + 8 * kRounding * (1 + largest);
   const auto between = [](double a, double b, double t) { return a + t * (b - a); };
+  const std::array<std::vector<PlaceInGrid>, 3> places{places_along(block, grid, 0), places_along(block, grid, 1),
+                                                       places_along(block, grid, 2)};
+  std::vector<double> nodes(grid.along[0].size()), rest(block.count(0));  // along a row
   for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
     for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
-      const double y = fraction(1, j), z = fraction(2, k);
-      const double lower = between(between(r[0], r[2], y), between(r[4], r[6], y), z);
-      const double upper = between(between(r[1], r[3], y), between(r[5], r[7], y), z);
+      const PlaceInGrid y = places[1][j - block.first[1]], z = places[2][k - block.first[2]];
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const auto at = [&](std::size_t of_y, std::size_t of_z) { return candidate.rest[grid.index({n, of_y, of_z})]; };
+        nodes[n] = between(between(at(y.node, z.node), at(y.next, z.node), y.fraction),
+                           between(at(y.node, z.next), at(y.next, z.next), y.fraction), z.fraction);
+      }
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        rest[i] = between(nodes[places[0][i].node], nodes[places[0][i].next], places[0][i].fraction);
+      }
       const std::size_t row = row_of(j, k) * rows_.xs.size();
       const Block part{{block.first[0], j, k}, {block.last[0], j + 1, k + 1}, {}};
       for_each_run(part, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
         for (std::size_t i = begin - row; i < end - row; ++i) {
-          const double w = n + between(lower, upper, fraction(0, i));
+          const double w = n + rest[i - block.first[0]];
           if (is_certain(w, needed)) {
             sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
           } else if (i > begin - row && !undecided.empty() && undecided.back().last == std::array{i, j + 1, k + 1}) {
@@ -354,6 +412,20 @@ void RuleBlocks::interpolate(const Candidate& candidate, std::vector<Block>& und
       });
     }
   }
+}
+
+// Of each of the block's samples along an axis.
+std::vector<PlaceInGrid> RuleBlocks::places_along(const Block& block, const NodeGrid& grid, std::size_t axis) const {
+  const std::vector<std::size_t>& nodes = grid.along[axis];
+  const std::vector<double>& all = coordinates(axis);
+  std::vector<PlaceInGrid> places;
+  for (std::size_t i = block.first[axis], node = 0; i < block.last[axis]; ++i) {
+    while (node + 2 < nodes.size() && nodes[node + 1] <= i) ++node;
+    const std::size_t next = std::min(node + 1, nodes.size() - 1);
+    const double first = all[nodes[node]], last = all[nodes[next]];
+    places.push_back({node, next, last > first ? (all[i] - first) / (last - first) : 0.0});
+  }
+  return places;
 }
 
 // Row by row: samples that share a ray are cheaper together.

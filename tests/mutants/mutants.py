@@ -276,6 +276,8 @@ MUTANTS = [
          "0.0, 0.0, 0.0, 0.0, 0.0, 0.0")]),
 
     # --- Distances ---
+    Mutant("few_in_reverse", "runs are of triangles next to one another", [
+        ("core/mesh/triangle_runs.cpp", "keys[other] < keys[n]", "keys[other] > keys[n]")]),
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
         ("core/distance/tree_kernel.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
@@ -491,8 +493,10 @@ MUTANTS = [
         ("core/boundary/change_bound.cpp", "second += 2 * source.length / cube;",
          "second += 0.2 * source.length / cube;")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.bend + mesh_.doubt()",
-         "const double needed = 0 * candidate.bend + mesh_.doubt()")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + mesh_.doubt()",
+         "const double needed = 0 * grid.bend + mesh_.doubt()")]),
+    Mutant("interpolation_between_wrong_nodes", "a sample is interpolated between the nodes around it", [
+        ("core/evaluation/rule_blocks.cpp", "node + 2 < nodes.size()", "node + 9 < nodes.size()")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

@@ -415,7 +415,8 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   // Points next to the hole's rim are on triangles, the others within 2^-34 of an edge of the right place.
   const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
   EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));
-  EXPECT_GT(measure_surface(surface, mesh, lattice).hole_area, 0.0);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  EXPECT_GT(measure_surface(surface, mesh, inside).hole_area, 0.0);
 }
 
 TEST(Surface, InSinglePrecisionIsRightThere) {
@@ -460,10 +461,31 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   const auto first = static_cast<std::uint32_t>(box.vertices.size());
   wall.triangles.push_back({first, first + 1, first + 2});
   const auto [surface, lattice] = surface_of(box, 20);
-  EXPECT_NEAR(measure_surface(surface, wall, lattice).dropped_area, 0.18, 1e-12);
-  EXPECT_EQ(measure_surface(surface, box, lattice).dropped_area, 0.0);
-  EXPECT_TRUE(measure_surface(surface, wall, lattice).drops);
-  EXPECT_FALSE(measure_surface(surface, box, lattice).drops);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  EXPECT_NEAR(measure_surface(surface, wall, inside).dropped_area, 0.18, 1e-12);
+  EXPECT_EQ(measure_surface(surface, box, inside).dropped_area, 0.0);
+  EXPECT_TRUE(measure_surface(surface, wall, inside).drops);
+  EXPECT_FALSE(measure_surface(surface, box, inside).drops);
+}
+
+// They find most distances without a search.
+TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
+  Random random(26);
+  for (int round = 0; round < 6; ++round) {
+    const TriangleMesh mesh = rotated(round % 2 == 0 ? test::open_box() : test::sphere(9));
+    SurfaceOptions options;
+    options.single_precision = round > 3;
+    auto [surface, lattice] = surface_of(mesh, 16 + round, options);
+    // Some vertices off the mesh, as nothing makes them: not what their sources say.
+    if (round % 3 == 2) surface.mesh.vertices[surface.mesh.triangles[7][0]].x += 3.0 * lattice.spacing.x;
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < surface.sources.size(); ++i) {
+      if (surface.sources[i] == kHole) continue;
+      for (const std::uint32_t corner : surface.mesh.triangles[i]) points.push_back(surface.mesh.vertices[corner]);
+    }
+    const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+    EXPECT_EQ(measure_surface(surface, mesh, inside).max_distance, largest_distance_of(points, mesh)) << round;
+  }
 }
 
 // A box beside a plate of a tenth of a voxel, which lies between nodes.

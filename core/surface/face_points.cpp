@@ -76,10 +76,10 @@ std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
 }
 
 // The point of a crease in the face that is farthest from the straight line between the two points.
-std::optional<Vec3> crease_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double margin) {
+std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, double margin) {
   const auto& [low, middle, high] = face.corners;
   const std::optional<Vec3> hit =
-      creases.farthest_hit(cell, face.corners, face.points[0]->position, face.points[1]->position);
+      creases.farthest_hit(face.corners, face.points[0]->position, face.points[1]->position);
   if (!hit) return std::nullopt;
   const Vec3 first = middle - low, second = high - low, normal = cross(first, second), from = *hit - low;
   const double size = dot(normal, normal);
@@ -91,11 +91,10 @@ std::optional<Vec3> crease_point(const FaceEdges& face, const CellCreases& creas
 }
 
 // Where planes meet on a crease, that is the point: it is in both planes as well as numbers can tell.
-std::optional<Vec3> face_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double near,
-                               double margin) {
+std::optional<Vec3> face_point(const FaceEdges& face, CreasesHere& creases, double near, double margin) {
   const std::optional<Vec3> meeting = meeting_point(face, margin);
-  if (meeting && creases.has_hit_near(cell, face.corners, *meeting, near)) return meeting;
-  return crease_point(face, creases, cell, margin);
+  if (meeting && creases.has_hit_near(face.corners, *meeting, near)) return meeting;
+  return crease_point(face, creases, margin);
 }
 
 }  // namespace
@@ -126,11 +125,13 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
   std::mutex mutex;
   parallel_for(cells.cells().size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<FacePoint> found;
+    CreasesHere creases_here(creases);
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+      creases_here.enter(cell);
       for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
         const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
         if (!edges || !disagree(*edges, tolerance, margins.inner)) continue;
-        const auto point = face_point(*edges, creases, cell, near, margins.inner);
+        const auto point = face_point(*edges, creases_here, near, margins.inner);
         if (point) found.push_back({std::uint64_t{16} * cell + face, *point});
       }
     }

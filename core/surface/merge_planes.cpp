@@ -153,7 +153,7 @@ class BrickMerger {
     PatchMerger merger(patch, input_, limits_);
     merger.merge();
     for (std::size_t n = 0; n < faces.size(); ++n) {
-      Triangle t = merger.triangles()[n];
+      Triangle t = merger.triangle(n);
       const bool is_gone = t[0] == t[1];
       for (std::uint32_t& corner : t) corner = is_gone ? 0 : global[corner];
       merged_.triangles[faces[n]] = t;

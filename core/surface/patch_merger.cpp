@@ -32,7 +32,7 @@ template <class Visit>
 void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
   for (Corner corner = first_[v]; corner != kNoCorner; corner = next_[corner]) {
     const std::uint32_t face = corner / 3, place = corner % 3;
-    const Triangle& t = triangles_[face];
+    const Triangle& t = faces_[face].corners;
     if (!visit(face, t[place == 2 ? 0 : place + 1], t[place == 0 ? 2 : place - 1])) return;
   }
 }
@@ -42,8 +42,7 @@ PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, c
       input_(input),
       limits_(limits),
       roles_(patch.roles),
-      triangles_(patch.triangles),
-      plane_(patch.triangles.size(), kNoPlane),
+      faces_(patch.triangles.size()),
       needles_(patch.triangles.size()),
       changed_(patch.triangles.size(), 0),
       first_(patch.vertices.size(), kNoCorner),
@@ -53,14 +52,15 @@ PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, c
       by_geometry_(patch.vertices.size(), 0),
       into_(patch.vertices.size()),
       marked_(patch.vertices.size(), 0) {
+  for (std::size_t face = 0; face < faces_.size(); ++face) faces_[face].corners = patch.triangles[face];
   // Backwards, so that chains are in the order of the faces.
   for (auto corner = static_cast<Corner>(next_.size()); corner-- > 0;) {
-    Corner& first = first_[triangles_[corner / 3][corner % 3]];
+    Corner& first = first_[faces_[corner / 3].corners[corner % 3]];
     next_[corner] = first;
     first = corner;
   }
   for (std::uint32_t v = 0; v < into_.size(); ++v) into_[v] = v;
-  for (std::uint32_t face = 0; face < triangles_.size(); ++face) needles_[face] = is_needle(face) ? 1 : 0;
+  for (std::uint32_t face = 0; face < faces_.size(); ++face) needles_[face] = is_needle(face) ? 1 : 0;
   spread(VertexRole::kForeign);
   spread(VertexRole::kKept);
   for (std::uint32_t v = 0; v < state_.size(); ++v) {
@@ -137,7 +137,7 @@ std::uint32_t PatchMerger::plane_of_source(std::int32_t source, const Vec3& fron
 // Faces of one source have one plane, the source's, as far as their corners are in it. Fronts are told apart. Others
 // are parallel to it, where points at nodes were moved off it by as much, or have a plane of their own.
 std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
-  const Triangle& t = triangles_[face];
+  const Triangle& t = faces_[face].corners;
   const Vec3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
   if (patch_.sources[face] != kHole) {
     const auto has_corners = [&](const Plane& plane) {
@@ -153,13 +153,14 @@ std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
 
 // Faces change only when their planes are known: those around a vertex are looked at before it is pulled.
 std::uint32_t PatchMerger::plane_at(std::uint32_t face) {
-  if (plane_[face] == kNoPlane) plane_[face] = plane_of(face);
-  return plane_[face];
+  std::uint32_t& plane = faces_[face].plane;
+  if (plane == kNoPlane) plane = plane_of(face);
+  return plane;
 }
 
 // They lie between points that are kept off one node of the lattice, where the mesh passes through it.
 bool PatchMerger::is_needle(std::uint32_t face) const {
-  const Triangle& t = triangles_[face];
+  const Triangle& t = faces_[face].corners;
   const Vec3 u = position(t[1]) - position(t[0]), v = position(t[2]) - position(t[0]), normal = cross(u, v);
   return dot(normal, normal) < limits_.needle * limits_.needle * longest_square(u, v);
 }
@@ -217,15 +218,16 @@ double PatchMerger::worst_quality(std::uint32_t target, bool with_needles, doubl
   return worst;
 }
 
-// Faces of one plane mostly follow each other.
-bool PatchMerger::is_in_planes(const Vec3& p, bool with_needles) const {
-  std::uint32_t checked = kNoPlane;
+void PatchMerger::find_planes(bool with_needles) {
+  around_.clear();
   for (const StarFace& face : star_) {
-    if ((face.is_needle && !with_needles) || face.plane == checked) continue;
-    checked = face.plane;
-    if (!(planes_[checked].distance(p) <= limits_.most)) return false;
+    if ((face.is_needle && !with_needles) || std::ranges::find(around_, face.plane) != around_.end()) continue;
+    around_.push_back(face.plane);
   }
-  return true;
+}
+
+bool PatchMerger::is_in_planes(const Vec3& p) const {
+  return std::ranges::all_of(around_, [&](std::uint32_t plane) { return planes_[plane].distance(p) <= limits_.most; });
 }
 
 // The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): the vertex and `target` have no neighbours in common but
@@ -247,6 +249,7 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   constexpr double kMayLose = 0.25;
   find_star(v);
   if (std::ranges::none_of(star_, &StarFace::is_needle)) return std::nullopt;
+  find_planes(false);
   const std::vector<std::uint32_t> faces = faces_at_node(v);
   const double before = worst_quality(v, false, -std::numeric_limits<double>::infinity());
   const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, before));
@@ -255,7 +258,7 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   for (const std::uint32_t target : ring_) {
     const std::pair rank(planes_through(target, faces), -distance(v, target));
     if (!(rank > best_rank) || roles_[target] == VertexRole::kForeign || !is_at_node(v, target)) continue;
-    if (!is_in_planes(position(target), false)) continue;
+    if (!is_in_planes(position(target))) continue;
     if (!(worst_quality(target, false, needed) > needed) || !keeps_topology(target)) continue;
     best = target;
     best_rank = rank;
@@ -294,11 +297,12 @@ std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<st
 // The vertex that v can be pulled into with the best faces around.
 std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
   find_star(v);
+  find_planes(true);
   std::optional<std::uint32_t> best;
   bool by_geometry = true;
   std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
   for (const std::uint32_t target : ring_) {
-    if (!is_in_planes(position(target), true)) continue;
+    if (!is_in_planes(position(target))) continue;
     if (roles_[target] == VertexRole::kForeign) {
       by_geometry = false;
       continue;
@@ -333,7 +337,7 @@ void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
   for (Corner corner = first_[v], following = kNoCorner; corner != kNoCorner; corner = following) {
     following = next_[corner];
     const std::uint32_t face = corner / 3;
-    Triangle& t = triangles_[face];
+    Triangle& t = faces_[face].corners;
     if (t[0] == target || t[1] == target || t[2] == target) {
       for (std::uint32_t place = 0; place < 3; ++place) {
         if (t[place] != v) unlink(3 * face + place, t[place]);
@@ -347,7 +351,7 @@ void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
     changed_[face] = 1;
     if (needles_[face] == 0) continue;
     needles_[face] = is_needle(face) ? 1 : 0;
-    plane_[face] = plane_of(face);
+    faces_[face].plane = plane_of(face);
   }
   first_[v] = kNoCorner;
   into_[v] = target;
@@ -363,7 +367,7 @@ bool PatchMerger::is_settled(std::uint32_t v) const {
   bool is_same = true;
   for_each_face(v, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
     const bool changed = changed_[face] != 0;
-    is_same = needles_[face] == 0 && (!changed || (planes_[plane_[face]].is_of_source && !is_needle(face)));
+    is_same = needles_[face] == 0 && (!changed || (planes_[faces_[face].plane].is_of_source && !is_needle(face)));
     return is_same;
   });
   return is_same;

@@ -42,9 +42,9 @@ class PatchMerger {
   // Pulls what can be pulled. Call it once.
   void merge();
 
-  // After that: the patch's faces, {0, 0, 0} for those that are gone, and of each vertex the one that it was pulled
-  // into, itself where it stayed.
-  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+  // After that: one of the patch's faces, {0, 0, 0} if it is gone, and of each vertex the one that it was pulled into,
+  // itself where it stayed.
+  [[nodiscard]] const Triangle& triangle(std::size_t face) const { return faces_[face].corners; }
   [[nodiscard]] const std::vector<std::uint32_t>& into() const { return into_; }
 
   // Whether a vertex of the patch that is still there would stay wherever it were looked at, in any other patch, as
@@ -73,6 +73,12 @@ class PatchMerger {
     std::uint32_t own = kNoPlane, turned = kNoPlane;  // with the source's own front, and with its back
   };
   static constexpr std::int32_t kNoSource = -2;
+
+  // In one line of the cache.
+  struct alignas(16) Face {
+    Triangle corners;
+    std::uint32_t plane = kNoPlane;  // kNoPlane where nobody has asked yet
+  };
 
   // At a vertex; the other corners, in order.
   struct StarFace {
@@ -110,9 +116,10 @@ class PatchMerger {
   template <class Visit>
   void for_each_face(std::uint32_t v, const Visit& visit) const;
 
-  // What the next three look at: the faces around `v`.
+  // What the next ones look at: the faces around `v`, and their planes.
   void find_star(std::uint32_t v);
-  [[nodiscard]] bool is_in_planes(const Vec3& p, bool with_needles) const;
+  void find_planes(bool with_needles);
+  [[nodiscard]] bool is_in_planes(const Vec3& p) const;
   [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t target);
 
@@ -120,11 +127,10 @@ class PatchMerger {
   const TriangleMesh& input_;
   MergeLimits limits_;
   std::vector<VertexRole> roles_;
-  std::vector<Triangle> triangles_;
+  std::vector<Face> faces_;
   std::vector<Plane> planes_;
   std::vector<SourcePlanes> source_planes_;  // a hash table: linear probing, at most half full
   std::size_t sources_ = 0;                  // in it
-  std::vector<std::uint32_t> plane_;         // of each face; kNoPlane where nobody has asked yet
   std::vector<std::uint8_t> needles_, changed_;
   std::vector<Corner> first_, next_;  // the corners at each vertex, in a chain
   std::vector<State> state_;
@@ -132,6 +138,7 @@ class PatchMerger {
   std::vector<std::uint8_t> by_geometry_;  // when last looked at, no neighbour was fit, whatever is around that
   std::vector<std::uint32_t> into_;
   std::vector<StarFace> star_;         // of the vertex that is looked at
+  std::vector<std::uint32_t> around_;  // its planes, with or without those of needles, each once
   std::vector<std::uint32_t> ring_;    // its neighbours, increasing
   std::vector<std::uint32_t> marked_;  // of each vertex, the number of the last mark it got
   std::uint32_t marks_ = 0;

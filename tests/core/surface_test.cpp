@@ -24,6 +24,7 @@
 #include "core/mesh/mesh_statistics.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/patch_merger.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/vertex_places.h"
@@ -393,6 +394,33 @@ TEST(MergedFaces, CloseUpWhereBricksMeet) {
       EXPECT_EQ(faults.links, 0U) << most;
     }
   }
+}
+
+// Whether a vertex among `ring`, all of whose faces are in a patch, is settled there. Each face is its own source. Only
+// the vertex itself has all of its faces in it.
+bool is_settled_among(const std::vector<Vec3>& ring) {
+  SurfacePatch patch{{{0, 0, 0}}, {VertexRole::kFree}, {0}, {}, {}};
+  for (std::uint32_t i = 0; i < ring.size(); ++i) {
+    patch.vertices.push_back(ring[i]);
+    patch.roles.push_back(VertexRole::kForeign);
+    patch.settled.push_back(0);
+    patch.triangles.push_back({0, 1 + i, 1 + (i + 1) % static_cast<std::uint32_t>(ring.size())});
+    patch.sources.push_back(static_cast<std::int32_t>(i));
+  }
+  const TriangleMesh input{patch.vertices, patch.triangles};
+  PatchMerger merger(patch, input, {1e-9, 0.0});
+  merger.merge();
+  EXPECT_EQ(merger.into()[0], 0U);
+  return merger.is_settled(0);
+}
+
+// Another brick may pull a vertex along a ridge, or within a plane, whose neighbours are foreign here. None can pull
+// one at a corner.
+TEST(PatchMerger, SettlesWhatStaysInAnyBrick) {
+  EXPECT_FALSE(is_settled_among({{1, 0, 0}, {0, 1, -1}, {-1, 0, 0}, {0, -1, -1}}));
+  EXPECT_FALSE(is_settled_among({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}));
+  EXPECT_TRUE(is_settled_among({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_TRUE(is_settled_among({{1, 0, -1}, {0, 1, -1}, {-1, 0, -1}, {0, -1, -1}}));
 }
 
 // The opening of the box is in a plane of nodes, which are inside. Merged with the rim, which is at these nodes, it

@@ -116,15 +116,24 @@ class BrickMerger {
     for (const std::uint32_t brick : brick_of) ++result.begin[brick + 1];
     for (std::size_t brick = 0; brick < count; ++brick) result.begin[brick + 1] += result.begin[brick];
     std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
-    for (std::uint32_t face = 0; face < brick_of.size(); ++face) {
-      const std::uint32_t brick = brick_of[face];
-      result.faces[next[brick]++] = face;
-      for (const std::uint32_t corner : merged_.triangles[face]) {
-        std::uint32_t& owner = result.owner[corner];
-        owner = owner == kUnmet || owner == brick ? brick : kNone;
-      }
-    }
+    for (std::uint32_t face = 0; face < brick_of.size(); ++face) result.faces[next[brick_of[face]]++] = face;
+    find_owners(brick_of, result.owner);
     return result;
+  }
+
+  // Whoever comes second from another brick finds one there; none takes its place for good.
+  void find_owners(const std::vector<std::uint32_t>& brick_of, std::vector<std::uint32_t>& owner) const {
+    parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t face = begin; face < end; ++face) {
+        for (const std::uint32_t corner : merged_.triangles[face]) {
+          const std::atomic_ref of_corner(owner[corner]);
+          std::uint32_t known = of_corner.load(std::memory_order_relaxed);
+          if (known == kUnmet) of_corner.compare_exchange_strong(known, brick_of[face], std::memory_order_relaxed);
+          const bool is_own = known == kUnmet || known == brick_of[face];
+          if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);
+        }
+      }
+    });
   }
 
   void merge_all(const Bricks& bricks) {

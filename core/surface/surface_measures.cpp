@@ -64,21 +64,25 @@ std::vector<double> distances_from_sources(const SurfaceMesh& surface, const Tri
   return distances;
 }
 
-double largest_coordinate(const TriangleMesh& mesh) {
+// Of the mesh and the lattice, which a surface is within.
+double largest_coordinate(const TriangleMesh& mesh, const Lattice& lattice) {
   const Box box = bounding_box(mesh);
   double largest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    const double last = lattice.coordinate(axis, lattice.index_max(axis));
+    largest =
+        std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis]), std::abs(first), std::abs(last)});
   }
   return largest;
 }
 
 // Vertices are looked at by decreasing distance from their sources, which is theirs from the mesh nearly always: few
 // need a search.
-double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh) {
+double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
   // Far more than what either distance rounds, and little beside the margin by which points may be off.
   constexpr double kRoundings = 64 * 0x1p-53, kRounding = 1.0 + 1e-9;
-  const double rounding = kRoundings * std::max(largest_coordinate(mesh), largest_coordinate(surface.mesh));
+  const double rounding = kRoundings * largest_coordinate(mesh, lattice);
   const std::vector<double> at_most = distances_from_sources(surface, mesh, rounding);
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t v = 0; v < at_most.size(); ++v) {
@@ -322,7 +326,7 @@ SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& 
                                 double thickness) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;
-  measures.max_distance = largest_distance(surface, mesh);
+  measures.max_distance = largest_distance(surface, mesh, inside.lattice());
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }

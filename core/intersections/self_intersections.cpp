@@ -228,8 +228,9 @@ class PairMeeting {
       : tree_(tree), graphs_(graphs) {}
 
   [[nodiscard]] bool operator()(std::size_t place, std::size_t other) {
-    if (!meets_ || place != place_) enter(place);
+    if (place != place_) enter(place);
     if (shares_graph(tree_.vertices(other))) return false;
+    if (!meets_) meets_.emplace(tree_.corners(place));
     return (*meets_)(tree_.corners(other));
   }
 
@@ -238,7 +239,7 @@ class PairMeeting {
 
   void enter(std::size_t place) {
     place_ = place;
-    meets_.emplace(tree_.corners(place));
+    meets_.reset();
     for (std::size_t i = 0; i < at_graphs_.size() && graphs_; ++i) {
       const std::uint32_t vertex = tree_.vertices(place)[i];
       at_graphs_[i] = (*graphs_)[vertex] != 0 ? vertex : kNone;
@@ -255,8 +256,8 @@ class PairMeeting {
   const PairTree& tree_;
   const std::vector<std::uint8_t>* graphs_;
   Triangle at_graphs_{kNone, kNone, kNone};  // the vertices of the first triangle that are graphs
-  std::size_t place_ = 0;
-  std::optional<MeetsBeyondShared> meets_;
+  std::size_t place_ = std::numeric_limits<std::size_t>::max();
+  std::optional<MeetsBeyondShared> meets_;  // made for the first pair that needs it
 };
 
 struct Places {

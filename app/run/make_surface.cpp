@@ -86,7 +86,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  const SurfaceMeasures measures = measure_surface(made.surface, mesh, lattice, options.thickness);
+  const SurfaceMeasures measures = measure_surface(made.surface, mesh, inside, options.thickness);
   made.report = report_of(made.surface, measures);
   if (measures.drops) {
     const ThinParts thin =

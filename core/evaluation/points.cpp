@@ -59,8 +59,8 @@ class CoherentOrder {
   // Less than 2^32 points.
   CoherentOrder(const ScaledMesh& mesh, std::span<const Vec3> points) : CoherentOrder(points, keys_of(mesh, points)) {}
 
-  // How many points are put in order together: enough that neighbours are near, few enough that they take little memory.
-  // Around a far field that pays more: the nearer neighbours are, the more nodes they share.
+  // How many points are put in order together: enough that neighbours are near, few enough that they take little
+  // memory. Around a far field that pays more: the nearer neighbours are, the more nodes they share.
   static std::size_t batch(const ScaledMesh& mesh) { return std::size_t{1} << (mesh.has_far_field() ? 19 : 17); }
 
   // Whether the mesh can take all of the points.
@@ -139,6 +139,8 @@ struct PointCrossings {
 // Points that are evaluated together, and where their values belong.
 class PointTile {
  public:
+  explicit PointTile(ScaledMesh::Settling settling) : settling_(settling) {}
+
   [[nodiscard]] bool full() const { return samples_.count == kTile; }
 
   void add(std::size_t index, const Vec3& scaled_point) {
@@ -161,7 +163,7 @@ class PointTile {
       diagnostics->degenerate[indices_[i]] = crossings.ties;
       diagnostics->on_surface[indices_[i]] = crossings.on_surface ? 1 : 0;
     }
-    mesh.set_values(samples_, {n.data(), samples_.count}, {w.data(), samples_.count});
+    mesh.set_values(samples_, {n.data(), samples_.count}, {w.data(), samples_.count}, settling_);
     for (std::size_t i = 0; i < samples_.count; ++i) {
       values[indices_[i]] = w[i];
       if (diagnostics) diagnostics->error_bound[indices_[i]] = mesh.error_bound(samples_.query(i), w[i], n[i]);
@@ -183,6 +185,7 @@ class PointTile {
     return result;
   }
 
+  ScaledMesh::Settling settling_;
   std::array<std::size_t, kTile> indices_;
   SampleTile samples_;
   std::vector<std::uint32_t> candidates_;
@@ -190,7 +193,7 @@ class PointTile {
 
 // Some of the points, at most as many as CoherentOrder takes.
 Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                     std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                     std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   // What the points need is built before the loops over them, within which threads would wait for one another.
   scaled.prepare_points();
@@ -199,7 +202,7 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
   std::mutex mutex;
   Tally total;
   parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
-    PointTile tile;
+    PointTile tile(settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
@@ -222,14 +225,14 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
 }  // namespace
 
 Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
   Tally total;
   const std::size_t batch = CoherentOrder::batch(meshes.scaled());
   for (std::size_t begin = 0; begin < points.size(); begin += batch) {
     const std::size_t count = std::min(batch, points.size() - begin);
     const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
     total += evaluate_batch(meshes, points.subspan(begin, count), values.subspan(begin, count), done,
-                            diagnostics ? &of_batch : nullptr);
+                            diagnostics ? &of_batch : nullptr, settling);
   }
   return total;
 }

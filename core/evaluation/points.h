@@ -10,8 +10,10 @@
 
 namespace raycone {
 
-// As WindingNumberEvaluator::evaluate(), of a mesh that has triangles. Needs DefaultFloatingPoint.
+// As WindingNumberEvaluator::evaluate(), or evaluate_unsettled(), of a mesh that has triangles. Needs
+// DefaultFloatingPoint.
 Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics);
+                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
+                      ScaledMesh::Settling settling = ScaledMesh::Settling::kDone);
 
 }  // namespace raycone

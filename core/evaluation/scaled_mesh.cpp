@@ -162,25 +162,26 @@ TriangleCrossing ScaledMesh::crossing(std::uint32_t triangle, const Row& row) co
   return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
 }
 
-void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings,
-                            std::span<double> values) const {
+void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
+                            Settling settling) const {
   if (!term_) {
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
   if (!takes_far_field(values.size())) {
-    set_direct_values(samples, crossings, values);
+    set_direct_values(samples, crossings, values, settling);
     return;
   }
   far_->winding_numbers(samples, crossings, values);
-  set_again_near_half_integers(samples, crossings, values);
+  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values);
 }
 
 void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings,
-                                   std::span<double> values) const {
+                                   std::span<double> values, Settling settling) const {
   term_->winding_numbers(samples, crossings, values);
   const std::size_t terms = term_->counts_crossings() ? boundary_.exterior_edges() : mesh_.triangles.size();
   direct_terms_.fetch_add(values.size() * terms, std::memory_order_relaxed);
+  if (settling == Settling::kLeft) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (distance_to_half_integer(values[i]) > term_->doubt()) continue;
     values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);

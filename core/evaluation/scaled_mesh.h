@@ -117,7 +117,10 @@ class ScaledMesh {
 
   // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
   // thresholds, is on the right side of it or is it, whatever the tolerance. At least one sample.
-  void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
+  // Unless settling is left out.
+  enum class Settling { kDone, kLeft };
+  void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
+                  Settling settling = Settling::kDone) const;
 
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
     return term_ ? term_->error_bound(q, w, crossings) : 0.0;
@@ -131,7 +134,8 @@ class ScaledMesh {
   }
 
   // The same by the direct sum.
-  void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values) const;
+  void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
+                         Settling settling = Settling::kDone) const;
 
  private:
   [[nodiscard]] double doubt_of_far_field() const;

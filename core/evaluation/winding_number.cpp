@@ -122,4 +122,12 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
   return evaluate_points(meshes, points, values, done, diagnostics);
 }
 
+void WindingNumberEvaluator::evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const {
+  assert(values.size() == points.size());
+  const ScaledMeshes& meshes = *implementation_;
+  if (!has_values(meshes.scaled().mesh(), values, nullptr, nullptr)) return;
+  const DefaultFloatingPoint guard;
+  evaluate_points(meshes, points, values, nullptr, nullptr, ScaledMesh::Settling::kLeft);
+}
+
 }  // namespace raycone

@@ -139,6 +139,10 @@ class WindingNumberEvaluator {
   Tally evaluate(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done = nullptr,
                  const Diagnostics* diagnostics = nullptr) const;
 
+  // The same values, but within doubt() of a half-integer they may be on its wrong side: they are not settled. A
+  // hundred times sooner where most of them are so near, as in a search for the places where w is one.
+  void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
+
  private:
   struct Implementation;
   std::unique_ptr<const Implementation> implementation_;

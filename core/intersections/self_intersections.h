@@ -19,12 +19,20 @@ struct SelfIntersections {
   std::vector<bool> of_triangle;      // whether a triangle is in a pair
 };
 
+// How triangles are sorted for the search. Only `first` depends on it, and the time.
+enum class SearchOrder {
+  kRuns,   // in runs that medians cut, whatever their sizes and places
+  kCurve,  // along a curve through equal cubes: sooner where sizes are much the same, as on surfaces of lattices
+};
+
 // The pairs of triangles that meet_beyond_shared() (core/intersections/triangle_pair.h). Exact. The same for any number
 // of threads, and but for `first` for any order of triangles. Takes n log n time where few boxes of triangles meet, and
 // a time in proportion to the pairs of boxes that meet, which may be n^2 / 2; memory in proportion to n. Uses the
-// threads that ThreadLimit allows. Precondition: the vertices that triangles use are finite, at most kMaxTriangles
-// triangles.
-[[nodiscard]] SelfIntersections self_intersections(const TriangleMesh& mesh);
+// threads that ThreadLimit allows. `graphs`: of each vertex whether it is known that its triangles meet in nothing but
+// what they share, as is_surely_graph() (vertex_graph.h) tells; pairs at such vertices are not looked at. Precondition:
+// the vertices that triangles use are finite, at most kMaxTriangles triangles.
+[[nodiscard]] SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order = SearchOrder::kRuns,
+                                                   const std::vector<std::uint8_t>* graphs = nullptr);
 
 // The `first` of these pairs alone. The search ends with it.
 [[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh);

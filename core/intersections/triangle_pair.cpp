@@ -230,4 +230,47 @@ bool meet_beyond_shared(const Corners3& s, const Corners3& t) {
   }
 }
 
+MeetsBeyondShared::MeetsBeyondShared(const Corners3& triangle) : triangle_(triangle) {
+  const int axis = widest_plane(triangle), whole = sure_turn(axis, triangle[0], triangle[1], triangle[2]);
+  first_axis_ = axis;
+  second_axis_ = (axis + 1) % 3;
+  has_sides_ = whole != 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 &start = triangle[i % 3], &end = triangle[(i + 1) % 3];
+    Edges& edges = edges_[i / 2];
+    edges.from_first[i % 2] = start[first_axis_];
+    edges.from_second[i % 2] = start[second_axis_];
+    edges.step_first[i % 2] = whole * (end[first_axis_] - start[first_axis_]);
+    edges.step_second[i % 2] = whole * (end[second_axis_] - start[second_axis_]);
+    edges.start_x[i % 2] = start.x;
+    edges.start_y[i % 2] = start.y;
+    edges.start_z[i % 2] = start.z;
+    edges.end_x[i % 2] = end.x;
+    edges.end_y[i % 2] = end.y;
+    edges.end_z[i % 2] = end.z;
+  }
+}
+
+// As is_surely_beside() has it for either of two triangles: the line of one edge has all corners of the other on its
+// outer side, but for those that are ends of the edge. So they have nothing in common but these, or that edge.
+bool MeetsBeyondShared::is_surely_beside(const Corners3& other) const {
+  if (!has_sides_) return false;
+  constexpr Two kZero{0.0, 0.0};
+  const auto size = [&](Two x) { return x < kZero ? -x : x; };
+  for (const Edges& edges : edges_) {
+    auto beside = kZero == kZero;
+    for (const Vec3& p : other) {
+      // As in determinant_from() and sure_sign().
+      const Two left = (edges.from_first - p[first_axis_]) * edges.step_second;
+      const Two right = (edges.from_second - p[second_axis_]) * edges.step_first;
+      const Two trust = kSideFilter * (size(left) + size(right)) + kSideUnderflow;
+      const auto is_start = (edges.start_x == p.x) & (edges.start_y == p.y) & (edges.start_z == p.z);
+      const auto is_end = (edges.end_x == p.x) & (edges.end_y == p.y) & (edges.end_z == p.z);
+      beside &= (left - right < -trust) | is_start | is_end;
+    }
+    if ((beside[0] | beside[1]) != 0) return true;
+  }
+  return false;
+}
+
 }  // namespace raycone

@@ -60,6 +60,34 @@ struct LinePart {
   }
 };
 
+template <std::size_t count>
+Box box_of(const std::array<Vec3, count>& points) {
+  Box box{points[0], points[0]};
+  for (std::size_t i = 1; i < count; ++i) {
+    const Vec3& p = points[i];
+    box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y), std::min(box.lower.z, p.z)};
+    box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y), std::max(box.upper.z, p.z)};
+  }
+  return box;
+}
+
+// By far more than what touches, or rounds.
+Box widened(const Box& box) {
+  constexpr double kPart = 0x1p-6;
+  const Vec3 by = kPart * (box.upper - box.lower);
+  return {box.lower - by, box.upper + by};
+}
+
+bool holds(const Box& box, const Vec3& p) {
+  return p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y && p.z >= box.lower.z &&
+         p.z <= box.upper.z;
+}
+
+bool meets(const CellCreases::Crease& crease, const Vec3& lower, const Vec3& upper) {
+  return crease.lower.x <= upper.x && crease.upper.x >= lower.x && crease.lower.y <= upper.y &&
+         crease.upper.y >= lower.y && crease.lower.z <= upper.z && crease.upper.z >= lower.z;
+}
+
 // Of some points the one that is nearest to another; the first of equal ones.
 class Nearest {
  public:
@@ -93,60 +121,79 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
   }
 }
 
-template <class Visit>
-void CellCreases::for_each_hit(std::uint32_t cell, Which which, const std::array<Vec3, 3>& corners,
-                               const Visit& visit) const {
-  for_each(cell, which, [&](const Vec3& a, const Vec3& b) {
-    const std::optional<double> at = segment_hit(a, b, corners[0], corners[1], corners[2]);
-    if (at) visit(a + *at * (b - a));
+void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
+  found.clear();
+  if (!triangles_) return;
+  for (const std::uint32_t triangle : triangles_->of(cell)) {
+    if (sides_[triangle] == 0) continue;
+    const Triangle& t = mesh_->triangles[triangle];
+    for (unsigned side = 0; side < t.size(); ++side) {
+      if ((sides_[triangle] >> side & 1U) == 0) continue;
+      const Vec3 &a = mesh_->vertices[t[side]], &b = mesh_->vertices[t[(side + 1) % t.size()]];
+      const Box box = box_of(std::array{a, b});
+      found.push_back({a, b, box.lower, box.upper, (sides_[triangle] >> (side + kSharpBit) & 1U) != 0});
+    }
+  }
+}
+
+// A hit is in the crease's box, but for rounding.
+bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance) {
+  const Vec3 reach{2.0 * distance, 2.0 * distance, 2.0 * distance};
+  const Vec3 lower = p - reach, upper = p + reach;
+  return std::ranges::any_of(all(), [&](const Crease& crease) {
+    if (!meets(crease, lower, upper)) return false;
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    if (!at) return false;
+    const Vec3 off = crease.from + *at * (crease.to - crease.from) - p;
+    return dot(off, off) <= distance * distance;
   });
 }
 
-bool CellCreases::has_hit_near(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
-                               double distance) const {
-  bool has = false;
-  for_each_hit(cell, Which::kAll, corners,
-               [&](const Vec3& hit) { has = has || dot(hit - p, hit - p) <= distance * distance; });
-  return has;
-}
-
-std::optional<Vec3> CellCreases::farthest_hit(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
-                                              const Vec3& q) const {
+std::optional<Vec3> CreasesHere::farthest_hit(const std::array<Vec3, 3>& corners, const Vec3& p, const Vec3& q) {
+  const Box box = box_of(corners);
   std::optional<Vec3> farthest;
   double most = -1.0;
-  for_each_hit(cell, Which::kSharp, corners, [&](const Vec3& hit) {
-    const Vec3 off = cross(q - p, hit - p);
+  for (const Crease& crease : all()) {
+    if (!crease.is_sharp || !meets(crease, box.lower, box.upper)) continue;
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    if (!at) continue;
+    const Vec3 hit = crease.from + *at * (crease.to - crease.from), off = cross(q - p, hit - p);
     const double distance = dot(off, off);
-    if (!(distance > most)) return;
+    if (!(distance > most)) continue;
     most = distance;
     farthest = hit;
-  });
+  }
   return farthest;
 }
 
-std::optional<Vec3> CellCreases::nearest_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
-                                                const Vec3& near) const {
+std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& within, const Vec3& near) {
+  const Vec3& first_corner = within.corners()[0];
+  const Box box = widened(box_of(within.corners()));
   Nearest nearest(near);
-  for_each(cell, Which::kAll, [&](const Vec3& a, const Vec3& b) {
-    const Vec3 from = a - corners[0], step = b - a;
-    const std::array<double, 4> first = barycentric(corners, from), last = barycentric(corners, b - corners[0]);
+  for (const Crease& crease : all()) {
+    if (!meets(crease, box.lower, box.upper)) continue;
+    const Vec3 from = crease.from - first_corner, step = crease.to - crease.from;
+    const std::array<double, 4> first = within.of(from), last = within.of(crease.to - first_corner);
     LinePart part;
     for (std::size_t i = 0; i < first.size(); ++i) part.cut(first[i] + kTouch, last[i] + kTouch);
-    if (!(part.begin <= part.end)) return;
+    if (!(part.begin <= part.end)) continue;
     const double at = std::clamp(dot(near - from, step) / dot(step, step), part.begin, part.end);
     nearest.add(from + at * step);
-  });
+  }
   return nearest.point();
 }
 
-std::optional<Vec3> CellCreases::nearest_end_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
-                                                    const Vec3& near, double margin) const {
+std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
+                                                    double margin) {
+  const Box box = widened(box_of(within.corners()));
   Nearest nearest(near);
-  for_each(cell, Which::kAll, [&](const Vec3& a, const Vec3& b) {
-    for (const Vec3& end : {a, b}) {
-      if (is_within(corners, end - corners[0], margin)) nearest.add(end - corners[0]);
+  for (const Crease& crease : all()) {
+    for (const Vec3& end : {crease.from, crease.to}) {
+      if (!holds(box, end)) continue;
+      const Vec3 from_first = end - within.corners()[0];
+      if (within.is_within(from_first, margin)) nearest.add(from_first);
     }
-  });
+  }
   return nearest.point();
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/surface/cell_triangles.h"
+#include "core/surface/planes_point.h"
 
 namespace raycone {
 
@@ -19,46 +20,59 @@ class CellCreases {
   // Both as long as this. Precondition: `mesh` is welded.
   CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles);
 
-  enum class Which : std::uint8_t { kSharp, kAll };
+  // A side of a triangle, and its box.
+  struct Crease {
+    Vec3 from, to, lower, upper;
+    bool is_sharp;
+  };
 
-  // Calls visit(a, b) for each crease with a point in the closed cell, and for some more, in the order of triangles.
-  template <class Visit>
-  void for_each(std::uint32_t cell, Which which, const Visit& visit) const {
-    if (!triangles_) return;
-    for (const std::uint32_t triangle : triangles_->of(cell)) {
-      const Triangle& t = mesh_->triangles[triangle];
-      for (unsigned side = 0; side < t.size(); ++side) {
-        if ((sides_[triangle] >> (which == Which::kSharp ? side + kSharpBit : side) & 1U) == 0) continue;
-        visit(mesh_->vertices[t[side]], mesh_->vertices[t[(side + 1) % t.size()]]);
-      }
-    }
-  }
-
-  // Whether a crease meets a triangle of the cell within a distance of `p`.
-  [[nodiscard]] bool has_hit_near(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
-                                  double distance) const;
-
-  // The point of a sharp crease on a triangle of the cell that is farthest from the line through two points of that
-  // triangle.
-  [[nodiscard]] std::optional<Vec3> farthest_hit(std::uint32_t cell, const std::array<Vec3, 3>& corners, const Vec3& p,
-                                                 const Vec3& q) const;
-
-  // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
-  // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
-  [[nodiscard]] std::optional<Vec3> nearest_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
-                                                   const Vec3& near) const;
-  [[nodiscard]] std::optional<Vec3> nearest_end_within(std::uint32_t cell, const std::array<Vec3, 4>& corners,
-                                                       const Vec3& near, double margin) const;
+  // Sets `found` to each crease with a point in the closed cell, and some more, in the order of triangles.
+  void find(std::uint32_t cell, std::vector<Crease>& found) const;
 
  private:
   static constexpr unsigned kSharpBit = 4;
 
-  template <class Visit>
-  void for_each_hit(std::uint32_t cell, Which which, const std::array<Vec3, 3>& corners, const Visit& visit) const;
-
   const TriangleMesh* mesh_ = nullptr;
   const CellTriangles* triangles_ = nullptr;
   std::vector<std::uint8_t> sides_;  // of each triangle: bits for sides that are creases no lower triangle has
+};
+
+// The creases of one cell after the other, looked up when they are first asked for.
+class CreasesHere {
+ public:
+  // `creases` must outlive this.
+  explicit CreasesHere(const CellCreases& creases) : creases_(creases) {}
+
+  void enter(std::uint32_t cell) {
+    cell_ = cell;
+    known_ = false;
+  }
+
+  // Whether a crease meets a triangle of the cell within a distance of `p`, which is more than what coordinates round.
+  [[nodiscard]] bool has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance);
+
+  // The point of a sharp crease on a triangle of the cell that is farthest from the line through two points of that
+  // triangle.
+  [[nodiscard]] std::optional<Vec3> farthest_hit(const std::array<Vec3, 3>& corners, const Vec3& p, const Vec3& q);
+
+  // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
+  // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
+  [[nodiscard]] std::optional<Vec3> nearest_within(const BarycentricCoordinates& within, const Vec3& near);
+  [[nodiscard]] std::optional<Vec3> nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
+                                                       double margin);
+
+ private:
+  using Crease = CellCreases::Crease;
+  [[nodiscard]] const std::vector<Crease>& all() {
+    if (!known_) creases_.find(cell_, found_);
+    known_ = true;
+    return found_;
+  }
+
+  const CellCreases& creases_;
+  std::uint32_t cell_ = 0;
+  bool known_ = false;
+  std::vector<Crease> found_;
 };
 
 }  // namespace raycone

@@ -33,7 +33,9 @@ struct SurfaceFaults {
 [[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside);
 
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
-[[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside);
+// `edges`: its exterior edges, where known, to spare finding them.
+[[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside,
+                                      const std::vector<ExteriorEdge>* edges = nullptr);
 
 // "3 edges, 1 pair of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);

@@ -53,6 +53,7 @@ class CellContour {
   void add(std::uint32_t cell) {
     cell_ = cell;
     corner_cells_.fill(kUnknown);
+    creases_.enter(cell);
     for (std::size_t n = 0; n < kuhn::kTetrahedra.size(); ++n) {
       const Loop loop = loop_of(kuhn::kTetrahedra[n]);
       if (loop.size > 0) fill(loop, n);
@@ -93,9 +94,9 @@ class CellContour {
   }
   void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
-  [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const;
+  [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] std::optional<Vec3> crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
-                                                const Vec3& from) const;
+                                                const Vec3& from);
   void add_triangle(const Triangle& triangle, std::int32_t source) {
     part_.triangles.push_back(triangle);
     part_.sources.push_back(source);
@@ -104,7 +105,7 @@ class CellContour {
   const SurfaceCells& cells_;
   std::span<const EdgePoint> edge_points_;
   const FacePoints& face_points_;
-  const CellCreases& creases_;
+  CreasesHere creases_;
   double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
@@ -198,7 +199,7 @@ void CellContour::fill_flat(const Loop& loop) {
 // Where a crease leaves the tetrahedron through the face whose nodes are of one kind, as far from a point as there is
 // one; relative to the first corner.
 std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
-                                             const Vec3& from) const {
+                                             const Vec3& from) {
   for (std::size_t lone = 0; lone < corners.size(); ++lone) {
     std::array<Vec3, 3> face;
     std::size_t next = 0, inside = 0;
@@ -209,13 +210,13 @@ std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn:
     }
     if (inside != 0 && inside != face.size()) continue;
     const Vec3 start = corners[0] + from;
-    const std::optional<Vec3> hit = creases_.farthest_hit(cell_, face, start, corners[lone]);
+    const std::optional<Vec3> hit = creases_.farthest_hit(face, start, corners[lone]);
     return hit ? std::optional(*hit - corners[0]) : std::nullopt;
   }
   return std::nullopt;
 }
 
-CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) const {
+CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
   Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
                          [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
@@ -235,52 +236,69 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   }
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
                                       : (1.0 / static_cast<double>(loop.size)) * of_all;
-  std::optional<Vec3> on_crease = creases_.nearest_end_within(cell_, corners, middle, margin_);
+  const BarycentricCoordinates within(corners);
+  std::optional<Vec3> on_crease = creases_.nearest_end_within(within, middle, margin_);
   if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
-  if (!on_crease) on_crease = creases_.nearest_within(cell_, corners, middle);
+  if (!on_crease) on_crease = creases_.nearest_within(within, middle);
   const bool on_mesh = on_crease.has_value();
   const Vec3 target = on_crease.value_or(middle);
   // There it is in all planes as well as numbers can tell.
   const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, tolerance_);
   const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
-  const bool meets = meeting && is_within(corners, *meeting, margin_) &&
+  const bool meets = meeting && within.is_within(*meeting, margin_) &&
                      (!on_mesh || off_square() <= kSamePlace * tolerance_ * tolerance_);
-  return {corners[0] + (meets ? *meeting : moved_within(corners, target, margin_)), on_mesh};
+  return {corners[0] + (meets ? *meeting : within.moved_within(target, margin_)), on_mesh};
+}
+
+// Where what a part has goes in the whole.
+struct PartPlace {
+  std::size_t triangles = 0, apexes = 0;
+};
+
+void join_part(const ContourPart& part, const PartPlace& place, std::size_t first_apex, ContouredSurface& contoured) {
+  auto& [mesh, sources] = contoured.surface;
+  for (std::size_t i = 0; i < part.triangles.size(); ++i) {
+    Triangle triangle = part.triangles[i];
+    for (std::uint32_t& corner : triangle) {
+      if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex + place.apexes);
+    }
+    mesh.triangles[place.triangles + i] = triangle;
+    sources[place.triangles + i] = part.sources[i];
+  }
+  for (std::size_t i = 0; i < part.apexes.size(); ++i) {
+    mesh.vertices[first_apex + place.apexes + i] = part.apexes[i];
+    contoured.tetrahedra[place.apexes + i] = part.tetrahedra[i];
+  }
 }
 
 // Each part's memory is given back once it is in the whole.
 ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                         std::span<const Vec3> face_points) {
-  std::size_t triangles = 0, apexes = 0;
+  std::vector<PartPlace> places;
+  PartPlace end;
   for (const ContourPart& part : parts) {
-    triangles += part.triangles.size();
-    apexes += part.apexes.size();
+    places.push_back(end);
+    end.triangles += part.triangles.size();
+    end.apexes += part.apexes.size();
   }
-  const std::size_t all_vertices = edge_points.size() + face_points.size() + apexes;
-  if (all_vertices > kFirstApex || triangles > kMaxTriangles)
+  const std::size_t first_apex = edge_points.size() + face_points.size(), all_vertices = first_apex + end.apexes;
+  if (all_vertices > kFirstApex || end.triangles > kMaxTriangles)
     throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
 
   ContouredSurface contoured;
   auto& [mesh, sources] = contoured.surface;
-  mesh.vertices.reserve(all_vertices);
-  mesh.triangles.reserve(triangles);
-  sources.reserve(triangles);
-  contoured.tetrahedra.reserve(apexes);
-  for (const EdgePoint& point : edge_points) mesh.vertices.push_back(point.position);
-  mesh.vertices.insert(mesh.vertices.end(), face_points.begin(), face_points.end());
-  for (ContourPart& part : parts) {
-    const std::size_t first_apex = mesh.vertices.size();
-    for (Triangle triangle : part.triangles) {
-      for (std::uint32_t& corner : triangle) {
-        if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex);
-      }
-      mesh.triangles.push_back(triangle);
+  mesh.vertices.resize(all_vertices);
+  mesh.triangles.resize(end.triangles);
+  sources.resize(end.triangles);
+  contoured.tetrahedra.resize(end.apexes);
+  std::ranges::transform(edge_points, mesh.vertices.begin(), &EdgePoint::position);
+  std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
+    for (std::size_t n = begin; n < last; ++n) {
+      join_part(parts[n], places[n], first_apex, contoured);
+      parts[n] = {};
     }
-    mesh.vertices.insert(mesh.vertices.end(), part.apexes.begin(), part.apexes.end());
-    contoured.tetrahedra.insert(contoured.tetrahedra.end(), part.tetrahedra.begin(), part.tetrahedra.end());
-    sources.insert(sources.end(), part.sources.begin(), part.sources.end());
-    part = {};
-  }
+  });
   return contoured;
 }
 

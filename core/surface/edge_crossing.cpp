@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/exact/predicates.h"
+#include "core/mesh/triangle_runs.h"
 
 namespace raycone {
 namespace {
@@ -45,11 +46,9 @@ bool line_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
   return first * third >= 0 && second * third >= 0;
 }
 
-}  // namespace
-
-std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (!boxes_meet(p, q, a, b, c)) return std::nullopt;
-  const int side_p = plane_side(a, b, c, p), side_q = plane_side(a, b, c, q);
+// segment_hit() of segments whose ends are on these sides of the triangle's plane.
+std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, int side_p,
+                                  int side_q) {
   if (side_p == side_q) return std::nullopt;  // both 0, too
   if (side_p * side_q > 0 || !line_meets_triangle(p, q, a, b, c)) return std::nullopt;
   if (side_p == 0) return 0.0;
@@ -61,15 +60,40 @@ std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, c
   return at >= 0 && at <= 1 ? static_cast<double>(at) : 0.5;  // 0 / 0, where a needle's normal underflows
 }
 
-void find_segment_hits(const Vec3& p, const Vec3& q, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                       std::vector<SegmentHit>& hits) {
-  hits.clear();
+}  // namespace
+
+std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  if (!boxes_meet(p, q, a, b, c)) return std::nullopt;
+  return hit_between(p, q, a, b, c, plane_side(a, b, c, p), plane_side(a, b, c, q));
+}
+
+void HitFinder::enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
+  end_ = end;
+  triangles_.clear();
   for (const std::uint32_t triangle : triangles) {
     const Triangle& t = mesh.triangles[triangle];
-    const auto hit = segment_hit(p, q, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    if (hit) hits.push_back({*hit, triangle});
+    triangles_.push_back({&mesh.vertices[t[0]], &mesh.vertices[t[1]], &mesh.vertices[t[2]],
+                          box_of_triangle(mesh, triangle), triangle, std::nullopt});
   }
-  std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });
+}
+
+void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits) {
+  hits.clear();
+  const Vec3 lower{std::min(end_.x, other.x), std::min(end_.y, other.y), std::min(end_.z, other.z)};
+  const Vec3 upper{std::max(end_.x, other.x), std::max(end_.y, other.y), std::max(end_.z, other.z)};
+  for (Known& t : triangles_) {
+    if (upper.x < t.box.lower.x || lower.x > t.box.upper.x || upper.y < t.box.lower.y || lower.y > t.box.upper.y ||
+        upper.z < t.box.lower.z || lower.z > t.box.upper.z) {
+      continue;
+    }
+    if (!t.side) t.side = plane_side(*t.a, *t.b, *t.c, end_);
+    const int side = plane_side(*t.a, *t.b, *t.c, other);
+    const auto hit = from_end ? hit_between(end_, other, *t.a, *t.b, *t.c, *t.side, side)
+                              : hit_between(other, end_, *t.a, *t.b, *t.c, side, *t.side);
+    if (hit) hits.push_back({*hit, t.triangle});
+  }
+  if (hits.size() > 1)
+    std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });
 }
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {

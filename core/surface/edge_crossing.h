@@ -22,9 +22,27 @@ struct SegmentHit {
 [[nodiscard]] std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                 const Vec3& c);
 
-// Sets `hits` to those of some triangles of a mesh, from p to q; of equal ones the lowest triangle first.
-void find_segment_hits(const Vec3& p, const Vec3& q, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                       std::vector<SegmentHit>& hits);
+// segment_hit() of segments that have an end in common, with the same triangles. What they have in common is found
+// once.
+class HitFinder {
+ public:
+  // The mesh must stay where it is until all segments of this end have been asked about.
+  void enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles);
+
+  // Sets `hits` to those from the end to `other`, or back; of equal ones the lowest triangle first.
+  void find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits);
+
+ private:
+  struct Known {
+    const Vec3 *a, *b, *c;
+    Box box;
+    std::uint32_t triangle;
+    std::optional<int> side;  // of its plane, on which the end is
+  };
+
+  Vec3 end_;
+  std::vector<Known> triangles_;
+};
 
 // The unit normal of a triangle that has an area; within 1e-15 unless it is a needle.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);

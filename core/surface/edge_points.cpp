@@ -1,6 +1,7 @@
 #include "core/surface/edge_points.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -23,6 +24,29 @@ struct OpenEdge {
   std::size_t first_probe = 0;
 };
 
+// The normals of triangles, of which the next edges often need the same.
+class TriangleNormals {
+ public:
+  explicit TriangleNormals(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+  [[nodiscard]] const Vec3& of(std::uint32_t triangle) {
+    Known& known = known_[triangle % known_.size()];
+    if (known.triangle != triangle) {
+      const Triangle& t = mesh_.triangles[triangle];
+      known = {triangle, unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]])};
+    }
+    return known.normal;
+  }
+
+ private:
+  struct Known {
+    std::uint32_t triangle = 0xFFFFFFFF;
+    Vec3 normal;
+  };
+  const TriangleMesh& mesh_;
+  std::array<Known, 64> known_;
+};
+
 class EdgePointFinder {
  public:
   EdgePointFinder(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells,
@@ -32,7 +56,7 @@ class EdgePointFinder {
   std::vector<EdgePoint> find() {
     find_hits();
     decide_open_edges();
-    find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.at(places); });
+    find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
     for (const Bracket& bracket : brackets_) {
       points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), {}, kHole};
     }
@@ -42,11 +66,9 @@ class EdgePointFinder {
  private:
   void find_hits();
   void decide_open_edges();
-  void decide(const OpenEdge& open, std::span<const double> probes);
+  void decide(const OpenEdge& open, std::span<const double> probes, TriangleNormals& normals);
 
-  void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
-    const Triangle& t = mesh_.triangles[hit.triangle];
-    const Vec3 normal = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+  void set_hit(const MixedEdge& edge, const SegmentHit& hit, const Vec3& normal) {
     points_[edge.number] = {edge.point(within(hit.at)), normal, static_cast<std::int32_t>(hit.triangle)};
   }
   [[nodiscard]] double within(double at) const { return std::clamp(at, margin_, 1.0 - margin_); }
@@ -72,18 +94,21 @@ void EdgePointFinder::find_hits() {
   parallel_for(cells_.cells().size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<SegmentHit> hits;
     std::vector<OpenEdge> open;
+    TriangleNormals normals(mesh_);
+    HitFinder finder;
     for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
       const SurfaceCell& cell = cells_.cells()[n];
       const Vec3 low = cells_.corner(cell, 0);
+      finder.enter(low, mesh_, triangles_.of(n));
       for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
         if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
         const Vec3 high = cells_.corner(cell, direction);
         const MixedEdge edge{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)};
-        find_segment_hits(edge.inside, edge.outside, mesh_, triangles_.of(n), hits);
+        finder.find(high, cell.is_inside(0), hits);
         keep_places(hits);
         // A closed mesh changes w nowhere else.
         if (rule_.is_closed() && hits.size() == 1) {
-          set_hit(edge, hits.front());
+          set_hit(edge, hits.front(), normals.of(hits.front().triangle));
         } else {
           open.push_back({edge, hits});
         }
@@ -115,13 +140,14 @@ void EdgePointFinder::decide_open_edges() {
     for (const double probe : probes_of(open, rule_.is_closed())) points.push_back(open.edge.point(probe));
   }
   const std::vector<double> values = rule_.at(points);
+  TriangleNormals normals(mesh_);
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const std::size_t end = i + 1 < open_.size() ? open_[i + 1].first_probe : values.size();
-    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe));
+    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe), normals);
   }
 }
 
-void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes) {
+void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes, TriangleNormals& normals) {
   const std::size_t probes_per_hit = rule_.is_closed() ? 1 : 2;
   double inside_until = 0.0;
   for (std::size_t i = 0; i < open.hits.size(); ++i) {
@@ -135,7 +161,7 @@ void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probe
       return;
     }
     if (!behind) {
-      set_hit(open.edge, open.hits[i]);
+      set_hit(open.edge, open.hits[i], normals.of(open.hits[i].triangle));
       return;
     }
     inside_until = here;

@@ -35,8 +35,15 @@ void narrow(Bracket& bracket, double at, double value) {
 
 std::vector<double> RuleAlong::at(const std::vector<Vec3>& points) const {
   std::vector<double> values(points.size());
-  evaluator_.evaluate(points, values);
-  for (double& w : values) w = holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
+  if (!points.empty()) evaluator_.evaluate(points, values);  // which prepares for points, many or none
+  for (double& w : values) w = from_threshold(w);
+  return values;
+}
+
+std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
+  std::vector<double> values(points.size());
+  if (!points.empty()) evaluator_.evaluate_unsettled(points, values);
+  for (double& w : values) w = from_threshold(w);
   return values;
 }
 

@@ -25,9 +25,15 @@ class RuleAlong {
   RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
 
   [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const;
+  // The same for the search of roots, sooner: off by rounding also where that makes it another sign.
+  [[nodiscard]] std::vector<double> near(const std::vector<Vec3>& points) const;
   [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
 
  private:
+  [[nodiscard]] double from_threshold(double w) const {
+    return holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
+  }
+
   const WindingNumberEvaluator& evaluator_;
   const Rule& rule_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
 #include "core/machine/threads.h"
 
@@ -76,10 +75,10 @@ std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
 }
 
 // The point of a crease in the face that is farthest from the straight line between the two points.
-std::optional<Vec3> crease_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double margin) {
+std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, double margin) {
   const auto& [low, middle, high] = face.corners;
   const std::optional<Vec3> hit =
-      creases.farthest_hit(cell, face.corners, face.points[0]->position, face.points[1]->position);
+      creases.farthest_hit(face.corners, face.points[0]->position, face.points[1]->position);
   if (!hit) return std::nullopt;
   const Vec3 first = middle - low, second = high - low, normal = cross(first, second), from = *hit - low;
   const double size = dot(normal, normal);
@@ -91,11 +90,10 @@ std::optional<Vec3> crease_point(const FaceEdges& face, const CellCreases& creas
 }
 
 // Where planes meet on a crease, that is the point: it is in both planes as well as numbers can tell.
-std::optional<Vec3> face_point(const FaceEdges& face, const CellCreases& creases, std::uint32_t cell, double near,
-                               double margin) {
+std::optional<Vec3> face_point(const FaceEdges& face, CreasesHere& creases, double near, double margin) {
   const std::optional<Vec3> meeting = meeting_point(face, margin);
-  if (meeting && creases.has_hit_near(cell, face.corners, *meeting, near)) return meeting;
-  return crease_point(face, creases, cell, margin);
+  if (meeting && creases.has_hit_near(face.corners, *meeting, near)) return meeting;
+  return crease_point(face, creases, margin);
 }
 
 }  // namespace
@@ -122,27 +120,29 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
   // The margin and rounding move points off the mesh by less than this.
   const Vec3& h = cells.lattice().spacing;
   const double near = 4.0 * (tolerance + margins.inner * std::max({h.x, h.y, h.z}));
-  std::vector<FacePoint> all;
-  std::mutex mutex;
-  parallel_for(cells.cells().size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<FacePoint> found;
-    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+  constexpr std::size_t kCellsPerPart = 512;
+  std::vector<std::vector<FacePoint>> parts((cells.cells().size() + kCellsPerPart - 1) / kCellsPerPart);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    CreasesHere creases_here(creases);
+    const std::size_t last_cell = std::min(end * kCellsPerPart, cells.cells().size());
+    for (auto cell = static_cast<std::uint32_t>(begin * kCellsPerPart); cell < last_cell; ++cell) {
+      creases_here.enter(cell);
       for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
         const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
         if (!edges || !disagree(*edges, tolerance, margins.inner)) continue;
-        const auto point = face_point(*edges, creases, cell, near, margins.inner);
-        if (point) found.push_back({std::uint64_t{16} * cell + face, *point});
+        const auto point = face_point(*edges, creases_here, near, margins.inner);
+        if (point) parts[cell / kCellsPerPart].push_back({std::uint64_t{16} * cell + face, *point});
       }
     }
-    const std::scoped_lock lock(mutex);
-    all.insert(all.end(), found.begin(), found.end());
   });
-  std::ranges::sort(all, {}, &FacePoint::face);
   std::vector<std::uint64_t> faces;
   std::vector<Vec3> positions;
-  for (const FacePoint& point : all) {
-    faces.push_back(point.face);
-    positions.push_back(point.position);
+  for (std::vector<FacePoint>& part : parts) {
+    for (const FacePoint& point : part) {
+      faces.push_back(point.face);
+      positions.push_back(point.position);
+    }
+    part = {};
   }
   *this = FacePoints(std::move(faces), std::move(positions));
 }

@@ -28,6 +28,16 @@ NodeSet::NodeSet(const Lattice& lattice)
       words_per_row_((lattice.counts[0] + 63) / 64),
       words_(static_cast<std::size_t>(words_per_row_ * lattice.counts[1] * lattice.counts[2]), 0) {}
 
+void NodeSet::set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds) {
+  std::uint64_t* const words = words_.data() + (k * count(1) + j) * words_per_row_;
+  for (std::size_t first = 0; first < holds.size(); first += 64) {
+    const std::size_t count = std::min<std::size_t>(holds.size() - first, 64);
+    std::uint64_t word = 0;
+    for (std::size_t n = 0; n < count; ++n) word |= std::uint64_t{holds[first + n]} << n;
+    words[first / 64] = word;
+  }
+}
+
 bool NodeSet::empty() const {
   return std::ranges::all_of(words_, [](std::uint64_t word) { return word == 0; });
 }
@@ -66,10 +76,9 @@ NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, 
     const auto rows = static_cast<std::size_t>(slab.counts[1] * slab.counts[2]);
     parallel_for(rows, 64, [&](std::size_t begin, std::size_t end) {
       for (auto row = static_cast<std::int64_t>(begin); row < static_cast<std::int64_t>(end); ++row) {
-        for (std::int64_t i = 0; i < slab.counts[0]; ++i) {
-          if (sides[static_cast<std::size_t>(row * slab.counts[0] + i)] == 0) continue;
-          nodes.insert(i, row % slab.counts[1], layer + row / slab.counts[1]);
-        }
+        const auto of_row = std::span<const std::uint8_t>(sides).subspan(static_cast<std::size_t>(row * slab.counts[0]),
+                                                                         static_cast<std::size_t>(slab.counts[0]));
+        nodes.set_row(row % slab.counts[1], layer + row / slab.counts[1], of_row);
       }
     });
     layer += slab.counts[2];

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/data/lattice.h"
@@ -26,6 +27,9 @@ class NodeSet {
   void insert(std::int64_t i, std::int64_t j, std::int64_t k) {
     words_[static_cast<std::size_t>((k * count(1) + j) * words_per_row_ + i / 64)] |= std::uint64_t{1} << (i % 64);
   }
+
+  // Sets a row to the nodes where `holds` is 1; elsewhere it is 0. Precondition: holds.size() == count(0).
+  void set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds);
 
   // The bits of a row, 64 a word; those behind its end are 0.
   [[nodiscard]] const std::uint64_t* row(std::int64_t j, std::int64_t k) const {

@@ -32,7 +32,7 @@ template <class Visit>
 void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
   for (Corner corner = first_[v]; corner != kNoCorner; corner = next_[corner]) {
     const std::uint32_t face = corner / 3, place = corner % 3;
-    const Triangle& t = triangles_[face];
+    const Triangle& t = faces_[face].corners;
     if (!visit(face, t[place == 2 ? 0 : place + 1], t[place == 0 ? 2 : place - 1])) return;
   }
 }
@@ -42,27 +42,31 @@ PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, c
       input_(input),
       limits_(limits),
       roles_(patch.roles),
-      triangles_(patch.triangles),
+      faces_(patch.triangles.size()),
+      needles_(patch.triangles.size()),
+      changed_(patch.triangles.size(), 0),
       first_(patch.vertices.size(), kNoCorner),
       next_(3 * patch.triangles.size()),
       state_(patch.vertices.size()),
+      touched_(patch.vertices.size(), 0),
+      by_geometry_(patch.vertices.size(), 0),
       into_(patch.vertices.size()),
       marked_(patch.vertices.size(), 0) {
+  for (std::size_t face = 0; face < faces_.size(); ++face) faces_[face].corners = patch.triangles[face];
   // Backwards, so that chains are in the order of the faces.
   for (auto corner = static_cast<Corner>(next_.size()); corner-- > 0;) {
-    Corner& first = first_[triangles_[corner / 3][corner % 3]];
+    Corner& first = first_[faces_[corner / 3].corners[corner % 3]];
     next_[corner] = first;
     first = corner;
   }
   for (std::uint32_t v = 0; v < into_.size(); ++v) into_[v] = v;
-  for (std::uint32_t face = 0; face < triangles_.size(); ++face) needles_.push_back(is_needle(face));
+  for (std::uint32_t face = 0; face < faces_.size(); ++face) needles_[face] = is_needle(face) ? 1 : 0;
   spread(VertexRole::kForeign);
   spread(VertexRole::kKept);
   for (std::uint32_t v = 0; v < state_.size(); ++v) {
-    state_[v] = roles_[v] == VertexRole::kFree ? State::kWaits : State::kFixed;
+    const bool is_free = roles_[v] == VertexRole::kFree;
+    state_[v] = !is_free ? State::kFixed : patch_.settled[v] != 0 ? State::kSettled : State::kWaits;
   }
-  find_sources();
-  for (std::uint32_t face = 0; face < triangles_.size(); ++face) plane_.push_back(plane_of(face));
 }
 
 // The points at one node become one, or all of them stay: between some of them needles would be left that turn over.
@@ -87,14 +91,29 @@ void PatchMerger::spread(VertexRole role) {
   }
 }
 
-void PatchMerger::find_sources() {
-  for (const std::int32_t source : patch_.sources) {
-    const bool is_known = !source_planes_.empty() && source_planes_.back().source == source;
-    if (source != kHole && !is_known) source_planes_.push_back({source, {}});
+// Faces of one source mostly follow each other, but bricks have thousands of sources.
+PatchMerger::SourcePlanes& PatchMerger::planes_of_source(std::int32_t source) {
+  if (2 * sources_ >= source_planes_.size()) grow_sources();
+  const std::size_t mask = source_planes_.size() - 1;
+  std::size_t place = static_cast<std::uint32_t>(source) * std::size_t{0x9E3779B1} >> 7U & mask;
+  while (source_planes_[place].source != source && source_planes_[place].source != kNoSource)
+    place = (place + 1) & mask;
+  SourcePlanes& planes = source_planes_[place];
+  if (planes.source == kNoSource) {
+    planes.source = source;
+    ++sources_;
   }
-  std::ranges::sort(source_planes_, {}, &SourcePlanes::source);
-  const auto same = [](const SourcePlanes& a, const SourcePlanes& b) { return a.source == b.source; };
-  source_planes_.erase(std::unique(source_planes_.begin(), source_planes_.end(), same), source_planes_.end());
+  return planes;
+}
+
+void PatchMerger::grow_sources() {
+  constexpr std::size_t kLeast = 256;
+  std::vector<SourcePlanes> before(std::max(kLeast, 2 * source_planes_.size()));
+  before.swap(source_planes_);
+  sources_ = 0;
+  for (const SourcePlanes& planes : before) {
+    if (planes.source != kNoSource) planes_of_source(planes.source) = planes;
+  }
 }
 
 std::uint32_t PatchMerger::add_plane(const Plane& plane) {
@@ -103,22 +122,22 @@ std::uint32_t PatchMerger::add_plane(const Plane& plane) {
 }
 
 std::uint32_t PatchMerger::plane_of_source(std::int32_t source, const Vec3& front) {
-  auto& [own, turned] = std::ranges::lower_bound(source_planes_, source, {}, &SourcePlanes::source)->plane;
+  auto& [known, own, turned] = planes_of_source(source);
   if (own == kNoPlane) {
     const Triangle& t = input_.triangles[static_cast<std::size_t>(source)];
     const Vec3& a = input_.vertices[t[0]];
-    own = add_plane({a, unit_normal(a, input_.vertices[t[1]], input_.vertices[t[2]])});
+    own = add_plane({a, unit_normal(a, input_.vertices[t[1]], input_.vertices[t[2]]), true});
   }
-  const auto [point, normal] = planes_[own];
+  const auto [point, normal, is_of_source] = planes_[own];
   if (!(dot(normal, front) < 0.0)) return own;
-  if (turned == kNoPlane) turned = add_plane({point, -1.0 * normal});
+  if (turned == kNoPlane) turned = add_plane({point, -1.0 * normal, true});
   return turned;
 }
 
 // Faces of one source have one plane, the source's, as far as their corners are in it. Fronts are told apart. Others
 // are parallel to it, where points at nodes were moved off it by as much, or have a plane of their own.
 std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
-  const Triangle& t = triangles_[face];
+  const Triangle& t = faces_[face].corners;
   const Vec3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
   if (patch_.sources[face] != kHole) {
     const auto has_corners = [&](const Plane& plane) {
@@ -126,22 +145,29 @@ std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
     };
     const std::uint32_t of_source = plane_of_source(patch_.sources[face], cross(b - a, c - a));
     if (has_corners(planes_[of_source])) return of_source;
-    const Plane parallel{a, planes_[of_source].normal};
+    const Plane parallel{a, planes_[of_source].normal, false};
     if (has_corners(parallel)) return add_plane(parallel);
   }
-  return add_plane({a, unit_normal(a, b, c)});
+  return add_plane({a, unit_normal(a, b, c), false});
+}
+
+// Faces change only when their planes are known: those around a vertex are looked at before it is pulled.
+std::uint32_t PatchMerger::plane_at(std::uint32_t face) {
+  std::uint32_t& plane = faces_[face].plane;
+  if (plane == kNoPlane) plane = plane_of(face);
+  return plane;
 }
 
 // They lie between points that are kept off one node of the lattice, where the mesh passes through it.
 bool PatchMerger::is_needle(std::uint32_t face) const {
-  const Triangle& t = triangles_[face];
+  const Triangle& t = faces_[face].corners;
   const Vec3 u = position(t[1]) - position(t[0]), v = position(t[2]) - position(t[0]), normal = cross(u, v);
   return dot(normal, normal) < limits_.needle * limits_.needle * longest_square(u, v);
 }
 
 // The points at each node first: while all of them are there, one is found that lies in all planes.
 void PatchMerger::merge() {
-  if (std::ranges::find(needles_, true) != needles_.end()) pull_all(&PatchMerger::target_at_node);
+  if (std::ranges::find(needles_, 1) != needles_.end()) pull_all(&PatchMerger::target_at_node);
   for (State& state : state_) state = state == State::kStays ? State::kWaits : state;
   pull_all(&PatchMerger::best_target);
   for (std::uint32_t& target : into_) {
@@ -170,11 +196,13 @@ void PatchMerger::find_star(std::uint32_t v) {
   star_.clear();
   ring_.clear();
   for_each_face(v, [&](std::uint32_t face, std::uint32_t next, std::uint32_t last) {
-    star_.push_back({plane_[face], next, last, needles_[face], position(next), position(last)});
+    star_.push_back({plane_at(face), next, last, needles_[face] != 0});
+    std::size_t place = ring_.size();  // few: sorting by swaps would wait for what has just been stored
     ring_.push_back(next);
+    for (; place > 0 && ring_[place - 1] > next; --place) ring_[place] = ring_[place - 1];
+    ring_[place] = next;
     return true;
   });
-  std::ranges::sort(ring_);
 }
 
 // The worst of the faces, their vertex pulled into `target`, that are left. The search ends at one that is not above
@@ -183,21 +211,23 @@ double PatchMerger::worst_quality(std::uint32_t target, bool with_needles, doubl
   double worst = std::numeric_limits<double>::infinity();
   for (const StarFace& face : star_) {
     if (face.next == target || face.last == target || (face.is_needle && !with_needles)) continue;
-    worst = std::min(worst, quality(position(target), face.at_next, face.at_last, planes_[face.plane].normal));
+    worst = std::min(worst,
+                     quality(position(target), position(face.next), position(face.last), planes_[face.plane].normal));
     if (!(worst > needed)) break;
   }
   return worst;
 }
 
-// Faces of one plane mostly follow each other.
-bool PatchMerger::is_in_planes(const Vec3& p, bool with_needles) const {
-  std::uint32_t checked = kNoPlane;
+void PatchMerger::find_planes(bool with_needles) {
+  around_.clear();
   for (const StarFace& face : star_) {
-    if ((face.is_needle && !with_needles) || face.plane == checked) continue;
-    checked = face.plane;
-    if (!(planes_[checked].distance(p) <= limits_.most)) return false;
+    if ((face.is_needle && !with_needles) || std::ranges::find(around_, face.plane) != around_.end()) continue;
+    around_.push_back(face.plane);
   }
-  return true;
+}
+
+bool PatchMerger::is_in_planes(const Vec3& p) const {
+  return std::ranges::all_of(around_, [&](std::uint32_t plane) { return planes_[plane].distance(p) <= limits_.most; });
 }
 
 // The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): the vertex and `target` have no neighbours in common but
@@ -219,6 +249,7 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   constexpr double kMayLose = 0.25;
   find_star(v);
   if (std::ranges::none_of(star_, &StarFace::is_needle)) return std::nullopt;
+  find_planes(false);
   const std::vector<std::uint32_t> faces = faces_at_node(v);
   const double before = worst_quality(v, false, -std::numeric_limits<double>::infinity());
   const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, before));
@@ -227,7 +258,7 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   for (const std::uint32_t target : ring_) {
     const std::pair rank(planes_through(target, faces), -distance(v, target));
     if (!(rank > best_rank) || roles_[target] == VertexRole::kForeign || !is_at_node(v, target)) continue;
-    if (!is_in_planes(position(target), false)) continue;
+    if (!is_in_planes(position(target))) continue;
     if (!(worst_quality(target, false, needed) > needed) || !keeps_topology(target)) continue;
     best = target;
     best_rank = rank;
@@ -247,7 +278,7 @@ std::vector<std::uint32_t> PatchMerger::faces_at_node(std::uint32_t v) const {
   std::vector<std::uint32_t> faces;
   const auto add = [&](std::uint32_t vertex) {
     for_each_face(vertex, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
-      if (!needles_[face]) faces.push_back(face);
+      if (needles_[face] == 0) faces.push_back(face);
       return true;
     });
   };
@@ -258,28 +289,36 @@ std::vector<std::uint32_t> PatchMerger::faces_at_node(std::uint32_t v) const {
   return faces;
 }
 
-std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces) const {
+std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces) {
   return std::ranges::count_if(
-      faces, [&](std::uint32_t face) { return planes_[plane_[face]].distance(position(v)) <= limits_.most; });
+      faces, [&](std::uint32_t face) { return planes_[plane_at(face)].distance(position(v)) <= limits_.most; });
 }
 
 // The vertex that v can be pulled into with the best faces around.
 std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
   find_star(v);
+  find_planes(true);
   std::optional<std::uint32_t> best;
+  bool by_geometry = true;
   std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
   for (const std::uint32_t target : ring_) {
-    if (roles_[target] == VertexRole::kForeign || !is_in_planes(position(target), true)) continue;
+    if (!is_in_planes(position(target))) continue;
+    if (roles_[target] == VertexRole::kForeign) {
+      by_geometry = false;
+      continue;
+    }
     if (!best_quality) {
       const double before = worst_quality(v, true, -std::numeric_limits<double>::infinity());
       best_quality = std::max(0.0, std::min(kLeastQuality, before));
     }
     const double worst = worst_quality(target, true, *best_quality);
-    if (worst > *best_quality && keeps_topology(target)) {
-      best = target;
-      best_quality = worst;
-    }
+    if (!(worst > *best_quality)) continue;
+    by_geometry = false;
+    if (!keeps_topology(target)) continue;
+    best = target;
+    best_quality = worst;
   }
+  by_geometry_[v] = by_geometry ? 1 : 0;
   return best;
 }
 
@@ -291,13 +330,14 @@ void PatchMerger::unlink(Corner corner, std::uint32_t vertex) {
 
 void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
   for_each_face(v, [&](std::uint32_t, std::uint32_t next, std::uint32_t) {
+    touched_[next] = 1;
     if (state_[next] != State::kFixed) state_[next] = State::kNext;
     return true;
   });
   for (Corner corner = first_[v], following = kNoCorner; corner != kNoCorner; corner = following) {
     following = next_[corner];
     const std::uint32_t face = corner / 3;
-    Triangle& t = triangles_[face];
+    Triangle& t = faces_[face].corners;
     if (t[0] == target || t[1] == target || t[2] == target) {
       for (std::uint32_t place = 0; place < 3; ++place) {
         if (t[place] != v) unlink(3 * face + place, t[place]);
@@ -308,12 +348,29 @@ void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
     t[corner % 3] = target;
     next_[corner] = first_[target];
     first_[target] = corner;
-    if (!needles_[face]) continue;
-    needles_[face] = is_needle(face);
-    plane_[face] = plane_of(face);
+    changed_[face] = 1;
+    if (needles_[face] == 0) continue;
+    needles_[face] = is_needle(face) ? 1 : 0;
+    faces_[face].plane = plane_of(face);
   }
   first_[v] = kNoCorner;
   into_[v] = target;
+}
+
+// Another patch takes the planes of its faces from their corners as they are then. Those of sources stay what they
+// are, but other planes of faces that have changed since would be new ones, and a face that has become a needle would
+// be none here.
+bool PatchMerger::is_settled(std::uint32_t v) const {
+  if (state_[v] == State::kSettled) return true;
+  if (state_[v] == State::kFixed) return patch_.settled[v] != 0 && touched_[v] == 0;
+  if (state_[v] != State::kStays || by_geometry_[v] == 0) return false;
+  bool is_same = true;
+  for_each_face(v, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
+    const bool changed = changed_[face] != 0;
+    is_same = needles_[face] == 0 && (!changed || (planes_[faces_[face].plane].is_of_source && !is_needle(face)));
+    return is_same;
+  });
+  return is_same;
 }
 
 }  // namespace raycone

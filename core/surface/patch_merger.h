@@ -21,6 +21,7 @@ enum class VertexRole : std::uint8_t {
 struct SurfacePatch {
   std::vector<Vec3> vertices;
   std::vector<VertexRole> roles;
+  std::vector<std::uint8_t> settled;  // whether an earlier PatchMerger said so, and nothing has changed there since
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
 };
@@ -41,39 +42,48 @@ class PatchMerger {
   // Pulls what can be pulled. Call it once.
   void merge();
 
-  // After that: the patch's faces, {0, 0, 0} for those that are gone, and of each vertex the one that it was pulled
-  // into, itself where it stayed.
-  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+  // After that: one of the patch's faces, {0, 0, 0} if it is gone, and of each vertex the one that it was pulled into,
+  // itself where it stayed.
+  [[nodiscard]] const Triangle& triangle(std::size_t face) const { return faces_[face].corners; }
   [[nodiscard]] const std::vector<std::uint32_t>& into() const { return into_; }
+
+  // Whether a vertex of the patch that is still there would stay wherever it were looked at, in any other patch, as
+  // long as the faces around it are these.
+  [[nodiscard]] bool is_settled(std::uint32_t v) const;
 
  private:
   enum class State : std::uint8_t {
-    kWaits,  // to be looked at
-    kNext,   // in the next pass
-    kStays,  // until something changes around it
-    kFixed,  // for ever
+    kWaits,    // to be looked at
+    kNext,     // in the next pass
+    kStays,    // until something changes around it
+    kSettled,  // so it did in an earlier patch
+    kFixed,    // for ever
     kGone,
   };
 
   struct Plane {
     Vec3 point, normal;
+    bool is_of_source;  // and so the same in any patch
     [[nodiscard]] double distance(const Vec3& p) const;
   };
 
   static constexpr std::uint32_t kNoPlane = 0xFFFFFFFF;
-  struct FrontPlanes {
+  struct SourcePlanes {
+    std::int32_t source = kNoSource;
     std::uint32_t own = kNoPlane, turned = kNoPlane;  // with the source's own front, and with its back
   };
-  struct SourcePlanes {
-    std::int32_t source;
-    FrontPlanes plane;
+  static constexpr std::int32_t kNoSource = -2;
+
+  // In one line of the cache.
+  struct alignas(16) Face {
+    Triangle corners;
+    std::uint32_t plane = kNoPlane;  // kNoPlane where nobody has asked yet
   };
 
   // At a vertex; the other corners, in order.
   struct StarFace {
     std::uint32_t plane, next, last;
     bool is_needle;
-    Vec3 at_next, at_last;
   };
 
   // Of a face: three times its number, and the place of the vertex in it.
@@ -86,9 +96,11 @@ class PatchMerger {
   void unlink(Corner corner, std::uint32_t vertex);
 
   void spread(VertexRole role);
-  void find_sources();
+  [[nodiscard]] SourcePlanes& planes_of_source(std::int32_t source);
+  void grow_sources();
   [[nodiscard]] std::uint32_t add_plane(const Plane& plane);
   [[nodiscard]] std::uint32_t plane_of(std::uint32_t face);
+  [[nodiscard]] std::uint32_t plane_at(std::uint32_t face);
   [[nodiscard]] std::uint32_t plane_of_source(std::int32_t source, const Vec3& front);
   [[nodiscard]] bool is_needle(std::uint32_t face) const;
   [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v);
@@ -96,7 +108,7 @@ class PatchMerger {
   [[nodiscard]] double distance(std::uint32_t v, std::uint32_t w) const;
   [[nodiscard]] bool is_at_node(std::uint32_t v, std::uint32_t w) const;
   [[nodiscard]] std::vector<std::uint32_t> faces_at_node(std::uint32_t v) const;
-  [[nodiscard]] std::ptrdiff_t planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces) const;
+  [[nodiscard]] std::ptrdiff_t planes_through(std::uint32_t v, const std::vector<std::uint32_t>& faces);
 
   [[nodiscard]] const Vec3& position(std::uint32_t v) const { return patch_.vertices[v]; }
 
@@ -104,9 +116,10 @@ class PatchMerger {
   template <class Visit>
   void for_each_face(std::uint32_t v, const Visit& visit) const;
 
-  // What the next three look at: the faces around `v`.
+  // What the next ones look at: the faces around `v`, and their planes.
   void find_star(std::uint32_t v);
-  [[nodiscard]] bool is_in_planes(const Vec3& p, bool with_needles) const;
+  void find_planes(bool with_needles);
+  [[nodiscard]] bool is_in_planes(const Vec3& p) const;
   [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t target);
 
@@ -114,15 +127,18 @@ class PatchMerger {
   const TriangleMesh& input_;
   MergeLimits limits_;
   std::vector<VertexRole> roles_;
-  std::vector<Triangle> triangles_;
+  std::vector<Face> faces_;
   std::vector<Plane> planes_;
-  std::vector<SourcePlanes> source_planes_;  // by source
-  std::vector<std::uint32_t> plane_;         // of each face
-  std::vector<bool> needles_;
+  std::vector<SourcePlanes> source_planes_;  // a hash table: linear probing, at most half full
+  std::size_t sources_ = 0;                  // in it
+  std::vector<std::uint8_t> needles_, changed_;
   std::vector<Corner> first_, next_;  // the corners at each vertex, in a chain
   std::vector<State> state_;
+  std::vector<std::uint8_t> touched_;      // vertices: their faces are others than at first
+  std::vector<std::uint8_t> by_geometry_;  // when last looked at, no neighbour was fit, whatever is around that
   std::vector<std::uint32_t> into_;
   std::vector<StarFace> star_;         // of the vertex that is looked at
+  std::vector<std::uint32_t> around_;  // its planes, with or without those of needles, each once
   std::vector<std::uint32_t> ring_;    // its neighbours, increasing
   std::vector<std::uint32_t> marked_;  // of each vertex, the number of the last mark it got
   std::uint32_t marks_ = 0;

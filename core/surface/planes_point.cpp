@@ -39,12 +39,10 @@ Vec3 moved_onto(std::span<const PointOnPlane> planes, Vec3 point) {
 
 }  // namespace
 
-std::array<double, 4> barycentric(const std::array<Vec3, 4>& corners, const Vec3& from_first) {
+BarycentricCoordinates::BarycentricCoordinates(const std::array<Vec3, 4>& corners) : corners_(corners) {
   const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
-  const double volume = dot(a, cross(b, c));
-  const double u = dot(from_first, cross(b, c)) / volume, v = dot(from_first, cross(c, a)) / volume,
-               w = dot(from_first, cross(a, b)) / volume;
-  return {1.0 - u - v - w, u, v, w};
+  across_ = {cross(b, c), cross(c, a), cross(a, b)};
+  volume_ = dot(a, across_[0]);
 }
 
 std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec3& near, double tolerance) {
@@ -56,19 +54,19 @@ std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec
   return on_all ? std::optional(point) : std::nullopt;
 }
 
-bool is_within(const std::array<Vec3, 4>& corners, const Vec3& from_first, double margin) {
-  return std::ranges::all_of(barycentric(corners, from_first), [&](double weight) { return weight > margin; });
+bool BarycentricCoordinates::is_within(const Vec3& from_first, double margin) const {
+  return std::ranges::all_of(of(from_first), [&](double weight) { return weight > margin; });
 }
 
-Vec3 moved_within(const std::array<Vec3, 4>& corners, const Vec3& from_first, double margin) {
-  std::array<double, 4> weights = barycentric(corners, from_first);
+Vec3 BarycentricCoordinates::moved_within(const Vec3& from_first, double margin) const {
+  std::array<double, 4> weights = of(from_first);
   double sum = 0.0;
   for (double& weight : weights) {
     weight = std::max(weight, margin);
     sum += weight;
   }
   Vec3 moved;
-  for (std::size_t i = 1; i < corners.size(); ++i) moved = moved + (weights[i] / sum) * (corners[i] - corners[0]);
+  for (std::size_t i = 1; i < corners_.size(); ++i) moved = moved + (weights[i] / sum) * (corners_[i] - corners_[0]);
   return moved;
 }
 

@@ -19,14 +19,29 @@ struct PointOnPlane {
 [[nodiscard]] std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec3& near,
                                                double tolerance);
 
-// Of a point relative to the first corner.
-[[nodiscard]] std::array<double, 4> barycentric(const std::array<Vec3, 4>& corners, const Vec3& from_first);
+// A tetrahedron whose points are told relative to its first corner.
+class BarycentricCoordinates {
+ public:
+  // Precondition: it has a volume.
+  explicit BarycentricCoordinates(const std::array<Vec3, 4>& corners);
 
-// Whether a point, relative to the first corner, has barycentric coordinates above `margin`.
-[[nodiscard]] bool is_within(const std::array<Vec3, 4>& corners, const Vec3& from_first, double margin);
+  [[nodiscard]] const std::array<Vec3, 4>& corners() const { return corners_; }
+  [[nodiscard]] std::array<double, 4> of(const Vec3& from_first) const {
+    const double u = dot(from_first, across_[0]) / volume_, v = dot(from_first, across_[1]) / volume_,
+                 w = dot(from_first, across_[2]) / volume_;
+    return {1.0 - u - v - w, u, v, w};
+  }
 
-// The point, relative to the first corner, whose barycentric coordinates are those of `from_first`, none below
-// `margin`.
-[[nodiscard]] Vec3 moved_within(const std::array<Vec3, 4>& corners, const Vec3& from_first, double margin);
+  // Whether the coordinates of a point are above `margin`.
+  [[nodiscard]] bool is_within(const Vec3& from_first, double margin) const;
+
+  // The point whose coordinates are those of `from_first`, none below `margin`.
+  [[nodiscard]] Vec3 moved_within(const Vec3& from_first, double margin) const;
+
+ private:
+  std::array<Vec3, 4> corners_;
+  std::array<Vec3, 3> across_;  // what grows with the distance from the faces opposite to the corners but the first
+  double volume_;
+};
 
 }  // namespace raycone

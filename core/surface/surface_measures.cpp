@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "core/distance/distance.h"
+#include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/surface.h"
@@ -22,20 +26,84 @@ double area_of_triangle(const TriangleMesh& mesh, const Triangle& t) {
   return length_of_vector(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a)) / 2.0;
 }
 
-double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh) {
-  std::vector<bool> sourced(surface.mesh.vertices.size(), false);
-  for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
-    for (const std::uint32_t corner : surface.mesh.triangles[i]) {
-      sourced[corner] = sourced[corner] || surface.sources[i] != kHole;
+// The distance of a point from some point of a triangle: that below it, or the nearest by its barycentric coordinates.
+// Off by a few roundings of the coordinates.
+double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a, from = p - a;
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), pu = dot(from, u), pv = dot(from, v);
+  const double determinant = uu * vv - uv * uv;
+  double second = determinant > 0.0 ? std::clamp((vv * pu - uv * pv) / determinant, 0.0, 1.0) : 0.0;
+  double third = determinant > 0.0 ? std::clamp((uu * pv - uv * pu) / determinant, 0.0, 1.0) : 0.0;
+  const double sum = std::max(second + third, 1.0);
+  second /= sum;
+  third /= sum;
+  return length_of_vector(from - second * u - third * v);
+}
+
+// Of each vertex from the sources of its faces, at most; -1 where it has none. `enough`: no need to look for less.
+std::vector<double> distances_from_sources(const SurfaceMesh& surface, const TriangleMesh& mesh, double enough) {
+  constexpr std::size_t kFacesPerTask = 1024;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> distances(surface.mesh.vertices.size(), kInfinity);
+  parallel_for(surface.mesh.triangles.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (surface.sources[i] == kHole) continue;
+      for (const std::uint32_t corner : surface.mesh.triangles[i]) {
+        const std::atomic_ref least(distances[corner]);
+        double known = least.load(std::memory_order_relaxed);
+        if (known <= enough) continue;
+        const double here =
+            distance_at_most(mesh, static_cast<std::uint32_t>(surface.sources[i]), surface.mesh.vertices[corner]);
+        while (here < known && !least.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
+        }
+      }
     }
+  });
+  std::ranges::replace(distances, kInfinity, -1.0);
+  return distances;
+}
+
+// Of the mesh and the lattice, which a surface is within.
+double largest_coordinate(const TriangleMesh& mesh, const Lattice& lattice) {
+  const Box box = bounding_box(mesh);
+  double largest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    const double last = lattice.coordinate(axis, lattice.index_max(axis));
+    largest =
+        std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis]), std::abs(first), std::abs(last)});
   }
-  std::vector<Vec3> points;
-  for (std::size_t v = 0; v < sourced.size(); ++v) {
-    if (sourced[v]) points.push_back(surface.mesh.vertices[v]);
+  return largest;
+}
+
+// Vertices are looked at by decreasing distance from their sources, which is theirs from the mesh nearly always: few
+// need a search.
+double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
+  // Far more than what either distance rounds, and little beside the margin by which points may be off.
+  constexpr double kRoundings = 64 * 0x1p-53, kRounding = 1.0 + 1e-9;
+  const double rounding = kRoundings * largest_coordinate(mesh, lattice);
+  const std::vector<double> at_most = distances_from_sources(surface, mesh, rounding);
+  std::vector<std::uint32_t> waiting;
+  for (std::uint32_t v = 0; v < at_most.size(); ++v) {
+    if (at_most[v] >= 0.0) waiting.push_back(v);
   }
-  std::vector<double> distances(points.size());
-  if (!points.empty()) DistanceEvaluator(mesh).evaluate(points, distances);
-  return distances.empty() ? 0.0 : *std::ranges::max_element(distances);
+  if (waiting.empty()) return 0.0;
+  const DistanceEvaluator evaluator(mesh);
+  double largest = 0.0;
+  for (std::size_t round = 1024; !waiting.empty(); round *= 4) {
+    const std::size_t count = std::min(round, waiting.size());
+    const auto next = waiting.end() - static_cast<std::ptrdiff_t>(count);
+    std::ranges::nth_element(waiting, next, {}, [&](std::uint32_t v) { return at_most[v]; });
+    std::vector<Vec3> points;
+    for (auto v = next; v != waiting.end(); ++v) points.push_back(surface.mesh.vertices[*v]);
+    std::vector<double> distances(count);
+    evaluator.evaluate(points, distances);
+    largest = std::max(largest, std::ranges::max(distances));
+    waiting.erase(next, waiting.end());
+    std::erase_if(waiting, [&](std::uint32_t v) { return at_most[v] * kRounding + rounding <= largest; });
+  }
+  return largest;
 }
 
 // The centres of n^2 equal parts of each triangle, and what area each of them stands for.
@@ -68,25 +136,124 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
 
 double sample_step(const Lattice& lattice) { return 2.0 * length_of_vector(lattice.spacing); }
 
-// Calls visit(samples, is_dropped) for the points of some triangles at a time.
-template <class Visit>
-void for_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice, double thickness,
-                 const Visit& visit) {
-  constexpr std::size_t kTrianglesAtOnce = 1024;
-  const double diagonal = length_of_vector(lattice.spacing);
-  const DistanceEvaluator distance(surface.mesh);
-  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += kTrianglesAtOnce) {
-    AreaSamples samples;
-    for (std::size_t i = begin; i < std::min(begin + kTrianglesAtOnce, mesh.triangles.size()); ++i) {
-      add_samples(samples, mesh, static_cast<std::uint32_t>(i), sample_step(lattice));
-    }
-    std::vector<double> distances(samples.points.size());
-    distance.evaluate(samples.points, distances);
-    std::vector<bool> dropped;
-    for (const double d : distances) dropped.push_back(d > diagonal + thickness);
-    visit(samples, dropped);
+// Whether a surface between the nodes of a lattice is near to a point, as the nodes tell: it passes between any two
+// neighbours of which just one is inside.
+class NearByNodes {
+ public:
+  explicit NearByNodes(const NodeSet& inside) : inside_(inside) {
+    // What numbers of cells round is less than a margin.
+    constexpr double kLess = 0x1p-20, kMargins = 4.0;
+    const double part = 1.0 - kLess - kMargins * surface_margin(inside.lattice(), false);
+    const double most = part * length_of_vector(inside.lattice().spacing);
+    most_square_ = most * most;
   }
-}
+
+  // True only where there is a point of the surface nearer than a cell's diagonal. Nodes that are so near are joined by
+  // edges of the lattice that are, too, by way of the nearest one: so if they are of both kinds, such an edge is mixed.
+  [[nodiscard]] bool is_near(const Vec3& p) const {
+    const Lattice& lattice = inside_.lattice();
+    std::array<std::int64_t, 3> cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double index =
+          std::floor((p[axis] - lattice.coordinate(axis, lattice.index_min[a])) / lattice.spacing[axis]);
+      if (!(index >= 0.0 && index <= static_cast<double>(lattice.counts[a] - 2))) return false;
+      cell[a] = static_cast<std::int64_t>(index);
+    }
+    return are_mixed(p, cell, 0, 1) || are_mixed(p, cell, -1, 2);
+  }
+
+ private:
+  // Whether nodes from `first` to `last`, as seen from the cell's lowest one, that are near are of both kinds.
+  [[nodiscard]] bool are_mixed(const Vec3& p, const std::array<std::int64_t, 3>& cell, std::int64_t first,
+                               std::int64_t last) const {
+    const Lattice& lattice = inside_.lattice();
+    const auto off = [&](int axis, std::int64_t node) {
+      const double to = p[axis] - lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)] + node);
+      return to * to;
+    };
+    const auto begin = [&](std::size_t axis) { return std::max<std::int64_t>(cell[axis] + first, 0); };
+    const auto end = [&](std::size_t axis) { return std::min(cell[axis] + last, lattice.counts[axis] - 1) + 1; };
+    bool any = false, all = true;
+    for (std::int64_t k = begin(2); k < end(2); ++k) {
+      for (std::int64_t j = begin(1); j < end(1); ++j) {
+        const double off_row = off(1, j) + off(2, k);
+        for (std::int64_t i = begin(0); i < end(0); ++i) {
+          if (!(off_row + off(0, i) < most_square_)) continue;
+          const bool holds = inside_.holds(i, j, k);
+          any = any || holds;
+          all = all && holds;
+        }
+      }
+    }
+    return any && !all;
+  }
+
+  const NodeSet& inside_;
+  double most_square_;
+};
+
+// Finds out which points of triangles are dropped: farther from the surface than a cell's diagonal and the thickness.
+class DroppedSamples {
+ public:
+  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness)
+      : surface_(surface),
+        near_(inside),
+        step_(sample_step(inside.lattice())),
+        most_(length_of_vector(inside.lattice().spacing) + thickness) {}
+
+  // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order.
+  template <class Visit>
+  void for_each(const TriangleMesh& mesh, const Visit& visit) {
+    std::array<Part, 16> parts;
+    constexpr std::size_t kTrianglesPerPart = 64, kAtOnce = kTrianglesPerPart * std::tuple_size_v<decltype(parts)>;
+    const std::size_t count = mesh.triangles.size();
+    for (std::size_t first = 0; first < count; first += kAtOnce) {
+      parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+          const std::size_t triangle = first + n * kTrianglesPerPart;
+          parts[n] = part_of(mesh, std::min(triangle, count), std::min(triangle + kTrianglesPerPart, count));
+        }
+      });
+      for (Part& part : parts) {
+        decide(part);
+        if (!part.dropped.empty()) visit(part.samples, part.dropped);
+      }
+    }
+  }
+
+ private:
+  struct Part {
+    AreaSamples samples;
+    std::vector<bool> dropped;
+    std::vector<std::size_t> doubtful;  // samples
+  };
+
+  [[nodiscard]] Part part_of(const TriangleMesh& mesh, std::size_t begin, std::size_t end) const {
+    Part part;
+    for (std::size_t i = begin; i < end; ++i) add_samples(part.samples, mesh, static_cast<std::uint32_t>(i), step_);
+    part.dropped.resize(part.samples.points.size(), false);
+    for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
+      if (!near_.is_near(part.samples.points[n])) part.doubtful.push_back(n);
+    }
+    return part;
+  }
+
+  void decide(Part& part) {
+    if (part.doubtful.empty()) return;
+    if (!distance_) distance_.emplace(surface_.mesh);
+    std::vector<Vec3> points;
+    for (const std::size_t n : part.doubtful) points.push_back(part.samples.points[n]);
+    std::vector<double> distances(points.size());
+    distance_->evaluate(points, distances);
+    for (std::size_t i = 0; i < points.size(); ++i) part.dropped[part.doubtful[i]] = distances[i] > most_;
+  }
+
+  const SurfaceMesh& surface_;
+  NearByNodes near_;
+  double step_, most_;
+  std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
+};
 
 // Which points of triangles the lattice should have seen.
 class MissedBy {
@@ -144,25 +311,26 @@ class MissedBy {
 };
 
 // In squares of sample_step().
-double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice, double thickness) {
+double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside, double thickness) {
   double area = 0.0;
-  for_samples(surface, mesh, lattice, thickness, [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
-    for (std::size_t n = 0; n < dropped.size(); ++n) area += dropped[n] ? samples.areas[n] : 0.0;
-  });
+  DroppedSamples(surface, inside, thickness)
+      .for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
+        for (std::size_t n = 0; n < dropped.size(); ++n) area += dropped[n] ? samples.areas[n] : 0.0;
+      });
   return area;
 }
 
 }  // namespace
 
-SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice,
+SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
                                 double thickness) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;
-  measures.max_distance = largest_distance(surface, mesh);
+  measures.max_distance = largest_distance(surface, mesh, inside.lattice());
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }
-  const double step = sample_step(lattice), dropped = dropped_area_of(surface, mesh, lattice, thickness);
+  const double step = sample_step(inside.lattice()), dropped = dropped_area_of(surface, mesh, inside, thickness);
   measures.dropped_area = dropped * step * step;
   measures.drops = dropped > 0.0;
   return measures;
@@ -185,7 +353,7 @@ ThinParts thin_parts(const SurfaceMesh& surface, const TriangleMesh& mesh, const
       if (!dropped[n]) is_left[component] = true;
     }
   };
-  for_samples(surface, mesh, inside.lattice(), thickness, add);
+  DroppedSamples(surface, inside, thickness).for_each(mesh, add);
   for (std::size_t c = 0; c < components.count; ++c) thin.lost += is_missed[c] && !is_left[c] ? 1 : 0;
   const double step = sample_step(inside.lattice());
   if (whole > 0.0) thin.of_all = thin.area / whole;

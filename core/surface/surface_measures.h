@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/contour.h"
 #include "core/surface/edge_roots.h"
@@ -28,8 +27,9 @@ struct ThinParts {
   std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
+// Of a surface between `inside` and the other nodes.
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,
-                                              const Lattice& lattice, double thickness = 0.0);
+                                              const NodeSet& inside, double thickness = 0.0);
 
 // Of a surface of `inside` that drops area. A point of that separates where the rule differs a margin before
 // and behind the triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is

@@ -24,7 +24,7 @@ class ThickRule {
       values[n] = (thickness_ - values[n]) / voxel_;
       if (values[n] < 0.0) beyond.push_back(points[n]);
     }
-    const std::vector<double> there = rule_.at(beyond);
+    const std::vector<double> there = rule_.near(beyond);
     std::size_t next = 0;
     for (double& value : values) {
       if (value < 0.0) value = std::max(value, there[next++]);

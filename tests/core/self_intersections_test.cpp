@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "core/intersections/triangle_pair.h"
+#include "core/intersections/vertex_graph.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/exact_intersections.h"
 #include "tests/support/shapes.h"
@@ -26,6 +30,9 @@ void expect_pairs(const TriangleMesh& mesh, const std::vector<TrianglePair>& exp
     EXPECT_EQ(std::ranges::count(expected, *found.first), 1);
   }
   EXPECT_EQ(first_self_intersection(mesh), found.first);
+  const SelfIntersections along_curve = self_intersections(mesh, SearchOrder::kCurve);
+  EXPECT_EQ(along_curve.pairs, expected.size());
+  EXPECT_EQ(along_curve.of_triangle, of_triangle);
 }
 
 void expect_oracle(const TriangleMesh& mesh) { expect_pairs(mesh, test::exact_self_intersections(mesh)); }
@@ -91,6 +98,65 @@ TEST(SelfIntersections, DoNotDependOnTheOrderOfFaces) {
   const SelfIntersections once = self_intersections(mesh);
   EXPECT_GT(once.pairs, 100U);
   EXPECT_EQ(self_intersections(test::shuffled(mesh, random)).pairs, once.pairs);
+}
+
+// The faces around each vertex of a closed mesh, as steps.
+std::vector<std::vector<FanStep>> fans_of(const TriangleMesh& mesh) {
+  std::vector<std::vector<FanStep>> fans(mesh.vertices.size());
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) fans[t[i]].emplace_back(t[(i + 1) % 3], t[(i + 2) % 3]);
+  }
+  return fans;
+}
+
+// Faces around the origin, whose other corners go around the z axis so many times.
+bool fan_is_graph(int rounds, int faces, double height, double shift) {
+  std::vector<Vec3> vertices{{0, 0, 0}};
+  std::vector<FanStep> steps;
+  for (int i = 0; i < faces; ++i) {
+    const double angle = 2 * std::numbers::pi * rounds * i / faces + 0.1;
+    vertices.push_back({std::cos(angle) + shift, std::sin(angle), i % 2 == 0 ? height : -height});
+    steps.emplace_back(1 + i, 1 + (i + 1) % faces);
+  }
+  return is_surely_graph(vertices, 0, steps);
+}
+
+TEST(VertexGraph, IsSeenFromItsFrontAndOnce) {
+  const DefaultFloatingPoint guard;
+  EXPECT_TRUE(fan_is_graph(1, 6, 0.0, 0.0));
+  EXPECT_TRUE(fan_is_graph(1, 7, 0.3, 0.5));
+  EXPECT_TRUE(fan_is_graph(1, 4, 5.0, 0.0));
+  EXPECT_FALSE(fan_is_graph(2, 9, 0.3, 0.0));
+  EXPECT_FALSE(fan_is_graph(3, 14, 0.3, 0.0));
+  EXPECT_FALSE(fan_is_graph(1, 6, 0.0, 3.0));  // the vertex is outside of its ring: faces are folded
+  EXPECT_FALSE(fan_is_graph(1, 2, 0.1, 0.0));
+}
+
+// Spheres whose vertices have been moved: by little, so that all faces around a vertex are seen from their fronts, up
+// to so far that many are folded over others.
+TEST(SelfIntersections, AreTheSameWithoutThePairsAtGraphs) {
+  const DefaultFloatingPoint guard;
+  test::Random random(17);
+  std::uint64_t graphs_in_all = 0, pairs_in_all = 0;
+  for (const double by : {0.0, 0.02, 0.05, 0.1, 0.2, 0.4}) {
+    TriangleMesh mesh = test::sphere(12);
+    for (Vec3& p : mesh.vertices) {
+      p = p + by * Vec3{test::uniform(random, -1, 1), test::uniform(random, -1, 1), test::uniform(random, -1, 1)};
+    }
+    const auto fans = fans_of(mesh);
+    std::vector<std::uint8_t> graphs;
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+      graphs.push_back(is_surely_graph(mesh.vertices, v, fans[v]) ? 1 : 0);
+      graphs_in_all += graphs.back();
+    }
+    const SelfIntersections all = self_intersections(mesh);
+    const SelfIntersections found = self_intersections(mesh, SearchOrder::kCurve, &graphs);
+    EXPECT_EQ(found.pairs, all.pairs) << by;
+    EXPECT_EQ(found.of_triangle, all.of_triangle) << by;
+    pairs_in_all += all.pairs;
+  }
+  EXPECT_GT(graphs_in_all, 100U);
+  EXPECT_GT(pairs_in_all, 100U);
 }
 
 TEST(SelfIntersections, AreTheSameOnAnyThread) {

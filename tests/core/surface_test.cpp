@@ -25,6 +25,7 @@
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/patch_merger.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
@@ -535,6 +536,33 @@ TEST(MergedFaces, CloseUpWhereBricksMeet) {
   }
 }
 
+// Whether a vertex among `ring`, all of whose faces are in a patch, is settled there. Each face is its own source. Only
+// the vertex itself has all of its faces in it.
+bool is_settled_among(const std::vector<Vec3>& ring) {
+  SurfacePatch patch{{{0, 0, 0}}, {VertexRole::kFree}, {0}, {}, {}};
+  for (std::uint32_t i = 0; i < ring.size(); ++i) {
+    patch.vertices.push_back(ring[i]);
+    patch.roles.push_back(VertexRole::kForeign);
+    patch.settled.push_back(0);
+    patch.triangles.push_back({0, 1 + i, 1 + (i + 1) % static_cast<std::uint32_t>(ring.size())});
+    patch.sources.push_back(static_cast<std::int32_t>(i));
+  }
+  const TriangleMesh input{patch.vertices, patch.triangles};
+  PatchMerger merger(patch, input, {1e-9, 0.0});
+  merger.merge();
+  EXPECT_EQ(merger.into()[0], 0U);
+  return merger.is_settled(0);
+}
+
+// Another brick may pull a vertex along a ridge, or within a plane, whose neighbours are foreign here. None can pull
+// one at a corner.
+TEST(PatchMerger, SettlesWhatStaysInAnyBrick) {
+  EXPECT_FALSE(is_settled_among({{1, 0, 0}, {0, 1, -1}, {-1, 0, 0}, {0, -1, -1}}));
+  EXPECT_FALSE(is_settled_among({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}));
+  EXPECT_TRUE(is_settled_among({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_TRUE(is_settled_among({{1, 0, -1}, {0, 1, -1}, {-1, 0, -1}, {0, -1, -1}}));
+}
+
 // The opening of the box is in a plane of nodes, which are inside. Merged with the rim, which is at these nodes, it
 // would leave some of them outside: 10912 faces without any merging, 134 with all of it.
 TEST(Surface, IsMergedButAtNodesThatWouldChangeSides) {
@@ -555,7 +583,8 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   // Points next to the hole's rim are on triangles, the others within 2^-34 of an edge of the right place.
   const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
   EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));
-  EXPECT_GT(measure_surface(surface, mesh, lattice).hole_area, 0.0);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  EXPECT_GT(measure_surface(surface, mesh, inside).hole_area, 0.0);
 }
 
 TEST(Surface, InSinglePrecisionIsRightThere) {
@@ -600,10 +629,31 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   const auto first = static_cast<std::uint32_t>(box.vertices.size());
   wall.triangles.push_back({first, first + 1, first + 2});
   const auto [surface, lattice] = surface_of(box, 20);
-  EXPECT_NEAR(measure_surface(surface, wall, lattice).dropped_area, 0.18, 1e-12);
-  EXPECT_EQ(measure_surface(surface, box, lattice).dropped_area, 0.0);
-  EXPECT_TRUE(measure_surface(surface, wall, lattice).drops);
-  EXPECT_FALSE(measure_surface(surface, box, lattice).drops);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  EXPECT_NEAR(measure_surface(surface, wall, inside).dropped_area, 0.18, 1e-12);
+  EXPECT_EQ(measure_surface(surface, box, inside).dropped_area, 0.0);
+  EXPECT_TRUE(measure_surface(surface, wall, inside).drops);
+  EXPECT_FALSE(measure_surface(surface, box, inside).drops);
+}
+
+// They find most distances without a search.
+TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
+  Random random(26);
+  for (int round = 0; round < 6; ++round) {
+    const TriangleMesh mesh = rotated(round % 2 == 0 ? test::open_box() : test::sphere(9));
+    SurfaceOptions options;
+    options.single_precision = round > 3;
+    auto [surface, lattice] = surface_of(mesh, 16 + round, options);
+    // Some vertices off the mesh, as nothing makes them: not what their sources say.
+    if (round % 3 == 2) surface.mesh.vertices[surface.mesh.triangles[7][0]].x += 3.0 * lattice.spacing.x;
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < surface.sources.size(); ++i) {
+      if (surface.sources[i] == kHole) continue;
+      for (const std::uint32_t corner : surface.mesh.triangles[i]) points.push_back(surface.mesh.vertices[corner]);
+    }
+    const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+    EXPECT_EQ(measure_surface(surface, mesh, inside).max_distance, largest_distance_of(points, mesh)) << round;
+  }
 }
 
 // A box beside a plate of a tenth of a voxel, which lies between nodes.

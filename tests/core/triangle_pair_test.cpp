@@ -38,6 +38,8 @@ void expect_meeting(bool expected, Corners3 s, Corners3 t) {
     do {
       EXPECT_EQ(meet_beyond_shared(s, t), expected) << printed(s, t);
       EXPECT_EQ(meet_beyond_shared(t, s), expected) << printed(t, s);
+      EXPECT_EQ(MeetsBeyondShared(s)(t), expected) << printed(s, t);
+      EXPECT_EQ(MeetsBeyondShared(t)(s), expected) << printed(t, s);
     } while (std::next_permutation(t.begin(), t.end(), less));
   } while (std::next_permutation(s.begin(), s.end(), less));
 }
@@ -141,6 +143,8 @@ class RandomPairs {
       meeting += expected;
       ASSERT_EQ(meet_beyond_shared(s, t), expected) << printed(s, t);
       ASSERT_EQ(meet_beyond_shared(t, s), expected) << printed(t, s);
+      ASSERT_EQ(MeetsBeyondShared(s)(t), expected) << printed(s, t);
+      ASSERT_EQ(MeetsBeyondShared(t)(s), expected) << printed(t, s);
     }
     EXPECT_GT(meeting, count / 50);
     EXPECT_LT(meeting, count - count / 50);

@@ -444,6 +444,37 @@ TEST(WindingNumber, DoesNotDependOnThreads) {
   EXPECT_EQ(results[0], results[2]);
 }
 
+// On the plane of the opening w is a half, and values next to it are settled.
+TEST(WindingNumber, UnsettledIsTheSameButNextToHalfIntegers) {
+  Random random(31);
+  const TriangleMesh mesh = test::open_box();
+  const Box box = bounding_box(mesh);
+  std::vector<Vec3> queries = random_queries(random, box, 500);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double at : {box.lower[axis], box.upper[axis]}) {
+      for (int i = 0; i < 50; ++i) {
+        queries.push_back(test::uniform_point(random, box));
+        queries.back()[axis] = at + (i % 5) * 1e-16;
+      }
+    }
+  }
+  const WindingNumberEvaluator evaluator(mesh);
+  const std::vector<double> settled = values_of(mesh, queries);
+  std::vector<double> unsettled(queries.size());
+  evaluator.evaluate_unsettled(queries, unsettled);
+  int near = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const bool is_near = std::abs(settled[i] - std::floor(settled[i]) - 0.5) <= 2 * evaluator.doubt();
+    near += is_near ? 1 : 0;
+    if (is_near) {
+      EXPECT_NEAR(unsettled[i], settled[i], 2 * evaluator.doubt());
+    } else {
+      EXPECT_EQ(unsettled[i], settled[i]);
+    }
+  }
+  EXPECT_GT(near, 20);
+}
+
 TEST(WindingNumber, CallersFlushToZeroDoesNotMatter) {
   const double tiny = 1e-160;
   const TriangleMesh mesh = test::moved(test::open_box(), {tiny, tiny, tiny}, {});

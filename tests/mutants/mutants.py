@@ -364,7 +364,7 @@ MUTANTS = [
     Mutant("duplicates_are_one", "two triangles of the same corners overlap", [
         ("core/intersections/triangle_pair.cpp", "return !is_flat(a);", "return false;")]),
     Mutant("boxes_must_overlap", "boxes that touch meet", [
-        ("core/intersections/self_intersections.cpp", "(lower[axis][i] <= high)", "(lower[axis][i] < high)")]),
+        ("core/intersections/self_intersections.cpp", "(four(lower[0]) <= box.upper[0])", "(four(lower[0]) < box.upper[0])")]),
     Mutant("first_of_any_thread", "the first pair is that of the tree's order", [
         ("core/intersections/self_intersections.cpp", "if (found_first.place < first.place) first = found_first;",
          "first = found_first;")]),
@@ -433,15 +433,33 @@ MUTANTS = [
     Mutant("surface_creases_cut_off", "a sharp edge is followed up to where it leaves the cells", [
         ("core/surface/contour.cpp", "if (!on_crease && face_points == 1)", "if (!on_crease && face_points == 9)")]),
     Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
-        ("core/surface/cell_creases.cpp", "end - corners[0], margin)) nearest.add", "end - corners[0], 9.0 + margin)) nearest.add")]),
+        ("core/surface/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
     Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [
-        ("core/surface/face_points.cpp", "return crease_point(face, creases, cell, margin);",
-         "return margin > 9.0 ? crease_point(face, creases, cell, margin) : std::nullopt;")]),
+        ("core/surface/face_points.cpp", "return crease_point(face, creases, margin);",
+         "return margin > 9.0 ? crease_point(face, creases, margin) : std::nullopt;")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
-        ("core/surface/patch_merger.cpp", "if (!(planes_[checked].distance(p) <= limits_.most)) return false;",
-         "if (!(planes_[checked].distance(p) <= 1e9 * limits_.most)) return false;")]),
+        ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
+         "return planes_[plane].distance(p) <= 1e9 * limits_.most;")]),
     Mutant("bricks_own_borders", "vertices that have faces in two bricks are neither's", [
-        ("core/surface/merge_planes.cpp", "met[corner] && result.owner[corner] != brick ? kNone : brick", "brick")]),
+        ("core/surface/merge_planes.cpp", "if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);", "(void)is_own;")]),
+    Mutant("settled_at_borders", "what a brick may not be pulled into, another may", [
+        ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
+         "    if (roles_[target] == VertexRole::kForeign) {\n")]),
+    Mutant("all_is_near_the_surface", "nodes of one kind say nothing about where the surface is", [
+        ("core/surface/surface_measures.cpp", "return any && !all;", "return any || !all;")]),
+    Mutant("farthest_by_source_alone", "a vertex may be farther from the mesh than the others whose sources are", [
+        ("core/surface/surface_measures.cpp", "largest = std::max(largest, std::ranges::max(distances));",
+         "largest = std::max(largest, std::ranges::min(distances));")]),
+    Mutant("beside_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it, for many, too", [
+        ("core/intersections/triangle_pair.cpp", "beside &= (left - right < -trust) | is_start | is_end;",
+         "beside = (left - right < -trust) | is_start | is_end;")]),
+    Mutant("graph_around_twice", "faces that go around a vertex twice may meet", [
+        ("core/intersections/vertex_graph.cpp", "return rounds == 1;", "return rounds >= 1;")]),
+    Mutant("graph_seen_from_behind", "faces that are folded over others are seen from behind", [
+        ("core/intersections/vertex_graph.cpp", "if (!turns_left(direction, a, b)) return false;", "")]),
+    Mutant("unsettled_far_off", "values that are not settled are those of the sum", [
+        ("core/evaluation/scaled_mesh.cpp", "if (settling == Settling::kLeft) return;",
+         "if (settling == Settling::kLeft) {\n    values[0] += 1e-9;\n    return;\n  }")]),
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [

@@ -14,6 +14,10 @@ namespace {
 // there was one before.
 constexpr double kLeastQuality = 1e-3;
 
+// Of two planes back to back: 180 degrees but for 1e-3 radians. Others hold a point within a thousand times what they
+// are off by themselves.
+constexpr double kBackToBack = -1 + 0x1p-21;  // cosine
+
 double longest_square(const Vec3& u, const Vec3& v) {
   const Vec3 w = v - u;
   return std::max({dot(u, u), dot(v, v), dot(w, w)});
@@ -196,7 +200,7 @@ void PatchMerger::find_star(std::uint32_t v) {
   star_.clear();
   ring_.clear();
   for_each_face(v, [&](std::uint32_t face, std::uint32_t next, std::uint32_t last) {
-    star_.push_back({plane_at(face), next, last, needles_[face] != 0});
+    star_.push_back({plane_at(face), next, last, needles_[face] != 0, patch_.sources[face] == kHole});
     std::size_t place = ring_.size();  // few: sorting by swaps would wait for what has just been stored
     ring_.push_back(next);
     for (; place > 0 && ring_[place - 1] > next; --place) ring_[place] = ring_[place - 1];
@@ -228,6 +232,40 @@ void PatchMerger::find_planes(bool with_needles) {
 
 bool PatchMerger::is_in_planes(const Vec3& p) const {
   return std::ranges::all_of(around_, [&](std::uint32_t plane) { return planes_[plane].distance(p) <= limits_.most; });
+}
+
+// Some lines hold although planes do not hold them: the rim of a fin, around which faces lie back to back, in planes
+// that differ in their fronts alone; and the border of faces that close a hole, which may be in the plane of what is
+// beside it. A vertex there must be on the straight line between its neighbours on the line, and goes to one of them.
+bool PatchMerger::may_have_rim() const {
+  const bool holes = star_.front().is_hole;
+  if (std::ranges::any_of(star_, [&](const StarFace& face) { return face.is_hole != holes; })) return true;
+  for (std::size_t i = 1; i < around_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (dot(planes_[around_[i]].normal, planes_[around_[j]].normal) < kBackToBack) return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::uint32_t> PatchMerger::rim_neighbours() const {
+  std::vector<std::uint32_t> neighbours;
+  for (const StarFace& face : star_) {
+    const auto across = std::ranges::find(star_, face.next, &StarFace::last);
+    if (across == star_.end()) continue;
+    const bool back_to_back = dot(planes_[face.plane].normal, planes_[across->plane].normal) < kBackToBack;
+    if (back_to_back || face.is_hole != across->is_hole) neighbours.push_back(face.next);
+  }
+  return neighbours;
+}
+
+bool PatchMerger::keeps_rim(std::uint32_t v, std::uint32_t target, const std::vector<std::uint32_t>& rim) const {
+  if (rim.empty()) return true;
+  if (rim.size() != 2 || std::ranges::find(rim, target) == rim.end()) return false;
+  const Vec3 &p = position(v), &a = position(rim[0]), &b = position(rim[1]);
+  const Vec3 along = b - a, off = cross(along, p - a);
+  const bool between = dot(p - a, along) > 0.0 && dot(p - b, along) < 0.0;
+  return between && dot(off, off) <= limits_.most * limits_.most * dot(along, along);
 }
 
 // The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): the vertex and `target` have no neighbours in common but
@@ -298,11 +336,12 @@ std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<st
 std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
   find_star(v);
   find_planes(true);
+  const std::vector<std::uint32_t> rim = may_have_rim() ? rim_neighbours() : std::vector<std::uint32_t>();
   std::optional<std::uint32_t> best;
   bool by_geometry = true;
   std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
   for (const std::uint32_t target : ring_) {
-    if (!is_in_planes(position(target))) continue;
+    if (!is_in_planes(position(target)) || !keeps_rim(v, target, rim)) continue;
     if (roles_[target] == VertexRole::kForeign) {
       by_geometry = false;
       continue;

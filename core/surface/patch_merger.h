@@ -83,7 +83,7 @@ class PatchMerger {
   // At a vertex; the other corners, in order.
   struct StarFace {
     std::uint32_t plane, next, last;
-    bool is_needle;
+    bool is_needle, is_hole;
   };
 
   // Of a face: three times its number, and the place of the vertex in it.
@@ -121,6 +121,9 @@ class PatchMerger {
   void find_planes(bool with_needles);
   [[nodiscard]] bool is_in_planes(const Vec3& p) const;
   [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
+  [[nodiscard]] bool may_have_rim() const;
+  [[nodiscard]] std::vector<std::uint32_t> rim_neighbours() const;
+  [[nodiscard]] bool keeps_rim(std::uint32_t v, std::uint32_t target, const std::vector<std::uint32_t>& rim) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t target);
 
   const SurfacePatch& patch_;

@@ -16,7 +16,7 @@
 namespace raycone {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kNoPlace = UINT32_MAX;
 
 struct Plane {
   Vec3 point, normal;  // of length 1
@@ -94,7 +94,7 @@ class Sharpener {
   std::vector<std::int32_t> sources_;
   std::vector<Placed> placed_;        // of each face
   std::vector<std::uint8_t> gone_;    // likewise
-  std::vector<std::uint32_t> place_;  // of each vertex among faces_; kNone where it is of no strip
+  std::vector<std::uint32_t> place_;  // of each vertex among faces_; kNoPlace where it is of no strip
   std::vector<Faces> faces_;
 };
 
@@ -119,18 +119,18 @@ void Sharpener::find_strips() {
 }
 
 void Sharpener::find_faces() {
-  place_.assign(mesh_.vertices.size(), kNone);
+  place_.assign(mesh_.vertices.size(), kNoPlace);
   for (std::size_t face = 0; face < placed_.size(); ++face) {
     if (placed_[face] != Placed::kAcross) continue;
     for (const std::uint32_t corner : mesh_.triangles[face]) {
-      if (place_[corner] != kNone) continue;
+      if (place_[corner] != kNoPlace) continue;
       place_[corner] = static_cast<std::uint32_t>(faces_.size());
       faces_.emplace_back();
     }
   }
   for (std::uint32_t face = 0; face < placed_.size(); ++face) {
     for (const std::uint32_t corner : mesh_.triangles[face]) {
-      if (place_[corner] != kNone) faces(corner).push_back(face);
+      if (place_[corner] != kNoPlace) faces(corner).push_back(face);
     }
   }
 }
@@ -165,7 +165,7 @@ bool Sharpener::pull(std::uint32_t u, std::uint32_t v, std::vector<std::uint32_t
     if (has(face, u)) {
       gone_[face] = 1;
       for (const std::uint32_t corner : mesh_.triangles[face]) {
-        if (corner != v && place_[corner] != kNone) std::erase(faces(corner), face);
+        if (corner != v && place_[corner] != kNoPlace) std::erase(faces(corner), face);
       }
       continue;
     }

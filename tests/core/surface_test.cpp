@@ -22,6 +22,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
+#include "core/mesh/weld.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
@@ -490,6 +491,60 @@ TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {
 TEST(Surface, OfAnAlignedBoxHasFewFaces) {
   const auto [surface, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 24);
   EXPECT_EQ(surface.mesh.triangles.size(), 12U);
+}
+
+// A patch with a face on each side of a sheet without thickness: a fin. All its faces are in one plane but for their
+// fronts, and it has no other planes to hold its rim.
+SurfacePatch fin() {
+  // A square with a tip: the front, then the back, with a vertex in the middle of each side's border.
+  SurfacePatch patch;
+  patch.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}};
+  for (std::uint32_t v = 1; v + 1 < 6; ++v) {
+    patch.triangles.push_back({0, v, v + 1});
+    patch.triangles.push_back({0, v + 1, v});
+  }
+  patch.roles.assign(patch.vertices.size(), VertexRole::kFree);
+  patch.settled.assign(patch.vertices.size(), 0);
+  patch.sources.assign(patch.triangles.size(), 0);
+  return patch;
+}
+
+// Found by an attack: the tip of a fin was pulled in, which leaves each face in its plane.
+TEST(PatchMerger, KeepsTheRimOfAFin) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh input{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const SurfacePatch patch = fin();
+  PatchMerger merged(patch, input, {1e-9, 1e-8});
+  merged.merge();
+  for (const std::uint32_t corner : {0U, 2U, 3U, 4U, 5U}) EXPECT_EQ(merged.into()[corner], corner);
+}
+
+// The border of faces that close a hole stays where it is, also in the plane of what is beside it.
+TEST(Surface, KeepsTheBorderOfAHoleWhereFacesAreMerged) {
+  // A box whose top has a hole that is no rectangle: what closes it is nearly in the plane of the rest of the top.
+  TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t v) { return mesh.vertices[v].z == 1.0; });
+  });
+  const std::uint32_t first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.37, 0.61, 1}});
+  mesh.triangles.insert(mesh.triangles.end(), {{first, first + 1, first + 4}, {first + 1, first + 2, first + 4}});
+  const auto hole_area = [](const SurfaceMesh& surface) {
+    double area = 0.0;
+    for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+      if (surface.sources[face] != kHole) continue;
+      const Triangle& t = surface.mesh.triangles[face];
+      const std::vector<Vec3>& v = surface.mesh.vertices;
+      const Vec3 normal = cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]);
+      area += std::sqrt(dot(normal, normal)) / 2;
+    }
+    return area;
+  };
+  const TriangleMesh welded = weld(mesh, {});
+  const auto [fine, lattice] = surface_of(welded, 20, {.rule = {}, .merge_planes = false});
+  const auto [merged, same] = surface_of(welded, 20);
+  EXPECT_GT(hole_area(fine), 0.1);
+  EXPECT_NEAR(hole_area(merged), hole_area(fine), 1e-6);
 }
 
 // Merging goes brick by brick, of 32 voxels each: nothing of their borders is left.

@@ -521,6 +521,8 @@ MUTANTS = [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
         ("core/evaluation/lattice_far.cpp", "if (least <= doubt_)", "if (least < 0.0)")]),
+    Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
+        ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [
         ("core/surface/sharpen.cpp", "return distance <= limits_.off;", "return distance <= 1e9 * limits_.off;")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [

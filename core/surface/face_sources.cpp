@@ -13,7 +13,7 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kFacesPerTask = 4096;
+constexpr std::size_t kFacesInTask = 4096;
 
 struct Corners {
   const Vec3 &a, &b, &c;
@@ -41,7 +41,7 @@ bool may_be_of(const Corners& face, const Corners& source, double off) {
 
 std::vector<std::uint32_t> doubtful_faces(const TriangleMesh& input, double off, const SurfaceMesh& surface) {
   std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
-  parallel_for(doubtful.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t face = begin; face < end; ++face) {
       const std::int32_t source = surface.sources[face];
       if (source == kHole) continue;

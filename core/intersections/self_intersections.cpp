@@ -246,11 +246,11 @@ class PairMeeting {
     }
   }
   [[nodiscard]] bool shares_graph(const Triangle& other) const {
-    bool shares = false;
+    unsigned shares = 0;  // not by branches, which nobody can foresee
     for (const std::uint32_t vertex : at_graphs_) {
-      shares |= (vertex == other[0]) | (vertex == other[1]) | (vertex == other[2]);
+      for (const std::uint32_t of_other : other) shares |= static_cast<unsigned>(vertex == of_other);
     }
-    return shares;
+    return shares != 0;
   }
 
   const PairTree& tree_;

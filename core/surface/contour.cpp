@@ -255,23 +255,24 @@ struct PartPlace {
   std::size_t triangles = 0, apexes = 0;
 };
 
-void join_part(const ContourPart& part, const PartPlace& place, std::size_t first_apex, ContouredSurface& contoured) {
-  auto& [mesh, sources] = contoured.surface;
+void join_triangles(ContourPart& part, const PartPlace& place, std::size_t first_apex, std::vector<Triangle>& all) {
   for (std::size_t i = 0; i < part.triangles.size(); ++i) {
     Triangle triangle = part.triangles[i];
     for (std::uint32_t& corner : triangle) {
       if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex + place.apexes);
     }
-    mesh.triangles[place.triangles + i] = triangle;
-    sources[place.triangles + i] = part.sources[i];
+    all[place.triangles + i] = triangle;
   }
-  for (std::size_t i = 0; i < part.apexes.size(); ++i) {
-    mesh.vertices[first_apex + place.apexes + i] = part.apexes[i];
-    contoured.tetrahedra[place.apexes + i] = part.tetrahedra[i];
-  }
+  part.triangles = {};
 }
 
-// Each part's memory is given back once it is in the whole.
+template <class Item>
+void join_items(std::vector<Item>& part, std::size_t place, std::vector<Item>& all) {
+  std::ranges::copy(part, all.begin() + static_cast<std::ptrdiff_t>(place));
+  part = {};
+}
+
+// One kind of items after the other: the memory of parts is given back before the next one needs some.
 ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                         std::span<const Vec3> face_points) {
   std::vector<PartPlace> places;
@@ -287,17 +288,23 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
 
   ContouredSurface contoured;
   auto& [mesh, sources] = contoured.surface;
-  mesh.vertices.resize(all_vertices);
+  const auto for_each_part = [&](const auto& join) {
+    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
+      for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
+    });
+  };
   mesh.triangles.resize(end.triangles);
+  for_each_part(
+      [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, first_apex, mesh.triangles); });
   sources.resize(end.triangles);
-  contoured.tetrahedra.resize(end.apexes);
+  for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
+  mesh.vertices.resize(all_vertices);
   std::ranges::transform(edge_points, mesh.vertices.begin(), &EdgePoint::position);
   std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
-    for (std::size_t n = begin; n < last; ++n) {
-      join_part(parts[n], places[n], first_apex, contoured);
-      parts[n] = {};
-    }
+  contoured.tetrahedra.resize(end.apexes);
+  for_each_part([&](ContourPart& part, const PartPlace& place) {
+    join_items(part.apexes, first_apex + place.apexes, mesh.vertices);
+    join_items(part.tetrahedra, place.apexes, contoured.tetrahedra);
   });
   return contoured;
 }

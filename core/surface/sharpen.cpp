@@ -269,8 +269,7 @@ std::optional<Vec3> Sharpener::meeting_point(std::span<const Plane> planes, cons
          (of_c / determinant) * cross(a, b);
 }
 
-// Whether the faces of a vertex that are left have an area, and are not turned over, when it moves. Those of strips may
-// turn.
+// Whether the faces of a vertex that are left have an area, and are not turned over, when it moves.
 bool Sharpener::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const {
   return std::ranges::all_of(faces(vertex), [&](std::uint32_t face) {
     if (has(face, other)) return true;
@@ -282,7 +281,8 @@ bool Sharpener::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Ve
     }
     const Vec3 was = cross(before[1] - before[0], before[2] - before[0]);
     const Vec3 is = cross(after[1] - after[0], after[2] - after[0]);
-    return placed_[face] == Placed::kInPlane ? dot(was, is) > 0.0 : dot(is, is) > 0.0;
+    const bool may_turn = placed_[face] != Placed::kInPlane && limits_.strips_may_turn;
+    return may_turn ? dot(is, is) > 0.0 : dot(was, is) > 0.0;
   });
 }
 

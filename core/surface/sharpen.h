@@ -13,6 +13,7 @@ struct SharpenLimits {
   double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
   double reach = 0.0;  // how far a vertex is pulled at most, likewise
   bool single_precision = false;  // vertices are rounded to float
+  bool strips_may_turn = true;    // what is left of them, on the way; they may then cross other faces
 };
 
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the

@@ -168,7 +168,7 @@ class SurfaceMaker {
     constexpr int kSharpeningRounds = 4;
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    const SharpenLimits limits{kOff * margins.inner * most, kReach * least, options_.single_precision};
+    SharpenLimits limits{kOff * margins.inner * most, kReach * least, options_.single_precision};
     settle_sources(mesh_, least / 4, surface);
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < kSharpeningRounds; ++round) {
@@ -188,6 +188,7 @@ class SurfaceMaker {
         kept[v] = kept[v] || touched[sharp.into[v]] || is_beside(sharp.surface.mesh.vertices[sharp.into[v]], misplaced);
       }
       if (kept == before) return;  // faults of other kinds
+      limits.strips_may_turn = false;
     }
   }
 

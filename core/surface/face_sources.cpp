@@ -1,8 +1,10 @@
 #include "core/surface/face_sources.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/machine/threads.h"
@@ -14,6 +16,8 @@ namespace raycone {
 namespace {
 
 constexpr std::size_t kFacesInTask = 4096;
+
+constexpr double kInLine = 0.9659258262890683;  // cosine of 15 degrees, where creases begin to be sharp
 
 struct Corners {
   const Vec3 &a, &b, &c;
@@ -30,9 +34,8 @@ Corners corners_of(const TriangleMesh& mesh, std::size_t face) {
 
 // Fronts may look either way: rules take faces from their backs, too.
 bool may_be_of(const Corners& face, const Corners& source, double off) {
-  constexpr double kCosine = 0.9659258262890683;  // of 15 degrees, where creases begin to be sharp
   const Vec3 normal = source.normal();
-  if (!(std::abs(dot(normal, face.normal())) >= kCosine)) return false;
+  if (!(std::abs(dot(normal, face.normal())) >= kInLine)) return false;
   for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
     if (!(std::abs(dot(normal, *corner - source.a)) <= off)) return false;
   }
@@ -56,19 +59,57 @@ std::vector<std::uint32_t> doubtful_faces(const TriangleMesh& input, double off,
   return faces;
 }
 
+// Faces beside one that closes a hole, and in line with it, close it too, if they are on no triangle: at a rim all of
+// their corners may be. `may_close`: of each face, whether it is on none.
+void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surface) {
+  std::vector<std::uint32_t> closing;
+  for (std::uint32_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] == kHole) closing.push_back(face);
+  }
+  if (closing.empty()) return;
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;  // as a face runs along it
+  const auto edge = [&](std::uint32_t face, std::size_t i) {
+    const Triangle& t = surface.mesh.triangles[face];
+    return Edge{t[i], t[(i + 1) % 3]};
+  };
+  std::vector<std::pair<Edge, std::uint32_t>> edges;
+  for (std::uint32_t face = 0; face < may_close.size(); ++face) {
+    for (std::size_t i = 0; may_close[face] != 0 && i < 3; ++i) edges.emplace_back(edge(face, i), face);
+  }
+  std::ranges::sort(edges);
+  while (!closing.empty()) {
+    const std::uint32_t face = closing.back();
+    closing.pop_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [from, to] = edge(face, i);
+      const auto beside = std::ranges::lower_bound(edges, std::pair(Edge{to, from}, std::uint32_t{0}));
+      if (beside == edges.end() || beside->first != Edge{to, from}) continue;
+      std::int32_t& source = surface.sources[beside->second];
+      const Vec3 here = corners_of(surface.mesh, face).normal();
+      if (source == kHole || !(dot(here, corners_of(surface.mesh, beside->second).normal()) >= kInLine)) continue;
+      source = kHole;
+      closing.push_back(beside->second);
+    }
+  }
+}
+
 }  // namespace
 
 void settle_sources(const TriangleMesh& input, double off, SurfaceMesh& surface) {
   const std::vector<std::uint32_t> faces = doubtful_faces(input, off, surface);
   if (faces.empty()) return;
   const NearestTriangle nearest(input);
+  std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);
   parallel_for(faces.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       std::int32_t& source = surface.sources[faces[n]];
       const Vec3 middle = corners_of(surface.mesh, faces[n]).middle();
       source = static_cast<std::int32_t>(nearest.of(middle, static_cast<std::uint32_t>(source)));
+      const Corners of_source = corners_of(input, static_cast<std::size_t>(source));
+      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), of_source, off) ? 0 : 1;
     }
   });
+  spread_holes(off_mesh, surface);
 }
 
 }  // namespace raycone

@@ -42,7 +42,7 @@ class Sharpener {
     constexpr int kPasses = 32;
     for (int pass = 0; pass < kPasses && !faces_.empty(); ++pass) {
       const std::size_t before = pulls;
-      for (const auto& [square, u, v] : edges_of_strips()) pulls += pull(into[u], into[v], into) ? 1 : 0;
+      for (const auto& [square, p, q, u, v] : edges_of_strips()) pulls += pull(into[u], into[v], into) ? 1 : 0;
       if (pulls == before) break;
     }
     for (std::uint32_t& vertex : into) vertex = into[vertex];
@@ -50,7 +50,8 @@ class Sharpener {
   }
 
  private:
-  using Edge = std::tuple<double, std::uint32_t, std::uint32_t>;  // square of the length, vertices
+  using Place = std::array<double, 3>;
+  using Edge = std::tuple<double, Place, Place, std::uint32_t, std::uint32_t>;  // square of the length, ends
   using Faces = std::vector<std::uint32_t>;
   // Where a face is: in the plane of its source, or over a hole; off that plane; or so much turned against it, too,
   // that strips are looked for there. Fine tessellations are off, and hardly turned.
@@ -135,17 +136,23 @@ void Sharpener::find_faces() {
   }
 }
 
-// Shortest first: those that lead across.
+// Shortest first: those that lead across. Of equal ones it is places that decide, not numbers of vertices, so that a
+// larger lattice with the same nodes gives the same surface.
 std::vector<Sharpener::Edge> Sharpener::edges_of_strips() const {
+  const auto place = [&](std::uint32_t vertex) {
+    const Vec3& p = mesh_.vertices[vertex];
+    return Place{p.x, p.y, p.z};
+  };
   std::vector<Edge> edges;
   for (std::size_t face = 0; face < placed_.size(); ++face) {
     if (placed_[face] != Placed::kAcross || gone_[face] != 0) continue;
     const Triangle& t = mesh_.triangles[face];
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t u = std::min(t[i], t[(i + 1) % 3]), v = std::max(t[i], t[(i + 1) % 3]);
+      std::uint32_t u = t[i], v = t[(i + 1) % 3];
+      if (place(v) < place(u)) std::swap(u, v);
       const Vec3 step = mesh_.vertices[v] - mesh_.vertices[u];
       const double square = dot(step, step);
-      if (square <= 4 * limits_.reach * limits_.reach) edges.emplace_back(square, u, v);
+      if (square <= 4 * limits_.reach * limits_.reach) edges.emplace_back(square, place(u), place(v), u, v);
     }
   }
   std::ranges::sort(edges);

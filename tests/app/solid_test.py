@@ -74,8 +74,11 @@ class Solid(unittest.TestCase):
             numpy.save("nodes.npy", numpy.stack(numpy.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3))
             self.works("points surface.ply nodes.npy -o expected.npy --field sdf")
             expected = numpy.load("expected.npy").reshape(found["solid"].shape)
-            # Both are sums and differences of the same coordinates.
-            self.assertLessEqual(abs(found["solid"] - expected).max(), 1e-12 * abs(expected).max(), options)
+            # Both are sums and differences of the same coordinates. But the lattice of `solid` has more layers, which
+            # changes how faces are numbered, and so along which diagonals the faces of a plane are cut when they are
+            # merged; their corners are off that plane by up to the margin, of 2^-30 voxels.
+            margin = 2.0**-30 * found["spacing"].max()
+            self.assertLessEqual(abs(found["solid"] - expected).max(), margin + 1e-12 * abs(expected).max(), options)
             # Nodes may be on faces that are merged.
             off = found["solid"] != 0
             self.assertTrue(((found["solid"] < 0) == found["inside"])[off].all(), options)

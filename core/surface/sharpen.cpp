@@ -42,10 +42,11 @@ class Sharpener {
     constexpr int kPasses = 32;
     for (int pass = 0; pass < kPasses && !faces_.empty(); ++pass) {
       const std::size_t before = pulls;
-      for (const auto& [square, p, q, u, v] : edges_of_strips()) pulls += pull(into[u], into[v], into) ? 1 : 0;
+      for (const auto& [square, p, q, u, v] : edges_of_strips())
+        pulls += pull(last_of(into, u), last_of(into, v), into) ? 1 : 0;
       if (pulls == before) break;
     }
-    for (std::uint32_t& vertex : into) vertex = into[vertex];
+    for (std::uint32_t& vertex : into) vertex = last_of(into, vertex);
     return {left(), std::move(into), pulls};
   }
 
@@ -56,6 +57,11 @@ class Sharpener {
   // Where a face is: in the plane of its source, or over a hole; off that plane; or so much turned against it, too,
   // that strips are looked for there. Fine tessellations are off, and hardly turned.
   enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
+
+  static std::uint32_t last_of(const std::vector<std::uint32_t>& into, std::uint32_t vertex) {
+    while (into[vertex] != vertex) vertex = into[vertex];
+    return vertex;
+  }
 
   void find_strips();
   // Whether it is planes that the mesh is made of: nine of ten faces are in one. Of CAD parts that is so of 93 to 99
@@ -162,7 +168,6 @@ std::vector<Sharpener::Edge> Sharpener::edges_of_strips() const {
 
 // Pulls v into u, and both to where their planes meet, if that can be done.
 bool Sharpener::pull(std::uint32_t u, std::uint32_t v, std::vector<std::uint32_t>& into) {
-  u = into[u], v = into[v];
   if (u == v || kept_[u] || kept_[v]) return false;
   const auto leads_to_v = [&](std::uint32_t face) { return placed_[face] != Placed::kInPlane && has(face, v); };
   if (!std::ranges::any_of(faces(u), leads_to_v)) return false;

@@ -95,6 +95,8 @@ class SurfaceMaker {
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
+    // Merging keeps sources, so that it changes no area of theirs.
+    settle_sources(mesh_, farthest_source(), surface);
     if (places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
@@ -104,9 +106,8 @@ class SurfaceMaker {
       const double most = farthest_pull(margins);
       made.bound_too_small = !(most > 0.0);
       made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
+      if (made.simplified) settle_sources(mesh_, farthest_source(), made.surface);
     }
-    const Vec3& h = inside_.lattice().spacing;
-    settle_sources(mesh_, options_.thickness + std::min({h.x, h.y, h.z}) / 4, made.surface);
     return made;
   }
 
@@ -169,7 +170,6 @@ class SurfaceMaker {
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
     SharpenLimits limits{kOff * margins.inner * most, kReach * least, options_.single_precision};
-    settle_sources(mesh_, least / 4, surface);
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
     for (int round = 0; round < kSharpeningRounds; ++round) {
       const SharpenedSurface sharp = sharpened(surface, mesh_, kept, limits);
@@ -190,6 +190,12 @@ class SurfaceMaker {
       if (kept == before) return;  // faults of other kinds
       limits.strips_may_turn = false;
     }
+  }
+
+  // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
+  [[nodiscard]] double farthest_source() const {
+    const Vec3& h = inside_.lattice().spacing;
+    return options_.thickness + std::min({h.x, h.y, h.z}) / 4;
   }
 
   // Along the axis where that is most.

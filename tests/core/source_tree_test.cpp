@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/boundary/solid_angles.h"
@@ -188,6 +189,34 @@ TEST(SourceTree, SumsKeepTheTolerance) {
     // Most of the 51 * 3000 pairs are far.
     EXPECT_LT(result.near_terms, 51U * 1500U);
     EXPECT_GT(result.far_terms, 51U * 10U);
+  }
+}
+
+// Samples on triangles, at their corners and on their sides, are ties: there the exactness rules decide, as in a sum
+// over all triangles, which looks at each factor. All samples of a tile lie on one triangle, so that whole groups are
+// next to it.
+TEST(SourceTree, DecidesTiesOnTrianglesAsASumOverAllDoes) {
+  const DefaultFloatingPoint guard;
+  test::Random random(6);
+  const SourceTree tree(solid_faces(small_triangles(random, 300, 0.3)).triangles, 1e-10);
+  const auto value = [](const ProductTile& products, std::size_t i) {
+    return static_cast<double>(products.turns(i)) + products.argument[i];
+  };
+  for (std::size_t n = 0; n < 40; ++n) {
+    const SolidTriangle& t = tree.triangles()[n];
+    SampleTile samples;
+    samples.clear();
+    for (const auto& [p, q] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)}) {
+      for (const double at : {0.0, 0.25, 0.5, 0.75}) samples.add(p + at * (q - p));
+    }
+    samples.fill_up();
+    FarTile result;
+    far_kernel(SimdLevel::kBest).sum(tree, samples, result);
+    ProductTile all;
+    solid_angle_kernel(SimdLevel::kBest)(tree.triangles(), samples, all);
+    // 1e-10 is the tolerance; 300 factors round by less.
+    for (std::size_t i = 0; i < samples.count; ++i)
+      EXPECT_NEAR(value(result.near, i) + result.far[i], value(all, i), 2e-10);
   }
 }
 

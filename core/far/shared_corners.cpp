@@ -1,6 +1,8 @@
 #include "core/far/shared_corners.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -61,18 +63,24 @@ SharedCorners::SharedCorners(std::span<const SolidTriangle> triangles) : triangl
   add_group(triangles.size());
 }
 
+double square_to_look_small(const SolidTriangle& triangle) {
+  constexpr double kLeast = 0x1p-40;  // distance: beyond it no factor is too small to be trusted
+  if (std::isnan(triangle.normal.x)) return std::numeric_limits<double>::infinity();
+  double square = kLeast * kLeast;
+  for (const Vec3& side : {triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c}) {
+    square = std::max(square, dot(side, side));
+  }
+  return square * (1 + 0x1p-40);
+}
+
 bool looks_small_from(const SolidTriangle& triangle, const Box& box) {
-  constexpr double kLeast = 0x1p-40;         // distance: beyond it no factor is too small to be trusted
-  double gap = 0.0, side = kLeast * kLeast;  // squares
+  double gap = 0.0;  // squared
   for (int axis = 0; axis < 3; ++axis) {
     const auto [lower, upper] = std::minmax({triangle.a[axis], triangle.b[axis], triangle.c[axis]});
     const double away = std::max({lower - box.upper[axis], box.lower[axis] - upper, 0.0});
     gap += away * away;
   }
-  for (const Vec3& v : {triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c}) {
-    side = std::max(side, dot(v, v));
-  }
-  return gap > side * (1 + 0x1p-40) && triangle.normal.x == triangle.normal.x;
+  return gap > square_to_look_small(triangle);
 }
 
 void SharedCorners::add_group(std::size_t count, bool small) {

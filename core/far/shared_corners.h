@@ -57,6 +57,8 @@ class SharedCorners {
 // trusted: they can at all points of the box. Its sides then appear under 60 degrees at most, so that two corners have
 // a . b >= |a||b| / 2. Hence Re z_T >= 2.5 |a||b||c|, and the absolute terms of Im z_T are below 2 |a||b||c|.
 [[nodiscard]] bool looks_small_from(const SolidTriangle& triangle, const Box& box);
+// The square of the distance beyond which it does, its longest side; infinite where no factor may be trusted.
+[[nodiscard]] double square_to_look_small(const SolidTriangle& triangle);
 
 // How the samples of a tile lie.
 enum class TileShape {

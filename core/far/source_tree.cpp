@@ -20,8 +20,6 @@ constexpr double kMostRatio = 0.97;     // of radius and distance, beyond which 
 // 1 / (4 pi (1 - kMostRatio)^2), rounded up: times area over distance squared, what triangles contribute at most.
 constexpr double kNeglected = 100;
 
-constexpr double kLeastForSmall = 0x1p-40;  // distance: beyond it no factor is too small to be trusted
-
 Box box_of(const SolidTriangle& t) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
@@ -174,11 +172,9 @@ std::uint32_t SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint
 
 // Farther from the ball around the node than the longest side of its own triangles.
 double SourceTree::square_of_small(const SourceNode& node) const {
-  double longest = kLeastForSmall * kLeastForSmall;  // side, squared
+  double longest = 0.0;  // side, squared
   for (std::uint32_t i = node.begin; i < node.own_end; ++i) {
-    const SolidTriangle& t = triangles_[i];
-    for (const Vec3& side : {t.b - t.a, t.c - t.b, t.a - t.c}) longest = std::max(longest, dot(side, side));
-    if (std::isnan(t.normal.x)) return kInfinity;
+    longest = std::max(longest, square_to_look_small(triangles_[i]));
   }
   const double distance = node.radius + std::sqrt(longest);
   return distance * distance * (1 + kRounding);

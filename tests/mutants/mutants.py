@@ -528,7 +528,7 @@ MUTANTS = [
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
         ("core/surface/face_sources.cpp", "*corner - source.a)) <= off)", "*corner - source.a)) <= 1e9 * off)")]),
     Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [
-        ("core/far/shared_corners.cpp", "gap > side * (1 + 0x1p-40)", "gap > 0.9 * side")]),
+        ("core/far/shared_corners.cpp", "return square * (1 + 0x1p-40);", "return 0.9 * square;")]),
     Mutant("small_nodes_too_near", "triangles of a node look small from beyond its radius and their longest side only", [
         ("core/far/source_tree.cpp", "const double distance = node.radius + std::sqrt(longest);",
          "const double distance = 0.0 * node.radius * std::sqrt(longest);")]),

@@ -122,7 +122,7 @@ void multiply_by_edges(ProductTile& products, std::size_t i, const SolidTriangle
 
 // What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
 template <class Rays>
-HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const SolidTriangle> triangles, const Rays& rays,
+HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
                                      const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                      std::uint64_t trusted) {
   for (std::size_t n = begin; n < end; ++n) {
@@ -147,7 +147,7 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
 // Multiplies the factors of triangles [begin, end) onto the products of those of the samples from i on that are
 // `active`. `kCertain`: it is known beforehand that all factors are trusted.
 template <bool kCertain = false, class Rays>
-HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, const Rays& rays,
+HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
                                const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
                                hn::Mask<Doubles> active) {
   const ProductLanes before = load(products, i);

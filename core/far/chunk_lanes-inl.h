@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/boundary/triangle_lanes-inl.h"
 #include "core/far/shared_corners.h"
@@ -22,30 +23,34 @@ using Eight = std::array<double, 8>;
 
 HWY_INLINE Lanes load(const Eight& eight, std::size_t first = 0) { return hn::Load(d, &eight[first]); }
 
+// Before triangle n: look_at(corner) for all corners up to those of a triangle a little ahead but those `seen` before.
+// Square roots take long; so they are found while other triangles are multiplied.
+template <class LookAt>
+HWY_INLINE void see_corners(const SharedCorners::Chunk& chunk, std::size_t n, std::size_t& seen,
+                            const LookAt& look_at) {
+  constexpr std::size_t kAhead = 2;
+  const std::size_t known = chunk.places[std::min(n + kAhead, chunk.places.size() - 1)].known;
+  for (; seen < known; ++seen) look_at(seen);
+}
+
 // A chunk as seen from a group of samples.
 class TrianglesOfChunk {
  public:
   TrianglesOfChunk(const SharedCorners::Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
 
-  // Looks at the corners from the samples from i on.
+  // Goes to the samples from i on.
   void begin(std::size_t i) {
-    const Lanes qx = hn::Load(d, &samples_.x[i]), qy = hn::Load(d, &samples_.y[i]), qz = hn::Load(d, &samples_.z[i]);
-    for (std::size_t n = 0; n < chunk_.corners.size(); ++n) {
-      const Vec3& p = chunk_.corners[n];
-      const Lanes x = hn::Sub(hn::Set(d, p.x), qx), y = hn::Sub(hn::Set(d, p.y), qy);
-      const Lanes z = hn::Sub(hn::Set(d, p.z), qz);
-      const Lanes square = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(z, z)));
-      Corner& corner = corners_[n];
-      hn::Store(x, d, corner.x.data());
-      hn::Store(y, d, corner.y.data());
-      hn::Store(z, d, corner.z.data());
-      hn::Store(hn::Sqrt(square), d, corner.norm.data());
-    }
+    sample_ = i;
+    seen_ = 0;
+  }
+
+  HWY_INLINE void see(std::size_t n) {
+    see_corners(chunk_, n, seen_, [&](std::size_t corner) { look_at(corner); });
   }
 
   [[nodiscard]] HWY_INLINE TriangleFactors factors(std::size_t n) const {
     const SolidTriangle& t = chunk_.triangles[n];
-    const auto& [a, b, c] = chunk_.places[n];
+    const auto& [a, b, c, known] = chunk_.places[n];
     const Lanes ax = load(corners_[a].x), ay = load(corners_[a].y), az = load(corners_[a].z);
     const Lanes bx = load(corners_[b].x), by = load(corners_[b].y), bz = load(corners_[b].z);
     const Lanes cx = load(corners_[c].x), cy = load(corners_[c].y), cz = load(corners_[c].z);
@@ -66,8 +71,22 @@ class TrianglesOfChunk {
     alignas(64) Eight x, y, z, norm;
   };
 
+  HWY_INLINE void look_at(std::size_t n) {
+    const Vec3& p = chunk_.corners[n];
+    const Lanes x = hn::Sub(hn::Set(d, p.x), hn::Load(d, &samples_.x[sample_]));
+    const Lanes y = hn::Sub(hn::Set(d, p.y), hn::Load(d, &samples_.y[sample_]));
+    const Lanes z = hn::Sub(hn::Set(d, p.z), hn::Load(d, &samples_.z[sample_]));
+    const Lanes square = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(z, z)));
+    Corner& corner = corners_[n];
+    hn::Store(x, d, corner.x.data());
+    hn::Store(y, d, corner.y.data());
+    hn::Store(z, d, corner.z.data());
+    hn::Store(hn::Sqrt(square), d, corner.norm.data());
+  }
+
   const SharedCorners::Chunk& chunk_;
   const SampleTile& samples_;
+  std::size_t sample_ = 0, seen_ = 0;
   std::array<Corner, 3 * SharedCorners::kInChunk> corners_;
 };
 
@@ -84,18 +103,21 @@ class TrianglesOfRows {
     }
   }
 
-  // Looks at the corners from the samples from i on.
+  // Goes to the samples from i on.
   void begin(std::size_t i) {
     row_ = i / 8;
     in_row_ = i % 8;
-    for (std::size_t n = 0; n < chunk_.corners.size(); ++n) {
-      const Corner& corner = corners_[n];
-      hn::Store(hn::Sqrt(sum(corner.square)), d, norms_[n].data());
-    }
+    seen_ = 0;
+  }
+
+  HWY_INLINE void see(std::size_t n) {
+    see_corners(chunk_, n, seen_, [&](std::size_t corner) {
+      hn::Store(hn::Sqrt(sum(corners_[corner].square)), d, norms_[corner].data());
+    });
   }
 
   [[nodiscard]] HWY_INLINE TriangleFactors factors(std::size_t n) const {
-    const auto& [a, b, c] = chunk_.places[n];
+    const auto& [a, b, c, known] = chunk_.places[n];
     const Products& p = products_[n];
     return factors_of(chunk_.triangles[n],
                       {load(norms_[a]), load(norms_[b]), load(norms_[c]), sum(p.ab), sum(p.bc), sum(p.ca)}, sum(p.side),
@@ -135,7 +157,7 @@ class TrianglesOfRows {
   }
   void set_triangle(std::size_t n, std::size_t i) {
     const SolidTriangle& t = chunk_.triangles[n];
-    const auto& [at_a, at_b, at_c] = chunk_.places[n];
+    const auto& [at_a, at_b, at_c, known] = chunk_.places[n];
     const Corner &a = corners_[at_a], &b = corners_[at_b], &c = corners_[at_c];
     Products& products = products_[n];
     const auto set_product = [&](const Corner& v, const Corner& w, Sum& product) {
@@ -154,18 +176,20 @@ class TrianglesOfRows {
   }
 
   const SharedCorners::Chunk chunk_;
-  std::size_t row_ = 0, in_row_ = 0;
+  std::size_t row_ = 0, in_row_ = 0, seen_ = 0;
   std::array<Corner, 3 * SharedCorners::kInChunk> corners_;
   alignas(64) std::array<Eight, 3 * SharedCorners::kInChunk> norms_;
   std::array<Products, SharedCorners::kInChunk> products_;
 };
 
-HWY_INLINE TriangleFactors factors_at(const TrianglesOfChunk& triangles, const SolidTriangle&, std::size_t n,
+HWY_INLINE TriangleFactors factors_at(TrianglesOfChunk& triangles, const SolidTriangle&, std::size_t n,
                                       const SampleTile&, std::size_t) {
+  triangles.see(n);
   return triangles.factors(n);
 }
-HWY_INLINE TriangleFactors factors_at(const TrianglesOfRows& triangles, const SolidTriangle&, std::size_t n,
+HWY_INLINE TriangleFactors factors_at(TrianglesOfRows& triangles, const SolidTriangle&, std::size_t n,
                                       const SampleTile&, std::size_t) {
+  triangles.see(n);
   return triangles.factors(n);
 }
 

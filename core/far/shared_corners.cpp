@@ -97,7 +97,7 @@ void SharedCorners::add_group(std::size_t count, bool small) {
     };
     const SolidTriangle& t = triangles_[n];
     const std::uint8_t a = place_of(t.a), b = place_of(t.b), c = place_of(t.c);
-    places_.push_back({a, b, c});
+    places_.push_back({a, b, c, static_cast<std::uint8_t>(corners_.size() - chunks_.back().corners)});
   }
 }
 

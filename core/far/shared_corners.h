@@ -1,7 +1,6 @@
 // Triangles that are summed at many samples, as neighbours that share corners.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,10 +32,14 @@ class SharedCorners {
   // The next `count` of the triangles. No chunk has triangles of two groups. `small`: looks_small_from() all samples.
   void add_group(std::size_t count, bool small = false);
 
+  struct Places {
+    std::uint8_t a, b, c;  // of a triangle's corners among those of its chunk
+    std::uint8_t known;    // corners that this triangle and those before it in the chunk have
+  };
   struct Chunk {
     std::span<const SolidTriangle> triangles;
-    std::span<const std::array<std::uint8_t, 3>> places;  // of each one's a, b, c among the corners
-    std::span<const Vec3> corners;
+    std::span<const Places> places;  // of each
+    std::span<const Vec3> corners;   // in the order in which the triangles first need them
     bool small;
   };
   [[nodiscard]] std::size_t chunks() const { return chunks_.size(); }
@@ -48,7 +51,7 @@ class SharedCorners {
     bool small;
   };
   std::span<const SolidTriangle> triangles_;
-  std::vector<std::array<std::uint8_t, 3>> places_;
+  std::vector<Places> places_;
   std::vector<Vec3> corners_;
   std::vector<Begin> chunks_;
 };

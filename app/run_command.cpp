@@ -54,8 +54,8 @@ ExitCode dispatch(const EvaluatingCommand& given) {
     const auto& command = expanded(given);
     refuse_terminal(files_written(command));
     refuse_to_replace_input(files_written(command), inputs_of(command));
-    const SideFiles side_files = open_side_files(command.output);
-    publish(evaluate(command, limits), command.run, side_files);
+    const RunReport report = evaluate(command, limits);
+    if (!command.run.quiet) print_message(summary_line(report));
   });
   return ExitCode::kDone;
 }

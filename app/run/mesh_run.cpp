@@ -4,23 +4,27 @@
 #include <utility>
 
 #include "app/process/limits.h"
+#include "app/report/depfile.h"
+#include "app/report/json.h"
 #include "app/run/mesh_input.h"
 
 namespace raycone {
 
-MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& output_files, const RunOptions& options,
+MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunOptions& options,
                  const RunLimits& limits)
-    : output(output_files.path, output_files.no_clobber),
+    : output(written.path, written.no_clobber, &files),
       mesh_(mesh),
-      files_(output_files),
+      written_(written),
       options_(options),
       limits_(limits),
       total_(std::in_place, report.seconds.total) {
   report.mesh = mesh.path;
-  report.output = output_files.path;
+  report.output = written.path;
   report.command = options.words;
   report.options = options.options;
   report.threads = limits.threads();
+  if (written.report) report_file_ = std::make_unique<OutputFile>(*written.report, written.no_clobber, &files);
+  if (written.depfile) depfile_ = std::make_unique<OutputFile>(*written.depfile, written.no_clobber, &files);
 }
 
 TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
@@ -77,7 +81,7 @@ void MeshRun::warn_about(const std::string& mesh, const std::vector<Warning>& wa
 }
 
 std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {
-  return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, files_.path), total).done();
+  return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, written_.path), total).done();
 }
 
 void MeshRun::set_stage(const char* stage) {
@@ -88,6 +92,9 @@ RunReport MeshRun::finish() {
   if (progress_) progress_->stop();
   total_.reset();
   report.peak_memory_bytes = peak_memory();
+  if (report_file_) write_all(*report_file_, to_json(report));
+  if (depfile_) write_all(*depfile_, depfile_text(report.output, report.files_read));
+  files.commit();
   return std::move(report);
 }
 

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,7 +31,8 @@ namespace raycone {
 
 class MeshRun {
  public:
-  // Opens the output. What is given here must outlive this. Throws OutputError.
+  // Opens the output, and the report and the list of files read, where wanted. What is given here must outlive this.
+  // Throws OutputError.
   MeshRun(const MeshOptions& mesh, const OutputFiles& output, const RunOptions& options, const RunLimits& limits);
   MeshRun(const MeshRun&) = delete;  // total_ refers to the report
   MeshRun& operator=(const MeshRun&) = delete;
@@ -63,21 +65,23 @@ class MeshRun {
   // Progress shows this instead, which must stay valid; nullptr: samples again.
   void set_stage(const char* stage);
 
-  // Everything is written: the report is complete.
+  // Everything is written: the report is complete, and all files appear. Throws OutputError.
   [[nodiscard]] RunReport finish();
 
   [[nodiscard]] const RunLimits& limits() const { return limits_; }
 
   RunReport report;
+  OutputGroup files;  // the output, and whatever else the run writes: all appear, or none does
   OutputFile output;
 
  private:
   void print(const std::string& mesh, const std::vector<Warning>& warnings);
 
   const MeshOptions& mesh_;
-  const OutputFiles& files_;
+  const OutputFiles& written_;
   const RunOptions& options_;
   const RunLimits& limits_;
+  std::unique_ptr<OutputFile> report_file_, depfile_;  // null where not asked for
   std::vector<ExteriorEdge> edges_;
   std::vector<std::uint32_t> places_;
   std::size_t printed_ = 0;  // warnings of the report

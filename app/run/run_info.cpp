@@ -62,7 +62,7 @@ class InfoRun {
         limits_(limits),
         listing_(command.format, command.meshes.size() > 1, counts_intersections()),
         output_("-") {
-    if (command.mark) mark_.emplace(*command.mark, command.no_clobber);
+    if (command.mark) mark_.emplace(*command.mark, command.no_clobber, &files_);
   }
 
   // Prints the mesh, or the file of values. Returns whether it is what is required.
@@ -75,6 +75,7 @@ class InfoRun {
   void finish() {
     print(listing_.end());
     output_.commit();
+    files_.commit();
   }
 
  private:
@@ -141,8 +142,9 @@ class InfoRun {
   const InfoCommand& command_;
   const RunLimits& limits_;
   InfoListing listing_;
+  OutputGroup files_;
   OutputFile output_;
-  std::optional<OutputFile> mark_;
+  std::optional<OutputFile> mark_;  // appears once everything has been told
 };
 
 // Its status; what is wrong with this mesh alone is printed.

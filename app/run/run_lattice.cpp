@@ -197,7 +197,7 @@ TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
   LatticeCommand command = asked;
   MeshRun run(command.mesh, command.output, command.run, limits);
-  const std::unique_ptr<OutputFile> names = open_label_names(command);
+  const std::unique_ptr<OutputFile> names = open_label_names(command, run.files);
   RunReport& report = run.report;
   LoadedMesh loaded;
   load(command, run, loaded);

@@ -171,7 +171,8 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   MeshRun run(command.mesh, command.output, command.run, limits);
   RunReport& report = run.report;
   std::unique_ptr<OutputFile> values_file;
-  if (command.values) values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber);
+  if (command.values)
+    values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber, &run.files);
   CutMesh cut;
   load(command, run, cut);
   const Slice slice = choose_slice(bounding_box(cut.mesh), command.slice, report.warnings);

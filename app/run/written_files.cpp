@@ -9,10 +9,7 @@
 #include <system_error>
 #include <variant>
 
-#include "app/process/messages.h"
 #include "app/process/usage_error.h"
-#include "app/report/depfile.h"
-#include "app/report/json.h"
 #include "io/files/file_identity.h"
 
 namespace raycone {
@@ -98,9 +95,9 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
   return path + ".json";
 }
 
-std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command) {
+std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group) {
   const std::optional<std::string> path = label_names_path(command);
-  return path ? std::make_unique<OutputFile>(*path, command.output.no_clobber) : nullptr;
+  return path ? std::make_unique<OutputFile>(*path, command.output.no_clobber, &group) : nullptr;
 }
 
 void write_all(OutputFile& file, const std::string& text) {
@@ -132,19 +129,6 @@ void refuse_terminal(const std::vector<WrittenFile>& written) {
       std::ranges::any_of(written, [](const WrittenFile& file) { return file.path == "-" && !file.text; });
   if (!bytes || !isatty(STDOUT_FILENO)) return;
   throw UsageError("standard output: is a terminal, which cannot show this format; expected -o FILE, or a pipe behind");
-}
-
-SideFiles open_side_files(const OutputFiles& output) {
-  SideFiles files;
-  if (output.report) files.report = std::make_unique<OutputFile>(*output.report, output.no_clobber);
-  if (output.depfile) files.depfile = std::make_unique<OutputFile>(*output.depfile, output.no_clobber);
-  return files;
-}
-
-void publish(const RunReport& report, const RunOptions& options, const SideFiles& files) {
-  if (files.report) write_all(*files.report, to_json(report));
-  if (files.depfile) write_all(*files.depfile, depfile_text(report.output, report.files_read));
-  if (!options.quiet) print_message(summary_line(report));
 }
 
 }  // namespace raycone

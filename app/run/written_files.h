@@ -9,10 +9,8 @@
 #include "app/options/info_command.h"
 #include "app/options/lattice_command.h"
 #include "app/options/points_command.h"
-#include "app/options/run_options.h"
 #include "app/options/slice_command.h"
 #include "app/options/surface_command.h"
-#include "app/report/run_report.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -39,7 +37,7 @@ struct WrittenFile {
 // where no such file is written.
 [[nodiscard]] std::optional<std::string> label_names_path(const LatticeCommand& command);
 // Null where there is none. Throws OutputError.
-[[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command);
+[[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group);
 // Writes and completes it.
 void write_all(OutputFile& file, const std::string& text);
 
@@ -50,15 +48,5 @@ void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std:
 
 // Throws UsageError where what is no text would go to standard output, and that is a terminal.
 void refuse_terminal(const std::vector<WrittenFile>& written);
-
-// What is written beside the results; null where not asked for.
-struct SideFiles {
-  std::unique_ptr<OutputFile> report, depfile;
-};
-// Throws OutputError.
-[[nodiscard]] SideFiles open_side_files(const OutputFiles& output);
-
-// Writes the `files` about the run, and prints its summary. Throws OutputError.
-void publish(const RunReport& report, const RunOptions& options, const SideFiles& files);
 
 }  // namespace raycone

@@ -63,7 +63,8 @@ bool rename_to_new(const std::string& from, const std::string& to) {
 }  // namespace
 
 struct OutputFile::State {
-  State(const std::string& path, bool keep_existing) : name(path), no_clobber(keep_existing) {}
+  State(const std::string& path, bool keep_existing, OutputGroup* with)
+      : name(path), no_clobber(keep_existing), group(with) {}
   ~State();
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -85,6 +86,7 @@ struct OutputFile::State {
 
   std::string name;
   bool no_clobber;
+  OutputGroup* group;                      // or null
   std::string target;                      // `name` with links followed
   std::optional<TemporaryFile> temporary;  // absent where written to directly
   int descriptor = -1;
@@ -159,7 +161,8 @@ void OutputFile::State::put_in_place() {
   if (directory >= 0 && !write_to_disk(directory)) fail_writing(errno);
 }
 
-OutputFile::OutputFile(const std::string& path, bool no_clobber) : state_(std::make_unique<State>(path, no_clobber)) {
+OutputFile::OutputFile(const std::string& path, bool no_clobber, OutputGroup* group)
+    : state_(std::make_shared<State>(path, no_clobber, group)) {
   state_->open();
 }
 
@@ -219,7 +222,16 @@ void OutputFile::commit() {
   }
   const int descriptor = std::exchange(state.descriptor, -1);
   if (close(descriptor) != 0 && errno != EINTR) state.fail_writing(errno);
-  if (state.temporary) state.put_in_place();
+  if (!state.temporary) return;
+  if (state.group) {
+    state.group->waiting_.push_back(state_);
+  } else {
+    state.put_in_place();
+  }
+}
+
+void OutputGroup::commit() {
+  for (const auto& file : std::exchange(waiting_, {})) file->put_in_place();
 }
 
 const std::string& OutputFile::name() const { return state_->name; }

@@ -5,8 +5,11 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace raycone {
+
+class OutputGroup;
 
 // Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
 // output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
@@ -14,8 +17,8 @@ namespace raycone {
 class OutputFile {
  public:
   // Opens at once, so that what cannot be written fails before the work. With no_clobber an existing file is an error.
-  // Throws OutputError.
-  explicit OutputFile(const std::string& path, bool no_clobber = false);
+  // The `group`, if any, must outlive this. Throws OutputError.
+  explicit OutputFile(const std::string& path, bool no_clobber = false, OutputGroup* group = nullptr);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -35,14 +38,26 @@ class OutputFile {
   // A stream of the same bytes for libraries that want one; valid while this object lives. Errors surface in commit().
   std::ostream& stream();
   // Flushes, syncs, renames and syncs the directory. Throws OutputError: where that last step fails, the file is in its
-  // place already, but a loss of power may undo it. Nothing may follow.
+  // place already, but a loss of power may undo it. Nothing may follow. In a group the file is not renamed yet.
   void commit();
   // As given on the command line.
   [[nodiscard]] const std::string& name() const;
 
  private:
+  friend class OutputGroup;
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
+};
+
+// Files of which either all appear or none: those that have been committed wait for commit() of the group.
+class OutputGroup {
+ public:
+  // Renames them, in the order in which they were committed. Throws OutputError.
+  void commit();
+
+ private:
+  friend class OutputFile;
+  std::vector<std::shared_ptr<OutputFile::State>> waiting_;
 };
 
 }  // namespace raycone

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ class GridOptions : public testing::Test {
 };
 
 using Depfile = GridOptions;
+using SideFiles = GridOptions;
 
 TEST_F(GridOptions, HalfStoresValuesIn16Bits) {
   const auto half = written("winding", {"--half", "--diagnostics"});
@@ -127,6 +129,39 @@ TEST_F(Depfile, FailsWithoutATrace) {
   EXPECT_EQ(lattice(dir_ / "out.csv", {"--depfile", mesh_}).status, 1) << "an input";
   EXPECT_EQ(run_raycone({"lattice", dir_ / "absent.obj", "-o", dir_ / "x.csv", "--depfile", dir_ / "x.d"}).status, 2);
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.d"));
+}
+
+// Whatever a run writes beside its output appears with it, or neither does.
+TEST_F(SideFiles, NothingAppearsWhereOneCannotBeWritten) {
+  const std::vector<std::vector<std::string>> runs{
+      {"lattice", mesh_, "-o", dir_ / "out.npy", "--resolution", "8", "--report"},
+      {"lattice", mesh_, "-o", dir_ / "out.vdb", "--resolution", "8", "--report", dir_ / "out.json", "--depfile"},
+      {"points", mesh_, "--sample", "uniform=10", "-o", dir_ / "out.npz", "--report"},
+      {"slice", mesh_, "-o", dir_ / "out.png", "--size", "16", "--values"},
+      {"slice", mesh_, "-o", dir_ / "out.png", "--size", "16", "--values", dir_ / "out.npy", "--report"},
+      {"surface", mesh_, "-o", dir_ / "out.stl", "--thicken", "0.1", "--resolution", "16", "--depfile"},
+  };
+  for (std::vector<std::string> words : runs) {
+    words.emplace_back("/dev/full");
+    const CommandResult result = run_raycone(words);
+    EXPECT_EQ(result.status, 3) << words.front() << result.err;
+    EXPECT_EQ(result.err, "raycone: /dev/full: cannot write: No space left on device\n") << words.front();
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir_.path()), {}), 1) << words.front();
+    words.back() = dir_ / "last";
+    EXPECT_EQ(run_raycone(words).status, 0) << words.front();
+    EXPECT_GE(std::distance(std::filesystem::directory_iterator(dir_.path()), {}), 3) << words.front();
+    for (const std::string name : {"out.npy", "out.vdb", "out.npz", "out.png", "out.stl", "out.json", "last"}) {
+      std::filesystem::remove(dir_ / name);
+    }
+  }
+}
+
+TEST_F(SideFiles, MarkedMeshAppearsOnlyIfTheRestIsTold) {
+  const std::vector<std::string> words{"info", mesh_, "--mark", dir_ / "marked.ply"};
+  EXPECT_EQ(run_raycone(words, {.output_file = "/dev/full"}).status, 3);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "marked.ply"));
+  EXPECT_EQ(run_raycone(words).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "marked.ply"));
 }
 
 TEST(DepfileText, EscapesWhatMakeWouldMisread) {

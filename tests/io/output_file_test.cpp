@@ -98,6 +98,49 @@ TEST(OutputFile, KeepsTheOldFileWhenNotCommitted) {
   EXPECT_EQ(contents(directory / "out"), "old");
 }
 
+TEST(OutputGroup, FilesAppearTogether) {
+  const TemporaryDirectory directory;
+  OutputGroup group;
+  OutputFile first(directory / "first", false, &group), second(directory / "second", false, &group);
+  write(first, "1");
+  first.commit();
+  EXPECT_FALSE(std::filesystem::exists(directory / "first"));
+  write(second, "2");
+  second.commit();
+  EXPECT_FALSE(std::filesystem::exists(directory / "second"));
+  group.commit();
+  EXPECT_EQ(contents(directory / "first"), "1");
+  EXPECT_EQ(contents(directory / "second"), "2");
+  EXPECT_EQ(entries(directory).size(), 2U);
+}
+
+TEST(OutputGroup, NoneAppearsWhereOneFails) {
+  const TemporaryDirectory directory;
+  put(directory / "first", "old");
+  {
+    OutputGroup group;
+    OutputFile first(directory / "first", false, &group), second("/dev/full", false, &group);
+    write(first, "new");
+    first.commit();
+    write(second, "2");
+    EXPECT_THROW(second.commit(), OutputError);
+  }
+  EXPECT_EQ(contents(directory / "first"), "old");
+  EXPECT_EQ(entries(directory).size(), 1U);
+}
+
+TEST(OutputGroup, FilesOutliveTheirWriters) {
+  const TemporaryDirectory directory;
+  OutputGroup group;
+  {
+    OutputFile file(directory / "out", false, &group);
+    write(file, "hello");
+    file.commit();
+  }
+  group.commit();
+  EXPECT_EQ(contents(directory / "out"), "hello");
+}
+
 TEST(OutputFile, RemoveTemporaryFilesRemovesThemOnly) {
   const TemporaryDirectory directory;
   put(directory / "other", "kept");

@@ -57,7 +57,8 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
   const std::optional<FieldFormat> format = field_format_from_name(name);
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
   if (named) invalid("--format", values.text("--format"), formats.listed);
-  throw UsageError(output + ": its extension names no format, expected " + formats.listed + ", or --format");
+  const std::string wrong = format ? "a format that does not hold what is asked for" : "its extension names no format";
+  throw UsageError(output + ": " + wrong + ", expected " + formats.listed + ", or --format");
 }
 
 }  // namespace

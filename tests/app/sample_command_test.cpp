@@ -158,7 +158,9 @@ TEST_F(SampleOption, RefusesWhatMakesNoSense) {
     EXPECT_EQ(result.err.rfind(std::string("raycone: --sample ") + spec + ": expected uniform=N, near=N:SIGMA", 0), 0U)
         << result.err;
   }
-  EXPECT_EQ(sample({"uniform=5", "-o", dir_ / "out.npy"}).status, 1);
+  const CommandResult npy = sample({"uniform=5", "-o", dir_ / "out.npy"});
+  EXPECT_EQ(npy.status, 1);
+  EXPECT_NE(npy.err.find("a format that does not hold what is asked for, expected npz or csv"), std::string::npos);
   EXPECT_EQ(sample({"uniform=5", "--padding", "3v"}).status, 1);
   EXPECT_EQ(sample({"uniform=5", dir_ / "points.csv"}).status, 1);
   EXPECT_EQ(sample({"uniform=5", "--raw", "f64"}).status, 1);

@@ -17,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "core/boundary/product_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -320,15 +321,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-ConeKernel cone_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_chains_here);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_chains_here);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_chains_here);
-#endif
-  return &HWY_STATIC_DISPATCH(multiply_chains_here);
-}
+ConeKernel cone_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, multiply_chains_here); }
 
 }  // namespace raycone
 #endif

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/boundary/triangle_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -77,15 +78,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-SolidAngleKernel solid_angle_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_triangles_here);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_triangles_here);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_triangles_here);
-#endif
-  return &HWY_STATIC_DISPATCH(multiply_triangles_here);
-}
+SolidAngleKernel solid_angle_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, multiply_triangles_here); }
 
 }  // namespace raycone
 #endif

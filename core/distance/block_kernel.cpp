@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "core/distance/triangle_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -442,15 +443,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace raycone {
-BlockKernel block_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(fill_block);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(fill_block);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(fill_block);
-#endif
-  return &HWY_STATIC_DISPATCH(fill_block);
-}
+BlockKernel block_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, fill_block); }
 
 }  // namespace raycone
 #endif

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/distance/triangle_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -122,25 +123,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-NearestSearch nearest_search([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(search_nearest);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(search_nearest);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(search_nearest);
-#endif
-  return &HWY_STATIC_DISPATCH(search_nearest);
-}
+NearestSearch nearest_search(SimdLevel level) { return RAYCONE_AT_LEVEL(level, search_nearest); }
 
-PackSearch pack_search([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(search_packs);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(search_packs);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(search_packs);
-#endif
-  return &HWY_STATIC_DISPATCH(search_packs);
-}
+PackSearch pack_search(SimdLevel level) { return RAYCONE_AT_LEVEL(level, search_packs); }
 
 }  // namespace raycone
 #endif

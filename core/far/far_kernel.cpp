@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "core/far/chunk_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -247,14 +248,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-FarKernel far_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return {HWY_CHOOSE_AVX3(sum_here), HWY_CHOOSE_AVX3(add_multipole_here)};
-  if (available == SimdLevel::kAvx2) return {HWY_CHOOSE_AVX2(sum_here), HWY_CHOOSE_AVX2(add_multipole_here)};
-  if (available == SimdLevel::kSse4) return {HWY_CHOOSE_SSE4(sum_here), HWY_CHOOSE_SSE4(add_multipole_here)};
-#endif
-  return {&HWY_STATIC_DISPATCH(sum_here), &HWY_STATIC_DISPATCH(add_multipole_here)};
+FarKernel far_kernel(SimdLevel level) {
+  return {RAYCONE_AT_LEVEL(level, sum_here), RAYCONE_AT_LEVEL(level, add_multipole_here)};
 }
 
 }  // namespace raycone

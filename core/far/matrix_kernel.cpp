@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/simd_kernel.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
@@ -106,14 +108,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-MatrixKernel matrix_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return {HWY_CHOOSE_AVX3(multiply_here), HWY_CHOOSE_AVX3(multiply_ragged_here)};
-  if (available == SimdLevel::kAvx2) return {HWY_CHOOSE_AVX2(multiply_here), HWY_CHOOSE_AVX2(multiply_ragged_here)};
-  if (available == SimdLevel::kSse4) return {HWY_CHOOSE_SSE4(multiply_here), HWY_CHOOSE_SSE4(multiply_ragged_here)};
-#endif
-  return {&HWY_STATIC_DISPATCH(multiply_here), &HWY_STATIC_DISPATCH(multiply_ragged_here)};
+MatrixKernel matrix_kernel(SimdLevel level) {
+  return {RAYCONE_AT_LEVEL(level, multiply_here), RAYCONE_AT_LEVEL(level, multiply_ragged_here)};
 }
 
 }  // namespace raycone

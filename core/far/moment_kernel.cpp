@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/simd_kernel.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
@@ -92,15 +94,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-MomentKernel moment_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(add_edges);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(add_edges);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(add_edges);
-#endif
-  return &HWY_STATIC_DISPATCH(add_edges);
-}
+MomentKernel moment_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, add_edges); }
 
 }  // namespace raycone
 #endif

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/far/chunk_lanes-inl.h"
+#include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -48,15 +49,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-SharedCornersKernel shared_corners_kernel([[maybe_unused]] SimdLevel level) {
-#if HWY_ARCH_X86
-  const SimdLevel available = available_level(level);
-  if (available == SimdLevel::kAvx512) return HWY_CHOOSE_AVX3(multiply_chunks_here);
-  if (available == SimdLevel::kAvx2) return HWY_CHOOSE_AVX2(multiply_chunks_here);
-  if (available == SimdLevel::kSse4) return HWY_CHOOSE_SSE4(multiply_chunks_here);
-#endif
-  return &HWY_STATIC_DISPATCH(multiply_chunks_here);
-}
+SharedCornersKernel shared_corners_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, multiply_chunks_here); }
 
 SharedCorners::SharedCorners(std::span<const SolidTriangle> triangles) : triangles_(triangles) {
   places_.reserve(triangles.size());

@@ -12,7 +12,7 @@ namespace raycone {
 class DipoleTree {
  public:
   // Surfaces with a radius above `reach` count as if they were so small: what is near then stays little, and sums are
-  // less exact.
+  // less exact. With a reach of 0 all surfaces are far.
   DipoleTree(std::vector<SurfaceDipole> dipoles, double reach);
 
   // Each surface with its sign from here on: 1, -1, or 0 to leave it out.
@@ -41,7 +41,7 @@ class DipoleTree {
   void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
   [[nodiscard]] static bool is_far(const SurfaceDipole& dipole, const Vec3& q) {
     const Vec3 r = q - dipole.centre;
-    return dot(r, r) > SurfaceField::kFar * SurfaceField::kFar * dipole.radius * dipole.radius;
+    return dot(r, r) >= SurfaceField::kFar * SurfaceField::kFar * dipole.radius * dipole.radius;
   }
   [[nodiscard]] double far_sum(std::uint32_t node, const Vec3& q) const;
   template <class Visit>

@@ -167,6 +167,7 @@ class OpenSurfaceTurner::Search {
   // The largest surfaces are near everywhere. Others are as small as it takes for few to be near a sample.
   [[nodiscard]] DipoleTree far_tree() const {
     constexpr std::size_t kTried = 256, kMostNear = 96;
+    constexpr double kLeastReach = 0x1p-40;  // of the size of a mesh in scale
     std::vector<SurfaceDipole> dipoles(surfaces_.size());
     parallel_for(surfaces_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -174,8 +175,10 @@ class OpenSurfaceTurner::Search {
         if (i < kLargestSurfaces) dipoles[i].area = {};
       }
     });
-    for (double reach = 1.0;; reach /= 2) {
+    // Samples may lie on the centres of many surfaces: to them all is far at last.
+    for (double reach = 1.0;; reach = reach > kLeastReach ? reach / 2 : 0.0) {
       DipoleTree tree(dipoles, reach);
+      if (reach == 0.0) return tree;
       std::size_t near = 0;
       const std::size_t step = samples_.size() / kTried + 1;
       for (std::size_t k = 0; k < samples_.size(); k += step) {

@@ -20,11 +20,12 @@ struct SurfaceDipole {
   Vec3 area;            // vector area
   double radius = 0.0;  // of a sphere about the centre that holds the surface
 
-  // Winding number, turns; good from afar.
+  // Winding number, turns; good from afar, 0 in the centre.
   [[nodiscard]] double at(const Vec3& q) const {
     const Vec3 r = centre - q;
     const double square = dot(r, r);
-    if (!(square > 0.0)) return 0.0;
+    constexpr double kCentre = 0x1p-600;  // square of the distance, of which the third power is none any more
+    if (!(square > kCentre)) return 0.0;
     return dot(area, r) / (4.0 * std::numbers::pi * square * std::sqrt(square));
   }
 };

@@ -410,6 +410,28 @@ TEST(Orient, TurnsManySeparateTriangles) {
   EXPECT_EQ(wrong, 0U);
 }
 
+// All have one centre, which is a sample: no reach, however small, makes them far. That was looked for, without end.
+TEST(Orient, TurnsManyTrianglesAroundOnePoint) {
+  TriangleMesh mesh;
+  for (int n = 1; n <= 600; ++n) {
+    const double s = n;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{-s, 0, s}, {0, s, -s}, {s, -s, 0}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    if (n % 3 == 0) reverse(mesh.triangles.back());
+  }
+  const TriangleMesh turned = automatic(mesh);
+  ASSERT_EQ(turned.triangles.size(), mesh.triangles.size());
+  EXPECT_EQ(set_of_faces(automatic(turned)), set_of_faces(turned));
+}
+
+TEST(SurfaceField, IsFiniteNextToTheCentreOfADipole) {
+  const SurfaceDipole dipole{{0, 0, 0}, {0, 0.25, 0}, 0.0};
+  for (const double y : {0.0, 1e-320, 1e-200, 1e-110, 1e-90, 1e-17}) {
+    for (const Vec3& q : {Vec3{y, 0, 0}, Vec3{0, y, 0}}) EXPECT_TRUE(std::isfinite(dipole.at(q))) << y;
+  }
+}
+
 TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
   const DefaultFloatingPoint guard;
   // Within the unit box; without its last faces it has a boundary.

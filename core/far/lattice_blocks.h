@@ -22,7 +22,7 @@ namespace raycone {
 using LatticeAxes = std::array<std::vector<double>, 3>;
 
 // A bounded engine: sums are within `tolerance`, and rounding, of the sums of the solid angles of the triangles in
-// turns. Blocks of samples are divided in eight, again and again. A triangle that is far enough from a block, for its
+// turns. Blocks of samples are divided in two along their longer axes, again and again. A triangle that is far enough from a block, for its
 // area, adds its field to the block's harmonic polynomial; the others are handed down, and those that are near in the
 // end are summed exactly, ties as the exactness rules say. So a sum is that of the perturbed query, also on triangles.
 //

@@ -50,6 +50,7 @@ struct FieldOnCube {
 };
 
 struct SampleBlock {
+  std::size_t level;  // 0: the whole lattice
   std::array<std::size_t, 3> first, last;
   Cube cube;
   std::vector<std::uint32_t> near;  // triangles, ascending
@@ -82,11 +83,16 @@ class LatticeBlocksWalk {
         shared_corners_(shared_corners_kernel(blocks.level_)),
         far_(far_kernel(blocks.level_)),
         matrices_(matrix_kernel(blocks.level_)) {
-    double levels = 3.0, samples = 1.0;
-    for (const std::vector<double>& axis : axes) samples *= static_cast<double>(axis.size());
-    for (; samples > kLargeBlock; samples /= 8) ++levels;
-    far_budget_ = kFarShare * blocks.tolerance_ / levels;
+    for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++levels_) {
+      std::vector<SampleBlock> parts = halves(block);
+      if (parts.size() < 2) break;
+      block = *std::ranges::max_element(parts, {}, &SampleBlock::size);
+    }
+    far_budget_ = kFarShare * blocks.tolerance_ / static_cast<double>(levels_);
   }
+
+  // Levels of blocks that may have triangles that are far: so often the budget of a level is spent on a sample at most.
+  [[nodiscard]] std::size_t levels() const { return levels_; }
 
   // Children of a block, and those of its triangles that are far from each.
   struct Division {
@@ -96,11 +102,10 @@ class LatticeBlocksWalk {
 
   // The whole lattice, as the only child of nothing.
   [[nodiscard]] Division whole() const {
-    SampleBlock all{{0, 0, 0}, {axes_[0].size(), axes_[1].size(), axes_[2].size()}, {}, {}, 0.0, nullptr};
     std::vector<std::uint32_t> triangles(blocks_.sources_.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = static_cast<std::uint32_t>(i);
     Division division;
-    add_child(std::move(all), triangles, division);
+    add_child(lattice(), triangles, division);
     return division;
   }
 
@@ -180,6 +185,10 @@ class LatticeBlocksWalk {
   }
 
  private:
+  [[nodiscard]] SampleBlock lattice() const {
+    return {0, {0, 0, 0}, {axes_[0].size(), axes_[1].size(), axes_[2].size()}, {}, {}, 0.0, nullptr};
+  }
+
   [[nodiscard]] double length(const SampleBlock& block, std::size_t axis) const {
     return axes_[axis][block.last[axis] - 1] - axes_[axis][block.first[axis]];
   }
@@ -193,7 +202,7 @@ class LatticeBlocksWalk {
   // The block cut in two along its longer axes.
   [[nodiscard]] std::vector<SampleBlock> halves(const SampleBlock& block) const {
     const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
-    std::vector<SampleBlock> pieces{{block.first, block.last, {}, {}, 0.0, block.field}};
+    std::vector<SampleBlock> pieces{{block.level + 1, block.first, block.last, {}, {}, 0.0, block.field}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (block.count(axis) < 2 || length(block, axis) <= 0.6 * longest) continue;
       const std::size_t middle = middle_of(block, axis), count = pieces.size();
@@ -216,11 +225,13 @@ class LatticeBlocksWalk {
     return cube;
   }
 
-  // Which triangles are far: as many as the budget allows, the most harmless first.
+  // Which triangles are far: as many as the budget allows, the most harmless first. A block that is deeper than the
+  // largest ones ever are has none.
   void add_child(SampleBlock block, std::span<const std::uint32_t> triangles, Division& division) const {
     block.cube = cube_around(block);
     std::vector<std::pair<double, std::uint32_t>> errors;
     for (const std::uint32_t n : triangles) {
+      if (block.level >= levels_) break;
       const double error = error_of(blocks_.sources_[n], block.cube);
       if (error <= far_budget_) errors.emplace_back(error, n);
     }
@@ -304,7 +315,8 @@ class LatticeBlocksWalk {
   SharedCornersKernel shared_corners_;
   FarKernel far_;
   MatrixKernel matrices_;
-  double far_budget_;
+  std::size_t levels_ = 1;
+  double far_budget_;  // of a level
 };
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "core/boundary/solid_angles.h"
@@ -15,6 +16,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/far/harmonic_error.h"
 #include "core/far/harmonic_fit.h"
+#include "core/far/lattice_blocks_walk.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
@@ -199,7 +201,7 @@ Lattice cube_lattice(std::int64_t count) {
 LatticeAxes axes_of(const Lattice& lattice) {
   LatticeAxes axes;
   for (int axis = 0; axis < 3; ++axis) {
-    for (std::int64_t i = 0; i < lattice.counts[0]; ++i) {
+    for (std::int64_t i = 0; i < lattice.counts[static_cast<std::size_t>(axis)]; ++i) {
       axes[static_cast<std::size_t>(axis)].push_back(lattice.coordinate(axis, i));
     }
   }
@@ -218,26 +220,73 @@ std::vector<double> sums_of(const LatticeBlocks& blocks, const LatticeAxes& axes
 
 constexpr std::uint32_t kSide = 33;
 
+std::array<SampleRange, 3> whole_of(const LatticeAxes& axes) {
+  std::array<SampleRange, 3> all;
+  for (std::size_t axis = 0; axis < 3; ++axis) all[axis] = {0, static_cast<std::uint32_t>(axes[axis].size())};
+  return all;
+}
+
+// Of a box around the dust, with cubic voxels.
+Lattice box_lattice(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
+  const double spacing = 1.0 / static_cast<double>(std::max({nx, ny, nz}) - 1);
+  const auto first = [&](std::int64_t count) { return -0.5 * spacing * static_cast<double>(count - 1); };
+  return {{first(nx), first(ny), first(nz)}, {spacing, spacing, spacing}, {0, 0, 0}, {nx, ny, nz}};
+}
+
+void expect_sums_within(double tolerance, std::span<const SolidTriangle> triangles, const LatticeAxes& axes) {
+  const LatticeBlocks blocks({triangles.begin(), triangles.end()}, tolerance, SimdLevel::kBest);
+  const std::vector<double> sums = sums_of(blocks, axes, whole_of(axes));
+  const std::size_t nx = axes[0].size(), ny = axes[1].size();
+  double largest = 0.0;
+  for (std::size_t n = 0; n < sums.size(); n += 37) {
+    SampleTile tile;
+    tile.clear();
+    tile.add({axes[0][n % nx], axes[1][n / nx % ny], axes[2][n / nx / ny]});
+    tile.fill_up();
+    ProductTile products;
+    solid_angle_kernel(SimdLevel::kBest)(triangles, tile, products);
+    const double w = static_cast<double>(products.turns(0)) + products.argument[0];
+    largest = std::max(largest, std::abs(sums[n] - w));
+  }
+  EXPECT_LT(largest, tolerance);
+  EXPECT_GT(largest, tolerance * 1e-5);  // polynomials are at work
+}
+
 TEST(LatticeBlocksTest, SumsAreWithinTheTolerance) {
   Random random(6);
   const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 300)).triangles;
-  const LatticeAxes axes = axes_of(cube_lattice(kSide));
-  const std::array<SampleRange, 3> all{{{0, kSide}, {0, kSide}, {0, kSide}}};
   for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
-    const std::vector<double> sums = sums_of(LatticeBlocks(triangles, tolerance, SimdLevel::kBest), axes, all);
-    double largest = 0.0;
-    for (std::size_t n = 0; n < sums.size(); n += 37) {
-      SampleTile tile;
-      tile.clear();
-      tile.add({axes[0][n % kSide], axes[1][n / kSide % kSide], axes[2][n / kSide / kSide]});
-      tile.fill_up();
-      ProductTile products;
-      solid_angle_kernel(SimdLevel::kBest)(triangles, tile, products);
-      const double w = static_cast<double>(products.turns(0)) + products.argument[0];
-      largest = std::max(largest, std::abs(sums[n] - w));
-    }
-    EXPECT_LT(largest, tolerance);
-    EXPECT_GT(largest, tolerance * 1e-5);  // polynomials are at work
+    expect_sums_within(tolerance, triangles, axes_of(cube_lattice(kSide)));
+  }
+  for (const auto& [nx, ny, nz] : {std::array{120, 100, 8}, std::array{8, 8, 1500}, std::array{30, 400, 9}}) {
+    expect_sums_within(1e-7, triangles, axes_of(box_lattice(nx, ny, nz)));
+  }
+}
+
+// What a level may be off by is spent on a sample so often.
+std::size_t levels_with_far_triangles(const LatticeBlocksWalk& walk, const LatticeBlocksWalk::Division& division,
+                                      std::size_t above) {
+  std::size_t most = above;
+  for (std::size_t n = 0; n < division.children.size(); ++n) {
+    const std::size_t here = above + (division.far[n].cost > 0.0 ? 1 : 0);
+    const LatticeBlocksWalk::Division next = walk.divide(division.children[n]);
+    const bool goes_on = walk.pays(division.children[n], next);
+    most = std::max(most, goes_on ? levels_with_far_triangles(walk, next, here) : here);
+  }
+  return most;
+}
+
+TEST(LatticeBlocksTest, ToleranceIsDividedByTheLevelsThatThereAre) {
+  Random random(9);
+  const LatticeBlocks blocks(solid_faces(dust(random, 300)).triangles, 1e-6, SimdLevel::kBest);
+  for (const auto& [nx, ny, nz] :
+       {std::array{33, 33, 33}, std::array{128, 128, 128}, std::array{2000, 64, 64}, std::array{16, 9000, 16},
+        std::array{700, 500, 8}, std::array{8, 8, 100'000}, std::array{61, 67, 900}}) {
+    const LatticeAxes axes = axes_of(box_lattice(nx, ny, nz));
+    const LatticeBlocksWalk walk(blocks, axes);
+    const std::size_t spent = levels_with_far_triangles(walk, walk.whole(), 0);
+    EXPECT_LE(spent, walk.levels()) << nx << ' ' << ny << ' ' << nz;
+    EXPECT_GE(spent, 1U) << nx << ' ' << ny << ' ' << nz;
   }
 }
 

@@ -5,13 +5,16 @@
 #include <iterator>
 #include <utility>
 
+#include "core/far/harmonic_fit.h"
 #include "core/far/lattice_blocks_walk.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
 
 LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
-    : tree_(std::move(triangles), kSampleShare * tolerance, level), tolerance_(tolerance), level_(level) {
+    : tree_(std::move(triangles), LatticeBlocksWalk::kSampleShare * tolerance, level),
+      tolerance_(tolerance),
+      level_(level) {
   sources_.reserve(tree_.triangles().size());
   for (const SolidTriangle& t : tree_.triangles()) {
     Source source;
@@ -24,26 +27,29 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
   }
 }
 
-void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<SampleRange, 3>& part,
-                                 const Sink& sink) const {
-  constexpr std::size_t kEnough = 48;  // blocks for all threads
-  const LatticeBlocksWalk walk(*this, axes);
-  LatticeBlocksWalk::Division all = walk.whole();
-  walk.make_fields(all);
-  std::vector<SampleBlock> blocks = std::move(all.children), done;
-  // The division of a block, its parts that are asked for; none if the block is to be evaluated.
-  const auto divided = [&](const SampleBlock& block) {
-    LatticeBlocksWalk::Division division = walk.divide(block), wanted;
-    if (!walk.pays(block, division)) return std::vector<SampleBlock>();
+namespace {
+
+// The blocks of a part of a lattice.
+class PartBlocks {
+ public:
+  PartBlocks(const LatticeBlocksWalk& walk, const std::array<SampleRange, 3>& part, const LatticeBlocks::Sink& sink)
+      : walk_(walk), part_(part), sink_(sink) {}
+
+  // The parts of a block that are asked for; none if the block is to be evaluated.
+  [[nodiscard]] std::vector<SampleBlock> divided(const SampleBlock& block) const {
+    LatticeBlocksWalk::Division division = walk_.divide(block), wanted;
+    if (!walk_.pays(block, division)) return {};
     for (std::size_t n = 0; n < division.children.size(); ++n) {
-      if (!LatticeBlocksWalk::overlap(division.children[n], part)) continue;
+      if (!LatticeBlocksWalk::overlap(division.children[n], part_)) continue;
       wanted.children.push_back(std::move(division.children[n]));
       wanted.far.push_back(std::move(division.far[n]));
     }
-    walk.make_fields(wanted);
+    walk_.make_fields(wanted);
     return std::move(wanted.children);
-  };
-  while (!blocks.empty() && blocks.size() + done.size() < kEnough) {
+  }
+
+  // Divides all of `blocks` once, and moves those that are not divided to `done`.
+  void divide_all(std::vector<SampleBlock>& blocks, std::vector<SampleBlock>& done) const {
     std::vector<std::vector<SampleBlock>> parts(blocks.size());
     parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) parts[n] = divided(blocks[n]);
@@ -55,20 +61,44 @@ void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<Sampl
     }
     blocks = std::move(next);
   }
+
+  void evaluate(const SampleBlock& block) const { walk_.evaluate(block, part_, sink_); }
+
+  // Depth first, so that few blocks wait.
+  void divide_and_evaluate(SampleBlock all) const {
+    std::vector<SampleBlock> waiting;
+    waiting.push_back(std::move(all));
+    while (!waiting.empty()) {
+      const SampleBlock block = std::move(waiting.back());
+      waiting.pop_back();
+      std::vector<SampleBlock> parts = divided(block);
+      if (parts.empty()) evaluate(block);
+      std::ranges::move(parts, std::back_inserter(waiting));
+    }
+  }
+
+ private:
+  const LatticeBlocksWalk& walk_;
+  const std::array<SampleRange, 3>& part_;
+  const LatticeBlocks::Sink& sink_;
+};
+
+}  // namespace
+
+void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<SampleRange, 3>& part,
+                                 const Sink& sink) const {
+  constexpr std::size_t kEnough = 48;  // blocks for all threads
+  const LatticeBlocksWalk walk(*this, axes);
+  const PartBlocks of_part(walk, part, sink);
+  LatticeBlocksWalk::Division all = walk.whole();
+  walk.make_fields(all);
+  std::vector<SampleBlock> blocks = std::move(all.children), done;
+  while (!blocks.empty() && blocks.size() + done.size() < kEnough) of_part.divide_all(blocks, done);
   parallel_for(done.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) walk.evaluate(done[n], part, sink);
+    for (std::size_t n = begin; n < end; ++n) of_part.evaluate(done[n]);
   });
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      std::vector<SampleBlock> waiting{std::move(blocks[n])};
-      while (!waiting.empty()) {
-        const SampleBlock block = std::move(waiting.back());
-        waiting.pop_back();
-        std::vector<SampleBlock> children = divided(block);
-        if (children.empty()) walk.evaluate(block, part, sink);
-        std::ranges::move(children, std::back_inserter(waiting));
-      }
-    }
+    for (std::size_t n = begin; n < end; ++n) of_part.divide_and_evaluate(std::move(blocks[n]));
   });
 }
 
@@ -79,11 +109,6 @@ double LatticeBlocks::doubt(double tolerance, double triangles) {
   return tolerance + triangles * (kPerTriangle * HarmonicFit::kLargestWeights + HarmonicFit::kRounding / 2);
 }
 
-double LatticeBlocks::cost(const LatticeAxes& axes) const {
-  const LatticeBlocksWalk walk(*this, axes);
-  const LatticeBlocksWalk::Division all = walk.whole();
-  const SampleBlock& block = all.children.front();
-  return (LatticeBlocksWalk::making_cost(all.far.front().cost, false) + walk.estimate(block, 0)) / block.size();
-}
+double LatticeBlocks::cost(const LatticeAxes& axes) const { return LatticeBlocksWalk(*this, axes).cost(); }
 
 }  // namespace raycone

@@ -22,9 +22,10 @@ namespace raycone {
 using LatticeAxes = std::array<std::vector<double>, 3>;
 
 // A bounded engine: sums are within `tolerance`, and rounding, of the sums of the solid angles of the triangles in
-// turns. Blocks of samples are divided in two along their longer axes, again and again. A triangle that is far enough from a block, for its
-// area, adds its field to the block's harmonic polynomial; the others are handed down, and those that are near in the
-// end are summed exactly, ties as the exactness rules say. So a sum is that of the perturbed query, also on triangles.
+// turns. Blocks of samples are divided in two along their longer axes, again and again. A triangle that is far enough
+// from a block, for its area, adds its field to the block's harmonic polynomial; the others are handed down, and those
+// that are near in the end are summed exactly, ties as the exactness rules say. So a sum is that of the perturbed
+// query, also on triangles.
 //
 // Sums depend on the triangles, their order and the lattice alone: not on threads, SIMD level, or the part of the
 // lattice that is asked for.

@@ -1,6 +1,5 @@
 #include "core/boundary/boundary_term.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,12 +7,16 @@
 
 namespace raycone {
 
+namespace {
+
 // No factor that double precision is trusted with has an argument that is off by more, in turns, its part of the
 // product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
-static constexpr double kDoubtPerEdge = 0x1p-41;
+constexpr double kDoubtPerEdge = 0x1p-41;
+static_assert(kDoubtPerEdge * 9.0 * kMaxTriangles <= Boundary::kMostDoubt);
 
-// The least of the two is met at 10^11 edges only.
-double doubt_of_factors(double edge_factors) { return std::min(kDoubtPerEdge * edge_factors, Boundary::kMostDoubt); }
+}  // namespace
+
+double doubt_of_factors(double edge_factors) { return kDoubtPerEdge * edge_factors; }
 
 ExactTerm::ExactTerm(const Boundary& boundary, double edge_factors)
     : boundary_(boundary), doubt_(doubt_of_factors(edge_factors)) {}

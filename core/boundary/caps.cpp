@@ -83,11 +83,11 @@ class EdgeGraph {
   std::uint32_t take_next(const Loop& path) {
     const std::uint32_t v = path.back();
     if (left_[v] == first_[v]) return kNone;
-    std::uint32_t best = left_[v] - 1;
+    std::size_t best = left_[v] - 1;
     if (path.size() > 1 && left_[v] - first_[v] <= kMostChoices) {
       const Vec3 back = vertices_[path[path.size() - 2]] - vertices_[v];
       double best_cosine = -2.0;
-      for (std::uint32_t e = first_[v]; e < left_[v]; ++e) {
+      for (std::size_t e = first_[v]; e < left_[v]; ++e) {
         const Vec3 out = vertices_[to_[e]] - vertices_[v];
         const double cosine = dot(out, back) / (length_of(out) * length_of(back));
         if (cosine > best_cosine) best_cosine = cosine, best = e;
@@ -98,7 +98,9 @@ class EdgeGraph {
   }
 
   std::vector<Vec3> vertices_;
-  std::vector<std::uint32_t> first_, left_, to_;  // edges of v to to_[first_[v]] ... to_[left_[v]-1] are still there
+  // Edges of v to to_[first_[v]] ... to_[left_[v] - 1] are still there, each as often as its multiplicity says.
+  std::vector<std::size_t> first_, left_;
+  std::vector<std::uint32_t> to_;
 };
 
 class LoopFiller {

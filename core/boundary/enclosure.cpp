@@ -115,8 +115,8 @@ struct WideProduct {
 
 TurnsWithin<Wide> turns_of(const WideProduct& product) {
   const Wide rest = argument_in_turns<Wide>(product.z.re, product.z.im);
-  const Wide error = product.error * kSecondOrder / (2 * std::numbers::pi_v<Wide>)+kArgumentError * u * std::abs(rest);
-  return {product.turns, rest, error};
+  const Wide of_factors = product.error * kSecondOrder / (2 * std::numbers::pi_v<Wide>);
+  return {product.turns, rest, of_factors + kArgumentError * u * std::abs(rest)};
 }
 
 TurnsWithin<Wide> enclose_group(const ChainGroup& group, const Vec3& q) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/data/interval.h"
 #include "core/exact/predicates.h"
 
 namespace raycone {
@@ -11,12 +12,9 @@ namespace {
 
 Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 
-// The closed box of a triangle, but for what is not asked here.
-struct SpanX {
-  double lower, upper;
-  SpanX(const Vec3& a, const Vec3& b, const Vec3& c)
-      : lower(std::min({a.x, b.x, c.x})), upper(std::max({a.x, b.x, c.x})) {}
-};
+Interval extent_along_x(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x})};
+}
 
 bool box_meets_line(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row) {
   return row.y >= std::min({a.y, b.y, c.y}) && row.y <= std::max({a.y, b.y, c.y}) &&
@@ -37,7 +35,7 @@ Doubtful doubtful_samples(const Vec3& a, const Vec3& b, const Vec3& c, const Row
     while (last < row.xs.size() && row.xs[last] <= x + plane->error) ++last;
     return {first, last};
   }
-  const SpanX box(a, b, c);
+  const Interval box = extent_along_x(a, b, c);
   return {count_below(row.xs, row.samples_per_unit, box.lower), count_up_to(row.xs, row.samples_per_unit, box.upper)};
 }
 
@@ -62,7 +60,7 @@ void find_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, 
 // A line meets a closed triangle in an interval, so the samples on it are consecutive.
 void find_samples_on(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, TriangleCrossing& result) {
   const auto on = [&](std::size_t i) { return on_triangle(a, b, c, row.query(i)); };
-  std::size_t i = count_below(row.xs, row.samples_per_unit, SpanX(a, b, c).lower);
+  std::size_t i = count_below(row.xs, row.samples_per_unit, extent_along_x(a, b, c).lower);
   while (i < result.met && !on(i)) ++i;
   result.on_begin = i;
   while (i < result.met && on(i)) ++i;
@@ -106,7 +104,7 @@ TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, 
   result.ties = ab.tie + bc.tie + ca.tie;
   if (!crossed && result.ties == 0) return result;
   if (!box_meets_line(a, b, c, row)) return {};  // a tie with the line of an edge, beyond the triangle
-  if (result.ties > 0) result.met = count_up_to(row.xs, row.samples_per_unit, SpanX(a, b, c).upper);
+  if (result.ties > 0) result.met = count_up_to(row.xs, row.samples_per_unit, extent_along_x(a, b, c).upper);
   if (crossed) {
     result.sigma = ab.sign;
     find_crossing(a, b, c, row, plane, result);

@@ -167,7 +167,7 @@ void LatticeSums::sum_prefixes(std::size_t row) {
   for (const RowPrefix& e : prefixes) {
     const auto begin = sums.begin() + static_cast<std::ptrdiff_t>(e.samples);
     std::fill(begin, end, sum);
-    sum += e.sigma;
+    sum += e.crossings;
     end = begin;
   }
   std::fill(sums.begin(), end, sum);
@@ -177,7 +177,7 @@ void LatticeSums::make_runs(std::size_t row) {
   const std::span<RowPrefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
   std::ranges::sort(prefixes, std::ranges::less{}, &RowPrefix::samples);
   std::int32_t sum = 0;
-  for (std::size_t i = prefixes.size(); i-- > 0;) prefixes[i].sigma = sum += prefixes[i].sigma;
+  for (std::size_t i = prefixes.size(); i-- > 0;) prefixes[i].crossings = sum += prefixes[i].crossings;
 }
 
 std::uint64_t LatticeSums::finish(std::size_t row) {

@@ -15,10 +15,10 @@
 
 namespace raycone {
 
-// Crossings that are counted by the first samples of a row, so many: or, of runs, how many each of them has.
+// The first `samples` of a row count `crossings` more. In runs(): the samples up to `samples` have `crossings`.
 struct RowPrefix {
   std::uint32_t samples;
-  std::int32_t sigma;
+  std::int32_t crossings;
 };
 
 // The crossings n of the samples of one row, as runs of samples that have the same.
@@ -30,7 +30,7 @@ class RowRuns {
   [[nodiscard]] double at(std::size_t sample) const {
     if (!each_.empty()) return each_[sample];
     const auto run = run_of(sample);
-    return run == runs_.end() ? 0.0 : run->sigma;
+    return run == runs_.end() ? 0.0 : run->crossings;
   }
 
   // visit(first, last, n) for the samples [begin, end), in ascending order, as long as it returns true. Returns whether
@@ -41,7 +41,7 @@ class RowRuns {
     auto run = run_of(begin);
     while (begin < end) {
       const std::size_t last = run == runs_.end() ? end : std::min<std::size_t>(end, run->samples);
-      if (last > begin && !visit(begin, last, run == runs_.end() ? 0.0 : run->sigma)) return false;
+      if (last > begin && !visit(begin, last, run == runs_.end() ? 0.0 : run->crossings)) return false;
       begin = last;
       if (run != runs_.end()) ++run;
     }

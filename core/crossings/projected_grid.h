@@ -83,7 +83,7 @@ class ProjectedGrid {
   [[nodiscard]] Filter filter_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
   [[nodiscard]] const Cell& cell_at(double y, double z) const;
   // Whether the ray may meet the mesh's box.
-  [[nodiscard]] bool is_before(const Local& p) const {
+  [[nodiscard]] bool may_meet_box(const Local& p) const {
     return p.y >= lower_.y && p.y <= upper_.y && p.z >= lower_.z && p.z <= upper_.z && p.x <= upper_.x;
   }
 
@@ -111,7 +111,7 @@ inline const ProjectedGrid::Cell& ProjectedGrid::cell_at(double y, double z) con
 template <class Visit>
 void ProjectedGrid::for_each_candidate(const Vec3& q, const Visit& visit) const {
   const Local p = local(q);
-  if (!is_before(p)) return;
+  if (!may_meet_box(p)) return;
   const auto x = static_cast<float>(std::max(p.x, -2.0));
   const Cell& cell = cell_at(p.y, p.z);
   for (const Entry& entry : std::span(entries_.data() + cell.first_entry, cell.entries)) {
@@ -123,7 +123,7 @@ void ProjectedGrid::for_each_candidate(const Vec3& q, const Visit& visit) const 
 template <class Doubtful>
 int ProjectedGrid::crossings(const Vec3& q, const Doubtful& doubtful) const {
   const Local p = local(q);
-  if (!is_before(p)) return 0;
+  if (!may_meet_box(p)) return 0;
   const auto x = static_cast<float>(std::max(p.x, -2.0));
   const __m128 xs = _mm_set_ps(x, 0, 0, 0);
   const __m128 ys = _mm_set1_ps(static_cast<float>(p.y)), zs = _mm_set1_ps(static_cast<float>(p.z));

@@ -15,7 +15,7 @@ namespace raycone {
 class RayCaster {
  public:
   // Builds the acceleration structure. `mesh` must outlive the RayCaster and have at least one triangle. Throws
-  // std::bad_alloc, or std::runtime_error with Embree's message.
+  // std::bad_alloc, or std::runtime_error with the number of Embree's error.
   explicit RayCaster(const TriangleMesh& mesh);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;

@@ -42,12 +42,12 @@ std::vector<LatticeBlock> parts_alike(const Lattice& lattice, const LatticeBlock
   return parts;
 }
 
-PartSamples::PartSamples(std::size_t count)
+PartSamples::PartSamples(std::size_t count, bool with_diagnostics)
     : values_(count),
-      error_bound_(count),
-      crossings_(count),
-      degenerate_(count),
-      on_surface_(count),
+      error_bound_(with_diagnostics ? count : 0),
+      crossings_(error_bound_.size()),
+      degenerate_(error_bound_.size()),
+      on_surface_(error_bound_.size()),
       diagnostics_{crossings_, degenerate_, on_surface_, error_bound_} {}
 
 void PartSamples::copy_to(const LatticeBlock& whole, const LatticeBlock& part, std::span<double> values,

@@ -35,12 +35,12 @@ void copy_part(const LatticeBlock& whole, const LatticeBlock& part, std::span<co
 // Room for what is computed of a part before it finds its place in the whole.
 class PartSamples {
  public:
-  explicit PartSamples(std::size_t count);
+  PartSamples(std::size_t count, bool with_diagnostics);
   PartSamples(const PartSamples&) = delete;  // diagnostics_ refers to its vectors
   PartSamples& operator=(const PartSamples&) = delete;
 
   [[nodiscard]] std::span<double> values() { return values_; }
-  [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
+  [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }  // empty without
 
   // To the places that samples of `part` have in a block `whole`; diagnostics where given.
   void copy_to(const LatticeBlock& whole, const LatticeBlock& part, std::span<double> values,

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/exact/quad.h"
-#include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -88,7 +87,6 @@ void GradientEvaluator::evaluate_each(const Point& point, std::span<Vec3> values
   constexpr std::size_t kTerms = std::size_t{1} << 16;  // per task
   const std::size_t grain = std::max<std::size_t>(1, kTerms / (segments_.size() + 1));
   parallel_for(values.size(), grain, [&](std::size_t begin, std::size_t end) {
-    const DefaultFloatingPoint guard;
     for (std::size_t n = begin; n < end; ++n) values[n] = segments_.empty() ? Vec3{} : at(point(n));
     if (done) done->fetch_add(end - begin, std::memory_order_relaxed);
   });

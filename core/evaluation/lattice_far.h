@@ -30,8 +30,8 @@ struct CrossingsOfRow {
 };
 
 // Sets `values` of the samples of `block`, x fastest, to winding numbers within the tolerance. `crossings` is asked for
-// each row, several times and by several threads; never where values do not depend on crossings. Values of samples that
-// have been set already are not among what it may look at. A value that may be a half-integer, where rules have their
+// each row, several times and by several threads; never where values do not depend on crossings. It may read
+// `values` of a row only where they have not been set yet. A value that may be a half-integer, where rules have their
 // thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs
 // DefaultFloatingPoint.
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,

@@ -178,7 +178,7 @@ Tally evaluate_block(const ScaledMeshes& meshes, const Lattice& lattice, const L
   if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics);
   Tally tally;
   for (const LatticeBlock& part : parts) {
-    PartSamples samples(static_cast<std::size_t>(part.size()));
+    PartSamples samples(static_cast<std::size_t>(part.size()), diagnostics != nullptr);
     const Diagnostics* part_diagnostics = diagnostics ? &samples.diagnostics() : nullptr;
     tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics);
     samples.copy_to(block, part, values, diagnostics);

@@ -115,27 +115,28 @@ class ScaledMesh {
   // No value from blocks() is off by more.
   [[nodiscard]] double doubt_of_blocks() const;
 
-  // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
-  // thresholds, is on the right side of it or is it, whatever the tolerance. At least one sample.
-  // Unless settling is left out.
   enum class Settling { kDone, kLeft };
+
+  // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
+  // thresholds, is on the right side of it or is it, whatever the tolerance; with kLeft it need not be. At least one
+  // sample.
   void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                   Settling settling = Settling::kDone) const;
+  // The same by the direct sum.
+  void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
+                         Settling settling = Settling::kDone) const;
 
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
     return term_ ? term_->error_bound(q, w, crossings) : 0.0;
   }
 
+  // Not while an evaluation runs.
   [[nodiscard]] Terms terms() const {
     Terms terms{direct_terms_, 0};
     if (far_) terms += {far_->near_terms(), far_->far_terms()};
     if (blocks_) terms += {blocks_->sums.near_terms(), blocks_->sums.far_terms()};
     return terms;
   }
-
-  // The same by the direct sum.
-  void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
-                         Settling settling = Settling::kDone) const;
 
  private:
   [[nodiscard]] double doubt_of_far_field() const;

@@ -15,18 +15,18 @@
 namespace raycone {
 namespace {
 
-// Whether the mesh has triangles; where it has none, all values are set to 0.
-bool has_values(const TriangleMesh& mesh, std::span<double> values, std::atomic<std::uint64_t>* done,
-                const Diagnostics* diagnostics) {
-  if (!mesh.triangles.empty()) return true;
+// Of a mesh without triangles. Whether it is one.
+bool set_to_zero_if_empty(const TriangleMesh& mesh, std::span<double> values, std::atomic<std::uint64_t>* done,
+                          const Diagnostics* diagnostics) {
+  if (!mesh.triangles.empty()) return false;
   std::ranges::fill(values, 0.0);
   if (done) done->fetch_add(values.size(), std::memory_order_relaxed);
-  if (!diagnostics) return false;
+  if (!diagnostics) return true;
   std::ranges::fill(diagnostics->crossings, 0);
   std::ranges::fill(diagnostics->degenerate, 0);
   std::ranges::fill(diagnostics->on_surface, std::uint8_t{0});
   std::ranges::fill(diagnostics->error_bound, 0.0);
-  return false;
+  return true;
 }
 
 }  // namespace
@@ -83,6 +83,7 @@ double WindingNumberEvaluator::settle(const Vec3& point, double value, double cr
 }
 
 void WindingNumberEvaluator::prepare_points() const {
+  const DefaultFloatingPoint guard;
   const ScaledMesh& scaled = implementation_->scaled();
   if (!scaled.mesh().triangles.empty()) scaled.prepare_points();
 }
@@ -93,7 +94,7 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   assert(values.size() == static_cast<std::size_t>(block.size()));
   if (block.size() == 0) return {};
   const ScaledMeshes& meshes = *implementation_;
-  if (!has_values(meshes.scaled().mesh(), values, done, diagnostics)) return {};
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;
   return evaluate_block(meshes, lattice, block, values, done, diagnostics);
 }
@@ -117,7 +118,7 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
   const ScaledMeshes& meshes = *implementation_;
-  if (!has_values(meshes.scaled().mesh(), values, done, diagnostics)) return {};
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, done, diagnostics)) return {};
   const DefaultFloatingPoint guard;
   return evaluate_points(meshes, points, values, done, diagnostics);
 }
@@ -125,7 +126,7 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
 void WindingNumberEvaluator::evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const {
   assert(values.size() == points.size());
   const ScaledMeshes& meshes = *implementation_;
-  if (!has_values(meshes.scaled().mesh(), values, nullptr, nullptr)) return;
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, nullptr, nullptr)) return;
   const DefaultFloatingPoint guard;
   evaluate_points(meshes, points, values, nullptr, nullptr, ScaledMesh::Settling::kLeft);
 }

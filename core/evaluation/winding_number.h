@@ -128,7 +128,7 @@ class WindingNumberEvaluator {
   [[nodiscard]] double doubt() const;
   [[nodiscard]] double settle(const Vec3& point, double value, double critical) const;
 
-  // Of all values that have been evaluated so far.
+  // Of all values that have been evaluated so far. Not while an evaluation runs.
   [[nodiscard]] Terms terms() const;
 
   // Builds the search structure that points need and lattices may not. Without this call, the first evaluation of

@@ -13,8 +13,6 @@ using namespace exact;
 
 const Quad kPi = 4 * atanq(1);
 
-Quad dot(const QuadVec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 QuadVec3 relative_to(const QuadVec3& q, const Vec3& v) { return {v.x - q.x, v.y - q.y, v.z - q.z}; }
 
 // Real and imaginary part sum ten products of three lengths' magnitude; each has at most twelve roundings of 2^-113

@@ -1,5 +1,5 @@
-// Determinants of differences of doubles, rounded once, in 113-bit arithmetic with exact products and sums. Some
-// hundred times slower than in doubles; rounded to double, some ten times.
+// Determinants of differences of doubles, rounded to within a unit in the last place, in 113-bit arithmetic with exact
+// products and sums. Some hundred times slower than in doubles; rounded to double, some ten times.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   }
 }
 
-// a d - b c of exact differences, rounded once.
+// a d - b c of exact differences, rounded to within a unit in the last place.
 [[nodiscard]] inline Quad determinant(const Difference& a, const Difference& b, const Difference& c,
                                       const Difference& d) {
   ExactSum sum;

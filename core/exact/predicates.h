@@ -52,11 +52,11 @@ struct EdgeDeterminant {
   return determinant_from(a_is_nearer ? a : b, a, b, q);
 }
 
-// Floating point vouches for the sign of D^ where |D^| exceeds this many times `terms`, plus the absolute value, which
-// stands for underflow: each factor is rounded once (two of them: 2 u), each product (u) and the difference (u), so 4 u
-// is a bound but for second-order terms; u = 2^-53.
+// Floating point vouches for the sign of D^ where |D^| exceeds this many times `terms`, plus kSideUnderflow. Each
+// factor is rounded once (two of them: 2 u), each product (u) and the difference (u), so 4 u is a bound but for
+// second-order terms; u = 2^-53.
 inline constexpr double kSideFilter = 4.0 * 0x1p-53 * (1.0 + 0x1p-50);
-inline constexpr double kSideUnderflow = 0x1p-1000;
+inline constexpr double kSideUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
 
 // The sign of D where that is sure, else 0.
 [[nodiscard]] inline int sure_sign(const EdgeDeterminant& d) {

@@ -13,7 +13,7 @@
 namespace raycone {
 
 // The direction of a polygon's area vector, the sum of c(i) x c(i+1): each component of the exact vector, times one
-// power of two, rounded, all but exactly (the largest error is 2^-30 of the largest component); the largest is
+// power of two, rounded, all but exactly (an error is below 2^-30 of the sum of their magnitudes); the largest is
 // between 1/2 and 2. Zero if and only if the area vector is.
 [[nodiscard]] Vec3 area_direction(std::span<const Vec3> corners);
 

@@ -8,6 +8,10 @@ using Quad = __float128;
 struct QuadVec3 {
   Quad x, y, z;
 };
+inline Quad dot(const QuadVec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline QuadVec3 cross(const QuadVec3& a, const QuadVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 inline Quad absolute(Quad x) { return x < 0 ? -x : x; }
 

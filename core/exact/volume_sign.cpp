@@ -8,7 +8,8 @@
 namespace raycone {
 namespace {
 
-// Differences, two products and the sums round each term by less than (n + 16) u of its magnitude.
+// Differences, two products and the sums round each term by less than (n + 16) u of its magnitude; twice that is
+// trusted.
 int sure_volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices) {
   const Vec3 origin = vertices[triangles.front()[0]];
   constexpr double kUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles

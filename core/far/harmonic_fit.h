@@ -31,8 +31,8 @@ class HarmonicFit {
   // The value of function f at node n is values[n * kTogether + f]. Sets the first polynomials.size() of kTogether.
   void fit(std::span<const double> values, std::span<Coefficients> polynomials, const MatrixKernel& kernel) const;
 
-  // No value of a fit exceeds the largest value at the nodes by this factor; rounding of a fit is within kRounding of
-  // that value.
+  // No value of a fit exceeds kLargestWeights times the largest magnitude at the nodes; a fit rounds by at most
+  // kRounding times that magnitude.
   static constexpr double kLargestWeights = 41.0;
   static constexpr double kRounding = 4e-12;
 

@@ -145,7 +145,7 @@ void SourceTree::build() {
 }
 
 // Triangles that are large beside the node stay with it; the others are halved by their middles.
-std::uint32_t SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint32_t begin) {
+void SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint32_t begin) {
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   const auto end = begin + static_cast<std::uint32_t>(placed.size());
   nodes_.emplace_back();
@@ -167,7 +167,6 @@ std::uint32_t SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint
     }
   }
   nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
-  return number;
 }
 
 // Farther from the ball around the node than the longest side of its own triangles.

@@ -29,7 +29,8 @@ struct SourceNode {
   std::size_t first_coefficient = 0;
   MultipoleBounds bounds;
   // From so far on, squared, the expansion cut off behind degree p errs by at most the node's share of the tolerance,
-  // in proportion to area, rounding included. Never increases with p; infinite where no distance will do, [0] always.
+  // in proportion to area and to the number of its triangles by halves, rounding included. Never increases with p;
+  // infinite where no distance will do, [0] always.
   std::array<double, kMultipoleOrder + 1> square_of_distance{};
 
   [[nodiscard]] std::size_t triangles() const { return end - begin; }
@@ -58,7 +59,7 @@ class SourceTree {
 
   void build();
   // Of all of `placed`, which it sorts; they become the triangles from `begin` on.
-  std::uint32_t build_node(std::span<PlacedTriangle> placed, std::uint32_t begin);
+  void build_node(std::span<PlacedTriangle> placed, std::uint32_t begin);
   static void sort_by_middles(std::span<PlacedTriangle> placed);
   [[nodiscard]] double square_of_small(const SourceNode& node) const;
   void measure(SourceNode& node) const;

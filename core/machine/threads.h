@@ -37,8 +37,9 @@ class ThreadLimit {
 void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads. Each call has the default
-// floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Ranges hold at least `grain` items if
-// count allows. Exceptions of body propagate. Throws ThreadsUnavailable.
+// floating-point environment (MXCSR 0x1F80: round to nearest, no flush to zero). Loops of up to `grain` items are
+// not divided; of longer ones no range has less than half as many. Exceptions of body propagate. Throws
+// ThreadsUnavailable.
 //
 // A caller that waits for other threads takes no part in other loops. A loop within the body of another may therefore
 // hold a lock. Bodies of one loop must not wait for a lock that one of them holds while it runs a loop: build what many

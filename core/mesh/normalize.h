@@ -22,8 +22,8 @@ struct Normalize {
 // p becomes factor * (p - middle).
 struct Normalization {
   Vec3 middle;
-  double factor =
-      1.0;  // 0, infinite or NaN where doubles cannot say it: of a mesh without extent, or a huge or tiny one
+  // 0, infinite or NaN where doubles cannot say it: of a mesh without extent, or a huge or tiny one.
+  double factor = 1.0;
 };
 
 // Precondition: at least one triangle, finite vertices.

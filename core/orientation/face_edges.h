@@ -44,7 +44,6 @@ class FaceEdges {
 
  private:
   struct FiledEdge;
-  struct Bucket;
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;  // the face, and below it a bit: they do not agree

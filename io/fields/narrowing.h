@@ -69,13 +69,4 @@ class Narrowing {
   float (*next_)(float);
 };
 
-[[nodiscard]] inline std::vector<float> narrowed(const Narrowing& narrowing, std::span<const double> numbers) {
-  std::vector<float> stored(numbers.size());
-  constexpr std::size_t kGrain = std::size_t{1} << 14;
-  parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) stored[n] = narrowing(numbers[n]);
-  });
-  return stored;
-}
-
 }  // namespace raycone

@@ -192,11 +192,12 @@ TEST(Caps, OfAStripTakeLittleMoreThanItsArea) {
 }
 
 // Between two places of a box the winding number changes by integers, and by what the bound says; in the middle it is
-// the mean, but for integers and what the bound of second derivatives says.
+// the mean, but for integers and what the bound of second derivatives says. At thirds, the third difference is what
+// that of third ones says.
 TEST(ChangeBound, HoldsBetweenAllPlaces) {
   test::Random random(6);
   int tried = 0;
-  double largest = 0.0, largest_bend = 0.0;  // part of the bound that was reached
+  double largest = 0.0, largest_bend = 0.0, largest_third = 0.0;  // part of the bound that was reached
   for (int i = 0; i < 40; ++i) {
     const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
     const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
@@ -212,6 +213,14 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
       EXPECT_LE(beside_integers(at_b - at_a), most);
       largest = std::max(largest, beside_integers(at_b - at_a) / most);
       ++tried;
+      const double step = std::sqrt(dot(b - a, b - a)) / 3, most_third = bounds.third * step * step * step;
+      if (most_third > 1e-6 && most_third < 0.5) {
+        const double at_thirds = test::direct_winding_number(mesh, (2.0 / 3) * a + (1.0 / 3) * b) -
+                                 test::direct_winding_number(mesh, (1.0 / 3) * a + (2.0 / 3) * b);
+        const double difference = beside_integers(at_b - at_a + 3 * at_thirds);
+        EXPECT_LE(difference, most_third);
+        largest_third = std::max(largest_third, difference / most_third);
+      }
       const double most_bend = bounds.second * dot(b - a, b - a) / 4;
       if (!(most_bend > 1e-6 && most_bend < 0.5)) continue;  // not rounding alone
       const double bend = beside_integers(at_a + at_b - 2 * test::direct_winding_number(mesh, 0.5 * a + 0.5 * b));
@@ -222,6 +231,7 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
   EXPECT_GT(tried, 200);
   EXPECT_GT(largest, 0.2) << "the bound is far off";
   EXPECT_GT(largest_bend, 0.1) << "that of second derivatives is";
+  EXPECT_GT(largest_third, 0.1) << "that of third derivatives is";
 }
 
 }  // namespace

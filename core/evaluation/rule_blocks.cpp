@@ -27,8 +27,8 @@ constexpr std::size_t kHopeless = 8 * kFew;  // where certificates failed: parts
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 
 // Of interpolation between nodes: the largest blocks, by how much it may be off, turns, and how many steps there are
-// between nodes along the longest side at most. It leaves the more samples undecided the longer steps are, this share of all per turn
-// that it may be off (measured); of shorter ones, nodes are too many.
+// between nodes along the longest side at most. It leaves the more samples undecided the longer steps are, this share
+// of all per turn that it may be off (measured); of shorter ones, nodes are too many.
 constexpr std::size_t kInterpolated = 8192;
 constexpr double kMostBend = 0.04;
 constexpr std::size_t kMostSteps = 6;
@@ -151,11 +151,15 @@ class RuleBlocks {
 
   [[nodiscard]] std::size_t blocks() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
 
-  // Block number n. Returns how many samples it has.
-  std::size_t apply(std::size_t n) {
+  // Whether certificates were found often enough so far. The work depends on it, the sides do not.
+  [[nodiscard]] bool are_worth_it() const { return in_vain_ <= tried_ - tried_ / 8; }
+
+  // Block number n, by certificates or, but for a few, without. Returns how many samples it has.
+  std::size_t apply(std::size_t n, bool by_certificates) {
+    constexpr std::size_t kFewBlocks = 64;
     const Block whole = block(n);
     std::vector<Block> blocks{whole}, undecided;
-    if (!worth_it(n)) {
+    if (!by_certificates && n % kFewBlocks != 0) {
       evaluate_each(whole, blocks);
       return whole.size();
     }
@@ -227,13 +231,6 @@ class RuleBlocks {
     }
     return true;
   }
-  // Whether certificates are found often enough; where not, few blocks still look for them. The work depends on it, the
-  // sides do not.
-  [[nodiscard]] bool worth_it(std::size_t n) const {
-    constexpr std::size_t kFewBlocks = 64;
-    return n % kFewBlocks == 0 || in_vain_ <= tried_ - tried_ / 8;
-  }
-
   // Whether numbers of turns that are off by less than `needed` are on w's side.
   [[nodiscard]] bool is_certain(double w, double needed) const {
     return distance_to_threshold(side_.rule(), w) - kRounding * std::abs(w) > needed;
@@ -321,6 +318,7 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
     }
     block = std::move(candidate.block);
   }
+  if (block.size() <= 2 * kFew) return undecided.push_back({block.first, block.last});  // its parts would be few
   divide(std::move(block), parts);
 }
 
@@ -556,12 +554,17 @@ void RuleBlocks::divide(Block block, std::vector<Block>& parts) const {
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
                const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   RuleBlocks blocks(mesh, rows, rule, crossings, cap_crossings, sides);
-  parallel_for(blocks.blocks(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t samples = blocks.apply(n);
-      if (done) done->fetch_add(samples, std::memory_order_relaxed);
-    }
-  });
+  // In rounds, each of which knows all of those before it, so that the work is the same for any number of threads.
+  constexpr std::size_t kFirstRound = 8;
+  for (std::size_t first = 0, last = kFirstRound; first < blocks.blocks(); first = last, last *= 2) {
+    const bool by_certificates = blocks.are_worth_it();
+    parallel_for(std::min(last, blocks.blocks()) - first, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::size_t samples = blocks.apply(first + n, by_certificates);
+        if (done) done->fetch_add(samples, std::memory_order_relaxed);
+      }
+    });
+  }
 }
 
 }  // namespace raycone

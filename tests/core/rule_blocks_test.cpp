@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <vector>
 
 #include "core/boundary/caps.h"
@@ -95,6 +96,23 @@ TEST(RuleBlocks, HoldOnLatticesThatAreFullOfTies) {
     cells.triangles.resize(cells.triangles.size() - 9);
     EXPECT_GE(certified(weld(cells, {}), integers(-4, 41, 0.125)), 0);
     EXPECT_GE(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), 0);
+  }
+}
+
+// A funnel, open at both ends: rays from the wide opening's caps pass through the narrow one, or do not.
+TEST(RuleBlocks, HoldWhereTheConesOfOneOpeningMeetTheCapsOfAnother) {
+  constexpr std::uint32_t kCorners = 24;
+  TriangleMesh funnel;
+  for (std::uint32_t n = 0; n < kCorners; ++n) {
+    const double angle = 2 * std::numbers::pi * n / kCorners;
+    funnel.vertices.push_back({0.01, std::cos(angle), std::sin(angle)});
+    funnel.vertices.push_back({2, 0.4 * std::cos(angle), 0.4 * std::sin(angle)});
+    const std::uint32_t a = 2 * n, b = 2 * ((n + 1) % kCorners);
+    funnel.triangles.push_back({a, b, a + 1});
+    funnel.triangles.push_back({b, b + 1, a + 1});
+  }
+  for (const TriangleMesh& mesh : {funnel, test::reversed(funnel)}) {
+    EXPECT_GT(certified(weld(mesh, {}), lattice_around(mesh, 60)), 7 * 60'000);
   }
 }
 

@@ -72,7 +72,11 @@ Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeB
       rule_ ? winding_number_.evaluate_sides(*rule_, lattice, block, samples.sides(), done)
             : winding_number_.evaluate(lattice, block, samples.winding_numbers(), done, samples.diagnostics());
   if (!rule_) settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
-  if (distance_) distance_->evaluate(lattice, block, band_width, samples.distances());
+  if (DistanceBlocks* const blocks = samples.distance_blocks()) {
+    distance_->evaluate(lattice, block, band_width, *blocks);
+  } else if (distance_) {
+    distance_->evaluate(lattice, block, band_width, samples.distances());
+  }
   if (solid_) solid_->evaluate(lattice, block, band_width, samples.solid_distances());
   if (gradient_) gradient_->evaluate(lattice, block, samples.gradients(), last);
   samples.derive();

@@ -38,13 +38,15 @@ class FieldEvaluator {
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(const TriangleMesh& surface) { solid_.emplace(surface, simd_); }
 
-  // Builds the search structures of points. Lattices need that of distances alone, which evaluate() builds without this.
+  // Builds the search structures of points. Lattices need that of distances alone, which evaluate() builds without
+  // this.
   void prepare_points() const;
 
   // Fills `samples`, made for the options of this, with all fields of a block or of finite points. On lattices, which
   // have cubic voxels then, distances are cut off at the band. `done`, where given, grows by one per sample while the
   // call runs. A lattice whose axes are the world's, in any order and direction, is evaluated as one along them;
-  // others at the positions of their samples, which takes what points need.
+  // others at the positions of their samples, which takes what points need. Samples that use blocks are of lattices
+  // along the axes.
   Tally evaluate(const PlacedLattice& lattice, const LatticeBlock& block, FieldSamples& samples,
                  std::atomic<std::uint64_t>* done) const;
   Tally evaluate(std::span<const Vec3> points, FieldSamples& samples, std::atomic<std::uint64_t>* done) const;

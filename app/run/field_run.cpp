@@ -56,7 +56,12 @@ void FieldRun::evaluate(const PlacedLattice& lattice, const LatticeBlock& block,
       timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(lattice, block, samples_, done); });
   look_for_inside();
   look_for_largest_bound();
-  draw_.offer(lattice, block, samples_.numbers());
+  if (uses_blocks()) {
+    const SignedBlocks signed_blocks = blocks();
+    draw_.offer(lattice, block, {}, &signed_blocks);
+  } else {
+    draw_.offer(lattice, block, samples_.numbers());
+  }
 }
 
 void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done) {

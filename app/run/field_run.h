@@ -31,6 +31,11 @@ class FieldRun {
   // Builds the search structures of points.
   void prepare_points();
 
+  // Lattices along the axes have blocks() in place of values(). Precondition: may_use_blocks().
+  void use_blocks() { samples_.use_blocks(); }
+  [[nodiscard]] bool uses_blocks() { return samples_.distance_blocks() != nullptr; }
+  [[nodiscard]] SignedBlocks blocks() { return {*samples_.distance_blocks(), samples_.sides()}; }
+
   // Evaluates a block or some finite points: values() are theirs then. Those that verification wants are kept.
   void evaluate(const PlacedLattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
   void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);

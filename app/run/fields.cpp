@@ -83,6 +83,10 @@ std::vector<FieldDescription> describe_fields(const FieldOptions& options, doubl
   return descriptions;
 }
 
+bool may_use_blocks(const FieldOptions& options) {
+  return options.fields == std::vector{Field::kDistance} && !options.diagnostics;
+}
+
 FieldSamples::FieldSamples(const FieldOptions& options) : options_(options) {
   if (options.diagnostics) diagnostics_.emplace();
 }
@@ -123,7 +127,7 @@ void FieldSamples::resize(std::size_t count, From from) {
   winding_numbers_.resize(from == From::kWindingNumbers ? count : 0);
   if (has_sides(options_)) sides_.resize(count);
   if (options_.has(Field::kDensity)) density_.resize(count);
-  if (options_.has(Field::kDistance)) distances_.resize(count);
+  if (options_.has(Field::kDistance) && !uses_blocks_) distances_.resize(count);
   if (options_.has(Field::kSolid)) solid_distances_.resize(count);
   if (options_.has(Field::kGradient)) gradients_.resize(count);
   if (options_.has(Field::kLabel)) labels_.resize(count);

@@ -9,6 +9,7 @@
 
 #include "app/options/field_options.h"
 #include "core/data/diagnostics.h"
+#include "core/data/distance_blocks.h"
 #include "core/data/placed_lattice.h"
 #include "io/fields/field_writer.h"
 
@@ -17,6 +18,9 @@ namespace raycone {
 // What is written of each sample, in this order: the fields, then crossings, degenerate, on_surface and error_bound
 // where diagnostics are wanted. `band_width`: where distances are cut off, in world units.
 [[nodiscard]] std::vector<FieldDescription> describe_fields(const FieldOptions& options, double band_width);
+
+// Whether samples of a lattice may have distances in blocks: where nothing is asked for but these.
+[[nodiscard]] bool may_use_blocks(const FieldOptions& options);
 
 // Numbers of some samples; those of fields that are not wanted are missing.
 struct SampleNumbers {
@@ -38,6 +42,9 @@ class FieldSamples {
 
   [[nodiscard]] static std::size_t bytes_per_sample(const FieldOptions& options);
 
+  // From now on, there are distance_blocks() in place of distances(). Precondition: may_use_blocks().
+  void use_blocks() { uses_blocks_ = true; }
+
   // What derive() begins with.
   enum class From { kWindingNumbers, kSides };
 
@@ -50,6 +57,8 @@ class FieldSamples {
   [[nodiscard]] std::span<std::uint8_t> sides() { return sides_; }
   // Unsigned until derive(). Empty where they are not wanted.
   [[nodiscard]] std::span<double> distances() { return distances_; }
+  // Null where distances() take their place. Unsigned, also after derive().
+  [[nodiscard]] DistanceBlocks* distance_blocks() { return uses_blocks_ ? &blocks_ : nullptr; }
   // Those to the closed surface, likewise.
   [[nodiscard]] std::span<double> solid_distances() { return solid_distances_; }
   // Empty where they are not wanted.
@@ -88,6 +97,8 @@ class FieldSamples {
   void find_fields();
 
   FieldOptions options_;
+  bool uses_blocks_ = false;
+  DistanceBlocks blocks_;
   std::vector<double> winding_numbers_;
   std::vector<std::uint8_t> sides_;
   std::vector<double> density_;

@@ -114,6 +114,12 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
 
 SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
 
+// A wider band is everywhere.
+bool takes_blocks(const LatticeCommand& command, const LatticeWriter& writer, const PlacedLattice& lattice) {
+  const auto longest = static_cast<double>(std::ranges::max(lattice.grid.counts));
+  return writer.takes_blocks() && may_use_blocks(command.field) && lattice.along_axes() && command.field.band < longest;
+}
+
 // Refuses lattices that cannot fit, before any work on them.
 std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRun& run) {
   const RunReport& report = run.report;
@@ -126,7 +132,9 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);
   const LatticeBlock smallest = Slabs(lattice.grid, *writer, 1).first();
-  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, slab_kind(report)), limits.memory());
+  SlabKind kind = slab_kind(report);
+  kind.blocks = takes_blocks(command, *writer, lattice);
+  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, kind), limits.memory());
   return writer;
 }
 
@@ -147,7 +155,8 @@ void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* l
     fields.evaluate(lattice, slab, done);
     if (labels) fields.take_labels(*labels, slab);
     if (observe) observe(lattice, slab, fields.shown());
-    timed(run.report.seconds.write, [&] { writer.write(slab, fields.values()); });
+    timed(run.report.seconds.write,
+          [&] { fields.uses_blocks() ? writer.write_blocks(fields.blocks()) : writer.write(slab, fields.values()); });
   }
 }
 
@@ -222,6 +231,7 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   if (as_points) fields.prepare_points();
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
   if (solid) fields.set_solid(solid_of(run, original, command.field.rule));
+  if (takes_blocks(command, *writer, *report.lattice)) fields.use_blocks();
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
                    run);
   if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));

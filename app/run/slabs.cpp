@@ -52,8 +52,9 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
 double bytes_per_sample(const FieldOptions& options, SlabKind kind) {
   const bool caps = kind.open && (options.rule_only() || options.tolerance > 0.0);
   const double of_caps = caps ? sizeof(double) : 0.0;  // their crossings
-  return static_cast<double>(FieldSamples::bytes_per_sample(options)) + LatticeSums::kBytesPerSample + of_caps +
-         (kind.turned ? sizeof(Vec3) : 0.0);
+  const double of_fields =
+      kind.blocks ? sizeof(std::uint8_t) : static_cast<double>(FieldSamples::bytes_per_sample(options));
+  return of_fields + LatticeSums::kBytesPerSample + of_caps + (kind.turned ? sizeof(Vec3) : 0.0);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ inline constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
 struct SlabKind {
   bool open = false;    // the mesh has boundary edges
   bool turned = false;  // the lattice is not along the axes: its numbers are sorted, or its samples' places kept
+  bool blocks = false;  // distances take room in the band alone, how much is not known
 };
 
 // Samples of slabs that take a third of `left` bytes, at most kSlabSamples.

@@ -285,7 +285,8 @@ void SampleDraw::keep(const DrawnSample& sample) {
   std::ranges::push_heap(samples_, by_rank);
 }
 
-void SampleDraw::offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers) {
+void SampleDraw::offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers,
+                       const SignedBlocks* distances) {
   if (count_ == 0) return;
   const auto layer = [&](std::size_t axis, std::int64_t index) {
     return static_cast<std::uint64_t>(index - lattice.grid.index_min[axis]);
@@ -299,7 +300,9 @@ void SampleDraw::offer(const PlacedLattice& lattice, const LatticeBlock& block, 
         const std::uint64_t number = (layer(2, k) * ny + layer(1, j)) * nx + layer(0, i);
         const std::uint64_t rank = rank_of(number);
         if (!takes(rank)) continue;
-        keep(drawn(number, rank, lattice.position(i, j, k), numbers, n));
+        DrawnSample sample = drawn(number, rank, lattice.position(i, j, k), numbers, n);
+        if (distances) sample.distance = distances->at({i, j, k});
+        keep(sample);
       }
     }
   }

@@ -42,7 +42,9 @@ class SampleDraw {
   // At most `count` of them; 0 draws none.
   explicit SampleDraw(std::uint64_t count) : count_(count) {}
 
-  void offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers);
+  // `distances`: in place of those of `numbers`.
+  void offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers,
+             const SignedBlocks* distances = nullptr);
   // The points behind those offered before.
   void offer(std::span<const Vec3> points, const SampleNumbers& numbers);
 

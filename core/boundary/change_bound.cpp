@@ -142,12 +142,17 @@ void ChangeBound::build(std::uint32_t begin, std::uint32_t end) {
 }
 
 ChangeBound::Bounds ChangeBound::in(const Box& box, double limit) const {
-  double sum = 0.0, second = 0.0;
+  double sum = 0.0, second = 0.0, third = 0.0;
   const auto add = [&](const Source& source, double square) {
-    const double cube = square * std::sqrt(square);
-    sum += source.length / square;
-    second += 2 * source.length / cube;
-    if (source.area > 0.0) sum += source.area / cube, second += 3 * source.area / (square * square);
+    const double distance = std::sqrt(square), of_length = source.length / square;
+    sum += of_length;
+    second += 2 * of_length / distance;
+    third += 6 * of_length / square;
+    if (source.area == 0.0) return;
+    const double of_area = source.area / (square * distance);
+    sum += of_area;
+    second += 3 * of_area / distance;
+    third += 12 * of_area / square;
   };
   for (std::size_t n = 0; n < clusters_.size() && sum <= limit;) {
     const Cluster& cluster = clusters_[n];
@@ -162,8 +167,8 @@ ChangeBound::Bounds ChangeBound::in(const Box& box, double limit) const {
     }
     ++n;  // of a leaf that is `next`
   }
-  if (!(sum <= limit)) return {kInfinity, kInfinity};
-  return {sum * (1 + kBoundError), second * (1 + kBoundError)};
+  if (!(sum <= limit)) return {kInfinity, kInfinity, kInfinity};
+  return {sum * (1 + kBoundError), second * (1 + kBoundError), third * (1 + kBoundError)};
 }
 
 }  // namespace raycone

@@ -15,7 +15,8 @@ namespace raycone {
 // its loops do. By the law of Biot and Savart a piece of an edge, of length L, adds at most L / (4 pi d^2) to the
 // length of the gradient at a distance d. A loop with caps of area A adds at most the integral of the gradients of
 // dipoles, 2 A / (4 pi d^3), d being the distance from the caps: less, if it is narrow. Second derivatives, along any
-// direction, are at most 2 L / (4 pi d^3) and 6 A / (4 pi d^4). A tree gathers all. Thread-safe.
+// direction, are at most 2 L / (4 pi d^3) and 6 A / (4 pi d^4), third ones 6 L / (4 pi d^4) and 24 A / (4 pi d^5). A
+// tree gathers all. Thread-safe.
 class ChangeBound {
  public:
   explicit ChangeBound(const Caps& caps);
@@ -23,6 +24,7 @@ class ChangeBound {
   struct Bounds {
     double gradient;  // its length is at most this, turns per unit
     double second;    // and second derivatives this, turns per square unit
+    double third;     // and third ones
   };
   // In the closed box. Infinite where the box comes too close, or where that of the gradient exceeds `limit`, beyond
   // which they are of no use.

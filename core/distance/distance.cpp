@@ -11,6 +11,7 @@
 
 #include "core/crossings/check_counts.h"
 #include "core/crossings/lattice_rows.h"
+#include "core/data/distance_blocks.h"
 #include "core/distance/distance_band.h"
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"
@@ -38,6 +39,26 @@ double length_without_overflow(const Vec3& p) {
 
 using LatticeIndex = std::array<std::int64_t, 3>;
 
+constexpr std::int64_t kSide = DistanceBlocks::kSide;
+static_assert(kSide == static_cast<std::int64_t>(kBlockSide));
+
+// `box`: of distances.samples(); `numbers` by index_in_block() from its first sample on.
+void take_block(const SampleBox& box, std::span<const double> numbers, DistanceBlocks& distances) {
+  LatticeIndex first;
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] = distances.samples().first[a] + static_cast<std::int64_t>(box.begin[a]);
+  }
+  const std::span<double> taken = distances.add(
+      {DistanceBlocks::block_of(first[0]), DistanceBlocks::block_of(first[1]), DistanceBlocks::block_of(first[2])});
+  for (std::size_t k = 0; k < box.side(2); ++k) {
+    for (std::size_t j = 0; j < box.side(1); ++j) {
+      const std::size_t to = DistanceBlocks::index_in_block(
+          {first[0], first[1] + static_cast<std::int64_t>(j), first[2] + static_cast<std::int64_t>(k)});
+      std::ranges::copy(numbers.subspan(index_in_block({0, j, k}), box.side(0)), taken.subspan(to).begin());
+    }
+  }
+}
+
 Vec3 position(const Lattice& lattice, const LatticeIndex& index) {
   return {lattice.coordinate(0, index[0]), lattice.coordinate(1, index[1]), lattice.coordinate(2, index[2])};
 }
@@ -47,6 +68,12 @@ bool holds(const LatticeBlock& block, const LatticeIndex& index) {
     if (index[a] < block.first[a] || index[a] >= block.first[a] + block.counts[a]) return false;
   }
   return true;
+}
+
+// Where its value is stored.
+std::size_t index_in(const LatticeBlock& block, const LatticeIndex& index) {
+  const auto behind = [&](std::size_t axis) { return index[axis] - block.first[axis]; };
+  return static_cast<std::size_t>((behind(2) * block.counts[1] + behind(1)) * block.counts[0] + behind(0));
 }
 
 // In the order in which values are stored.
@@ -111,6 +138,26 @@ struct DistanceEvaluator::Implementation {
     fill_band(nearest(), rows, unit_band, {finish, band}, distances);
   }
 
+  // The same in blocks that are reset.
+  void evaluate_near(const Lattice& lattice, DistanceBlocks& distances) const {
+    const LatticeBlock& samples = distances.samples();
+    const LatticeRows rows = rows_in_scale(lattice, samples, to_unit);
+    const double band = distances.beyond();
+    BandVisitor visitor;
+    visitor.beyond = [](const SampleBox&) {};
+    visitor.block = [&](const SampleBox& box, std::span<double> squares) {
+      bool any = false;
+      for (double& number : squares) {
+        number = std::min(to_world(std::sqrt(number)), band);
+        any |= number < band;
+      }
+      if (any) take_block(box, squares, distances);
+    };
+    BlockPhase phase;
+    for (std::size_t a = 0; a < 3; ++a) phase[a] = static_cast<std::size_t>(samples.first[a] & (kSide - 1));
+    visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, visitor);
+  }
+
   double far_beyond = kFar;  // in units; none is near a mesh that is the origin
 
   // The largest coordinate is brought into [1/2, 1): nothing overflows, and what gets lost at the other end is less
@@ -155,6 +202,29 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
   for_each_sample(block, [&](const LatticeIndex& sample) {
     *distance++ =
         holds(near, sample) ? *near_distance++ : std::min(length_without_overflow(position(lattice, sample)), band);
+  });
+}
+
+void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, double band,
+                                 DistanceBlocks& distances) const {
+  check_counts(block);
+  const DefaultFloatingPoint guard;
+  distances.reset(block, std::min(band, kLargest));
+  if (implementation_->mesh.triangles.empty() || block.size() == 0) return;
+  if (implementation_->near_part(lattice, block).counts == block.counts) {
+    return implementation_->evaluate_near(lattice, distances);
+  }
+  // Rare, as above.
+  std::vector<double> numbers(static_cast<std::size_t>(block.size()));
+  evaluate(lattice, block, band, numbers);
+  for_each_sample(distances.blocks(), [&](const LatticeIndex& place) {
+    const LatticeBlock samples = distances.samples_of(place);
+    std::array<double, DistanceBlocks::kSamples> of_block;
+    of_block.fill(distances.beyond());
+    for_each_sample(samples, [&](const LatticeIndex& sample) {
+      of_block[DistanceBlocks::index_in_block(sample)] = numbers[index_in(block, sample)];
+    });
+    if (std::ranges::min(of_block) < distances.beyond()) std::ranges::copy(of_block, distances.add(place).begin());
   });
 }
 

@@ -11,6 +11,8 @@
 
 namespace raycone {
 
+class DistanceBlocks;  // core/data/distance_blocks.h
+
 class DistanceEvaluator {
  public:
   // Precondition: the vertices that triangles use are finite. A mesh without triangles is infinitely far away. Throws
@@ -25,6 +27,9 @@ class DistanceEvaluator {
   // allows; distances depend neither on their number nor on the block's extent. Const calls may run concurrently.
   // Throws std::length_error for more than kMaxBlockSide samples along an axis.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
+
+  // The same of the samples in the band, in blocks; memory and time are in proportion to their number.
+  void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, DistanceBlocks& distances) const;
 
   // Builds the search tree. Without this call, the first evaluation does.
   void prepare_points() const;

@@ -18,20 +18,32 @@ constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
-std::size_t longest_axis(const SampleBox& block) {
-  const std::size_t xy = block.side(0) >= block.side(1) ? 0 : 1;
-  return block.side(xy) >= block.side(2) ? xy : 2;
-}
+// Where blocks begin along an axis, behind the first one.
+class BlockEnds {
+ public:
+  explicit BlockEnds(std::size_t phase) : phase_(phase) {}
+  // Blocks that samples [begin, end) are in.
+  [[nodiscard]] std::size_t count(std::size_t begin, std::size_t end) const {
+    return (end - 1 + phase_) / kBlockSide - (begin + phase_) / kBlockSide + 1;
+  }
+  // The first sample of the block that is so many behind that of `sample`, at least one.
+  [[nodiscard]] std::size_t behind(std::size_t sample, std::size_t blocks) const {
+    return ((sample + phase_) / kBlockSide + blocks) * kBlockSide - phase_;
+  }
+
+ private:
+  std::size_t phase_;
+};
 
 class Descent {
  public:
-  Descent(const DistanceTree& tree, const LatticeRows& rows, double band, const BandNumbers& which,
-          std::span<double> numbers)
+  Descent(const DistanceTree& tree, const LatticeRows& rows, double band, const BlockPhase& phase,
+          const BandVisitor& visitor)
       : tree_(tree),
         rows_(rows),
         band_(band),
-        which_(which),
-        numbers_(numbers),
+        ends_{BlockEnds(phase[0]), BlockEnds(phase[1]), BlockEnds(phase[2])},
+        visitor_(visitor),
         fill_block_(block_kernel(tree.simd())) {}
 
   // `distance`: of `from`, or infinity.
@@ -42,17 +54,17 @@ class Descent {
     const double radius = std::max(length(center - box.lower), length(box.upper - center));
     const double reach = std::min(band_ + radius, distance + length(center - from)) * kSlack;
     const double square = tree_.squared_distance(center, reach * reach);
-    if (square == kNowhere) return fill_beyond(block);
+    if (square == kNowhere) return visitor_.beyond(block);
     const double here = std::sqrt(square);
     const std::size_t axis = longest_axis(block);
-    if (block.side(axis) <= kBlockSide) {
+    const std::size_t blocks = ends_[axis].count(block.begin[axis], block.end[axis]);
+    if (blocks == 1) {
       const double block_reach = std::min(band_, here + radius) * kSlack;
       tree_.find_packs(box, beyond_error(block_reach * block_reach), scratch_.packs);
       fill_block_({tree_, rows_, block, block_reach, scratch_.packs}, scratch_);
-      return take_numbers(block);
+      return visitor_.block(block, scratch_.squares);
     }
-    const std::size_t blocks = (block.side(axis) + kBlockSide - 1) / kBlockSide;
-    const std::size_t middle = block.begin[axis] + (blocks + 1) / 2 * kBlockSide;
+    const std::size_t middle = ends_[axis].behind(block.begin[axis], (blocks + 1) / 2);
     for (const bool upper : {false, true}) {
       SampleBox half = block;
       (upper ? half.begin : half.end)[axis] = middle;
@@ -63,49 +75,61 @@ class Descent {
  private:
   static constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; the tree adds those of distances
 
-  // visit(j, k, the numbers of the block's samples) for each of its rows.
-  template <class Visit>
-  void for_each_row(const SampleBox& block, const Visit& visit) const {
-    for (std::size_t k = block.begin[2]; k < block.end[2]; ++k) {
-      for (std::size_t j = block.begin[1]; j < block.end[1]; ++j) {
-        const std::size_t row = (k * rows_.ys.size() + j) * rows_.xs.size();
-        visit(j, k, numbers_.subspan(row + block.begin[0], block.side(0)));
-      }
-    }
-  }
-  void fill_beyond(const SampleBox& block) const {
-    for_each_row(block,
-                 [this](std::size_t, std::size_t, std::span<double> row) { std::ranges::fill(row, which_.beyond); });
-  }
-  void take_numbers(const SampleBox& block) {
-    which_.finish(scratch_.squares);
-    for_each_row(block, [&](std::size_t j, std::size_t k, std::span<double> row) {
-      const std::size_t first = index_in_block({0, j - block.begin[1], k - block.begin[2]});
-      std::copy_n(scratch_.squares.begin() + static_cast<std::ptrdiff_t>(first), row.size(), row.begin());
-    });
+  // In blocks.
+  [[nodiscard]] std::size_t longest_axis(const SampleBox& box) const {
+    const auto blocks = [&](std::size_t axis) { return ends_[axis].count(box.begin[axis], box.end[axis]); };
+    const std::size_t xy = blocks(0) >= blocks(1) ? 0 : 1;
+    return blocks(xy) >= blocks(2) ? xy : 2;
   }
 
   const DistanceTree& tree_;
   const LatticeRows& rows_;
   double band_;
-  const BandNumbers& which_;
-  std::span<double> numbers_;
+  std::array<BlockEnds, 3> ends_;
+  const BandVisitor& visitor_;
   BlockKernel fill_block_;
   BlockScratch scratch_;
 };
 
 }  // namespace
 
-void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BandNumbers& which,
-               std::span<double> numbers) {
-  const std::size_t strips = (rows.ys.size() + kBlockSide - 1) / kBlockSide;
-  parallel_for(strips, 1, [&](std::size_t first, std::size_t last) {
-    Descent descent(tree, rows, band, which, numbers);
+void visit_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BlockPhase& phase,
+                const BandVisitor& visitor) {
+  const BlockEnds ends(phase[1]);
+  const std::size_t count = rows.ys.size();
+  parallel_for(ends.count(0, count), 1, [&](std::size_t first, std::size_t last) {
+    Descent descent(tree, rows, band, phase, visitor);
     for (std::size_t strip = first; strip < last; ++strip) {
-      const std::size_t end = std::min((strip + 1) * kBlockSide, rows.ys.size());
-      descent.fill({{0, strip * kBlockSide, 0}, {rows.xs.size(), end, rows.zs.size()}}, {}, kNowhere);
+      const std::size_t begin = strip == 0 ? 0 : ends.behind(0, strip),
+                        end = std::min(ends.behind(0, strip + 1), count);
+      descent.fill({{0, begin, 0}, {rows.xs.size(), end, rows.zs.size()}}, {}, kNowhere);
     }
   });
+}
+
+void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BandNumbers& which,
+               std::span<double> numbers) {
+  // visit(j, k, the numbers of the samples) for each row of a box.
+  const auto for_each_row = [&](const SampleBox& box, const auto& visit) {
+    for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
+      for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
+        const std::size_t row = (k * rows.ys.size() + j) * rows.xs.size();
+        visit(j, k, numbers.subspan(row + box.begin[0], box.side(0)));
+      }
+    }
+  };
+  BandVisitor visitor;
+  visitor.beyond = [&](const SampleBox& box) {
+    for_each_row(box, [&](std::size_t, std::size_t, std::span<double> row) { std::ranges::fill(row, which.beyond); });
+  };
+  visitor.block = [&](const SampleBox& box, std::span<double> squares) {
+    which.finish(squares);
+    for_each_row(box, [&](std::size_t j, std::size_t k, std::span<double> row) {
+      const std::size_t first = index_in_block({0, j - box.begin[1], k - box.begin[2]});
+      std::copy_n(squares.begin() + static_cast<std::ptrdiff_t>(first), row.size(), row.begin());
+    });
+  };
+  visit_band(tree, rows, band, {}, visitor);
 }
 
 }  // namespace raycone

@@ -1,14 +1,36 @@
 // Distances from the samples of a lattice to the nearest triangle, as far as a band around the triangles.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <span>
 
 #include "core/crossings/lattice_rows.h"
+#include "core/distance/block_kernel.h"
 #include "core/distance/distance_tree.h"
 
 namespace raycone {
+
+// Blocks of samples begin where a multiple of 8 of these is: of each axis, how far the first sample is behind one.
+using BlockPhase = std::array<std::size_t, 3>;
+
+// Who wants to know of the band. Called from all threads, but of a strip of blocks, which have the same place along y,
+// from one.
+struct BandVisitor {
+  // Samples that are surely beyond the band.
+  std::function<void(const SampleBox& samples)> beyond;
+  // Samples of one block, and room for what may be made of them: index_in_block() of their numbers in the block is the
+  // place of the square of the distance to the nearest triangle (core/distance/triangle_distance.h) where that is not
+  // above the band's, else of a larger number or infinity.
+  std::function<void(const SampleBox& samples, std::span<double> squares)> block;
+};
+
+// Visits all samples (xs[i], ys[j], zs[k]) of `rows` that may be within `band`. Coordinates of samples are below 2^400
+// in magnitude. Threaded over strips of blocks. Numbers do not depend on threads.
+void visit_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BlockPhase& phase,
+                const BandVisitor& visitor);
 
 // What samples get.
 struct BandNumbers {
@@ -16,10 +38,8 @@ struct BandNumbers {
   double beyond;                                          // the number of samples that are surely beyond the band
 };
 
-// numbers[i + nx (j + ny k)], for sample (xs[i], ys[j], zs[k]) of `rows`, becomes what `which` makes of the square of
-// the distance to the nearest triangle (core/distance/triangle_distance.h) where that is not above `band`; elsewhere
-// what it makes of a larger number or infinity, or which.beyond. Coordinates of samples are below 2^400 in magnitude.
-// Threaded over strips of the lattice. Numbers do not depend on threads.
+// numbers[i + nx (j + ny k)], for sample (xs[i], ys[j], zs[k]), becomes what `which` makes of its square, or
+// which.beyond.
 void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BandNumbers& which,
                std::span<double> numbers);
 

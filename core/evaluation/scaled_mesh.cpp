@@ -86,7 +86,7 @@ const SlabOrder& ScaledMesh::slab_order(int axis) const {
 }
 
 const Changes& ScaledMesh::changes() const {
-  constexpr double kNarrow = 0x1p-5;  // of the mesh's size: some voxels
+  constexpr double kNarrow = 0x1p-7;  // of the mesh's size: a voxel or some
   std::call_once(changes_built_, [this] {
     const Box box = bounding_box(mesh_);
     const Vec3 size = box.upper - box.lower;

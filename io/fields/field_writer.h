@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/data/distance_blocks.h"
 #include "core/data/lattice.h"
 #include "core/data/placed_lattice.h"
 #include "core/data/vec3.h"
@@ -115,6 +116,11 @@ class LatticeWriter {
   [[nodiscard]] virtual std::int64_t slab_alignment() const = 0;
   // Of each field of the description, in its order, block.size() numbers: x fastest, then y, then z.
   virtual void write(const LatticeBlock& block, std::span<const FieldValues> fields) = 0;
+  // Whether it takes distances, where they are the only field, by write_blocks() as well.
+  [[nodiscard]] virtual bool takes_blocks() const { return false; }
+  // Writes what write() would for the same numbers. The samples are a slab that ends where a block does, or the
+  // lattice.
+  virtual void write_blocks(const SignedBlocks& /*blocks*/) {}
   // Completes and commits the file. Throws OutputError.
   virtual void finish(const FieldTotals& totals) = 0;
 };

@@ -78,4 +78,9 @@ struct StoreDistance {
   Value background;
 };
 
+template <typename Store>
+inline constexpr bool kIsDistance = false;
+template <typename Value>
+inline constexpr bool kIsDistance<StoreDistance<Value>> = true;
+
 }  // namespace raycone::vdb

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -142,6 +143,25 @@ std::unique_ptr<Leaf> make_leaf(const openvdb::Coord& origin, const Stored* valu
   return leaf;
 }
 
+// `samples`: eight along each axis.
+bool is_on_one_side(const SignedBlocks& blocks, const LatticeBlock& samples) {
+  const auto sides = [&](std::int64_t j, std::int64_t k) {
+    const std::span<const std::uint8_t> row =
+        blocks.inside_from({samples.first[0], samples.first[1] + j, samples.first[2] + k});
+    std::uint64_t eight = 0;
+    static_assert(sizeof eight == kLeafSize);
+    std::memcpy(&eight, row.data(), sizeof eight);
+    return eight;
+  };
+  const std::uint64_t first = sides(0, 0);
+  if (first != 0 && first != 0x0101010101010101) return false;
+  std::uint64_t differences = 0;
+  for (std::int64_t k = 0; k < kLeafSize; ++k) {
+    for (std::int64_t j = 0; j < kLeafSize; ++j) differences |= sides(j, k) ^ first;
+  }
+  return differences == 0;
+}
+
 // Adds the leaves of a layer to `tree`, those of one value as tiles. `leaf_z`: the layer's leaf coordinate along z.
 template <typename Tree, typename Stored>
 void add_layer(Tree& tree, const LeafLayer<Stored>& layer, std::int64_t leaf_z, const Activity<Stored>& is_active) {
@@ -167,6 +187,73 @@ void add_layer(Tree& tree, const LeafLayer<Stored>& layer, std::int64_t leaf_z, 
   }
 }
 
+// The stored values of a block, in OpenVDB's order; what is beside the lattice is background. Returns whether all are
+// known to be the first one, the only one that is set then.
+template <typename Store, typename Stored>
+bool store_block(const SignedBlocks& blocks, const std::array<std::int64_t, 3>& place, const Store& store,
+                 Stored background, Stored* values) {
+  const LatticeBlock samples = blocks.distances.samples_of(place);
+  const std::span<const double> numbers = blocks.distances.numbers(place);
+  if (numbers.empty() && samples.size() == static_cast<std::int64_t>(kLeafVoxels) && is_on_one_side(blocks, samples)) {
+    const double beyond = blocks.distances.beyond();
+    values[0] = store(blocks.inside_from(samples.first)[0] != 0 ? -beyond : beyond);
+    return true;
+  }
+  if (samples.size() != static_cast<std::int64_t>(kLeafVoxels)) std::fill_n(values, kLeafVoxels, background);
+  for (std::int64_t k = samples.first[2]; k < samples.first[2] + samples.counts[2]; ++k) {
+    for (std::int64_t j = samples.first[1]; j < samples.first[1] + samples.counts[1]; ++j) {
+      const std::span<const std::uint8_t> inside = blocks.inside_from({samples.first[0], j, k});
+      const std::size_t from = DistanceBlocks::index_in_block({samples.first[0], j, k});
+      Stored* const column = values + (samples.first[0] & (kLeafSize - 1)) * kLeafSize * kLeafSize +
+                             (j & (kLeafSize - 1)) * kLeafSize + (k & (kLeafSize - 1));
+      for (std::size_t i = 0; i < static_cast<std::size_t>(samples.counts[0]); ++i) {
+        const double number = numbers.empty() ? blocks.distances.beyond() : numbers[from + i];
+        column[i * kLeafSize * kLeafSize] = store(inside[i] != 0 ? -number : number);
+      }
+    }
+  }
+  return false;
+}
+
+// Adds the leaves of blocks to `tree`, those of one value as tiles.
+template <typename Tree, typename Store, typename Stored>
+void add_blocks(Tree& tree, const SignedBlocks& blocks, const Store& store, const Activity<Stored>& is_active) {
+  using Leaf = typename Tree::LeafNodeType;
+  struct Made {
+    std::unique_ptr<Leaf> leaf;
+    Stored value;  // where there is no leaf
+  };
+  const LatticeBlock places = blocks.distances.blocks();
+  const auto place_of = [&](std::size_t n) {
+    const auto at = static_cast<std::int64_t>(n);
+    return std::array{places.first[0] + at % places.counts[0],
+                      places.first[1] + at / places.counts[0] % places.counts[1],
+                      places.first[2] + at / places.counts[0] / places.counts[1]};
+  };
+  const auto origin = [](const std::array<std::int64_t, 3>& place) {
+    return to_coord(place[0] * kLeafSize, place[1] * kLeafSize, place[2] * kLeafSize);
+  };
+  std::vector<Made> made(static_cast<std::size_t>(places.size()));
+  parallel_for(made.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::array<Stored, kLeafVoxels> values;
+    for (std::size_t n = begin; n < end; ++n) {
+      const bool is_one = store_block(blocks, place_of(n), store, is_active.background, values.data()) ||
+                          std::all_of(values.begin(), values.end(), [&](Stored v) { return v == values[0]; });
+      made[n].value = values[0];
+      if (!is_one) made[n].leaf = make_leaf<Leaf>(origin(place_of(n)), values.data(), is_active);
+    }
+  });
+  openvdb::tree::ValueAccessor<Tree> accessor(tree);
+  for (std::size_t n = 0; n < made.size(); ++n) {
+    if (made[n].leaf) {
+      accessor.addLeaf(made[n].leaf.release());
+    } else if (made[n].value != is_active.background) {
+      accessor.addTile(1, origin(place_of(n)), static_cast<typename Tree::ValueType>(made[n].value),
+                       is_active(made[n].value));
+    }
+  }
+}
+
 // --- Grids in the making
 
 class GridBuilder {
@@ -174,6 +261,8 @@ class GridBuilder {
   virtual ~GridBuilder() = default;
   // Takes the next slab of the lattice.
   virtual void add(const LatticeBlock& slab, const FieldValues& values) = 0;
+  // The same of distances.
+  virtual void add(const SignedBlocks& blocks) = 0;
   // The complete grid.
   [[nodiscard]] virtual openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) = 0;
 };
@@ -209,6 +298,10 @@ class TypedGridBuilder final : public GridBuilder {
       }
       z = next;
     }
+  }
+
+  void add(const SignedBlocks& blocks) override {
+    if constexpr (vdb::kIsDistance<Store>) add_blocks(tree(), blocks, store_, is_active_);
   }
 
   openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) override {
@@ -335,6 +428,9 @@ class VdbWriter final : public LatticeWriter {
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
     for (std::size_t f = 0; f < fields.size(); ++f) builders_[f]->add(block, fields[f]);
   }
+
+  bool takes_blocks() const override { return true; }
+  void write_blocks(const SignedBlocks& blocks) override { builders_.front()->add(blocks); }
 
   void finish(const FieldTotals& totals) override {
     openvdb::GridCPtrVec grids;

@@ -63,6 +63,7 @@ TEST(SlabMemory, IsThatOfItsNumbers) {
   EXPECT_EQ(slab_memory(slab, options, {false}), 64e6 + 24e6 + 8e6);
   EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6 + 8e6 + 64e6);  // a rule has caps, always
   options.diagnostics = true;                                               // two 64-bit counts, a flag, a double
+  EXPECT_EQ(slab_memory(slab, options, {false, false, true}), 8e6 + 24e6) << "sides alone";
   EXPECT_EQ(slab_memory(slab, options, {true}), 64e6 + 24e6 + 8e6 + 8e6 * (8 + 8 + 1 + 8));
 }
 

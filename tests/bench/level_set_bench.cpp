@@ -102,10 +102,11 @@ void by_raycone(benchmark::State& state, const Workload& workload, const Lattice
   for (auto _ : state) {
     const FieldEvaluator evaluator(workload.mesh, options, nullptr, static_cast<double>(whole(lattice).size()));
     FieldSamples samples(options);
+    samples.use_blocks();  // as for VDB
     for (LatticeBlock slab = slab_from(lattice, 2, 8, lattice.index_min[2]); slab.size() > 0;
          slab = slab_from(lattice, 2, 8, slab.first[2] + slab.counts[2])) {
       evaluator.evaluate(placed, slab, samples, nullptr);
-      benchmark::DoNotOptimize(samples.distances().data());
+      benchmark::DoNotOptimize(samples.distance_blocks());
     }
     state.counters["edges"] = static_cast<double>(evaluator.winding_number().exterior_edges());
   }

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "core/data/distance_blocks.h"
 #include "core/exact/direct_distance.h"
 #include "tests/support/shapes.h"
 
@@ -244,6 +245,50 @@ TEST(Distance, DoesNotDependOnTheBlock) {
     const std::vector<double> all = at_points(distance, samples_of(lattice, layer));
     for (std::size_t n = 0; n < alone.size(); ++n) ASSERT_EQ(alone[n], std::min(all[n], band));
   }
+}
+
+// Numbers of all samples, and of no block that is beyond the band.
+void expect_alike(const DistanceEvaluator& distance, const Lattice& lattice, const LatticeBlock& block, double band) {
+  DistanceBlocks blocks;
+  blocks.reset({{7, 7, 7}, {30, 1, 30}}, 0.0);  // of another one, before
+  std::ranges::fill(blocks.add({1, 0, 1}), 0.0);
+  distance.evaluate(lattice, block, band, blocks);
+  const std::vector<double> dense = band_of(distance, lattice, block, band);
+  std::size_t n = 0;
+  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
+    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
+      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) {
+        ASSERT_EQ(blocks.at({i, j, k}), dense[n++]) << i << ' ' << j << ' ' << k;
+      }
+    }
+  }
+  for (const Vec3& p : samples_of({{0, 0, 0}, {1, 1, 1}}, blocks.blocks())) {
+    const std::array place{std::int64_t(p.x), std::int64_t(p.y), std::int64_t(p.z)};
+    const std::span<const double> numbers = blocks.numbers(place);
+    EXPECT_TRUE(numbers.empty() || std::ranges::min(numbers) < band);
+  }
+}
+
+TEST(Distance, InBlocksIsThatOfTheSamples) {
+  const DistanceEvaluator distance(test::assorted_triangles());
+  for (const std::int64_t first : {-13, -8, 0, 5}) {
+    const Lattice lattice{{-0.1, -0.2, 0.05}, {0.04, 0.04, 0.04}, {first, first + 3, first - 1}, {41, 35, 38}};
+    for (const double band : {0.01, 0.12, 0.5, 100.0}) {
+      expect_alike(distance, lattice, whole(lattice), band);
+      expect_alike(distance, lattice, {{first + 2, first + 9, first + 20}, {17, 1, 3}}, band);
+    }
+  }
+}
+
+TEST(Distance, InBlocksOfRareLattices) {
+  const DistanceEvaluator distance(test::assorted_triangles());
+  const Lattice huge{{-1e17, 0, 0}, {5e15, 5e15, 5e15}, {0, 0, 0}, {41, 9, 3}};  // some samples are far
+  for (const double band : {1.0, 2e16, 1e300}) expect_alike(distance, huge, whole(huge), band);
+  const Lattice one{{0.2, 0.3, 0.4}, {1, 1, 1}};
+  expect_alike(distance, one, whole(one), 3.0);
+  expect_alike(DistanceEvaluator(TriangleMesh{}), one, whole(one), 3.0);
+  const DistanceEvaluator origin({{{0, 0, 0}}, {{0, 0, 0}}});
+  expect_alike(origin, unit_lattice(10), whole(unit_lattice(10)), 0.3);
 }
 
 TEST(Distance, ScalesWithTheMesh) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <vector>
 
 #include "core/boundary/caps.h"
@@ -95,6 +96,23 @@ TEST(RuleBlocks, HoldOnLatticesThatAreFullOfTies) {
     cells.triangles.resize(cells.triangles.size() - 9);
     EXPECT_GE(certified(weld(cells, {}), integers(-4, 41, 0.125)), 0);
     EXPECT_GE(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), 0);
+  }
+}
+
+// A funnel, open at both ends: rays from the wide opening's caps pass through the narrow one, or do not.
+TEST(RuleBlocks, HoldWhereTheConesOfOneOpeningMeetTheCapsOfAnother) {
+  constexpr std::uint32_t kCorners = 24;
+  TriangleMesh funnel;
+  for (std::uint32_t n = 0; n < kCorners; ++n) {
+    const double angle = 2 * std::numbers::pi * n / kCorners;
+    funnel.vertices.push_back({0.01, std::cos(angle), std::sin(angle)});
+    funnel.vertices.push_back({2, 0.4 * std::cos(angle), 0.4 * std::sin(angle)});
+    const std::uint32_t a = 2 * n, b = 2 * ((n + 1) % kCorners);
+    funnel.triangles.push_back({a, b, a + 1});
+    funnel.triangles.push_back({b, b + 1, a + 1});
+  }
+  for (const TriangleMesh& mesh : {funnel, test::reversed(funnel)}) {
+    EXPECT_GT(certified(weld(mesh, {}), lattice_around(mesh, 60)), 7 * 60'000);
   }
 }
 
@@ -192,11 +210,12 @@ TEST(Caps, OfAStripTakeLittleMoreThanItsArea) {
 }
 
 // Between two places of a box the winding number changes by integers, and by what the bound says; in the middle it is
-// the mean, but for integers and what the bound of second derivatives says.
+// the mean, but for integers and what the bound of second derivatives says. At thirds, the third difference is what
+// that of third ones says.
 TEST(ChangeBound, HoldsBetweenAllPlaces) {
   test::Random random(6);
   int tried = 0;
-  double largest = 0.0, largest_bend = 0.0;  // part of the bound that was reached
+  double largest = 0.0, largest_bend = 0.0, largest_third = 0.0;  // part of the bound that was reached
   for (int i = 0; i < 40; ++i) {
     const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
     const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
@@ -212,6 +231,14 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
       EXPECT_LE(beside_integers(at_b - at_a), most);
       largest = std::max(largest, beside_integers(at_b - at_a) / most);
       ++tried;
+      const double step = std::sqrt(dot(b - a, b - a)) / 3, most_third = bounds.third * step * step * step;
+      if (most_third > 1e-6 && most_third < 0.5) {
+        const double at_thirds = test::direct_winding_number(mesh, (2.0 / 3) * a + (1.0 / 3) * b) -
+                                 test::direct_winding_number(mesh, (1.0 / 3) * a + (2.0 / 3) * b);
+        const double difference = beside_integers(at_b - at_a + 3 * at_thirds);
+        EXPECT_LE(difference, most_third);
+        largest_third = std::max(largest_third, difference / most_third);
+      }
       const double most_bend = bounds.second * dot(b - a, b - a) / 4;
       if (!(most_bend > 1e-6 && most_bend < 0.5)) continue;  // not rounding alone
       const double bend = beside_integers(at_a + at_b - 2 * test::direct_winding_number(mesh, 0.5 * a + 0.5 * b));
@@ -222,6 +249,7 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
   EXPECT_GT(tried, 200);
   EXPECT_GT(largest, 0.2) << "the bound is far off";
   EXPECT_GT(largest_bend, 0.1) << "that of second derivatives is";
+  EXPECT_GT(largest_third, 0.1) << "that of third derivatives is";
 }
 
 }  // namespace

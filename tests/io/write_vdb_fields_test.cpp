@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -91,6 +93,66 @@ TEST(WriteVdbFields, HoldsEveryFieldUnderItsName) {
     EXPECT_EQ(fog->value(at), static_cast<float>(density[n])) << at;
     return n++;
   });
+}
+
+// Distances of a lattice whose leaves are cut, in blocks where some are below `band`; a third of the blocks are inside,
+// a third at random.
+struct RandomDistances {
+  RandomDistances(const Lattice& lattice, std::uint32_t seed, double band) : random(seed) {
+    blocks.reset(whole(lattice), band);
+    const LatticeBlock places = blocks.blocks();
+    for (std::int64_t n = 0; n < places.size(); ++n) {
+      const std::array<std::int64_t, 3> place{places.first[0] + n % places.counts[0],
+                                              places.first[1] + n / places.counts[0] % places.counts[1],
+                                              places.first[2] + n / places.counts[0] / places.counts[1]};
+      side_of_block.push_back(static_cast<int>(random() % 3));
+      if (random() % 3 != 0) continue;
+      for (double& number : blocks.add(place)) number = std::min(band, 1.5 * band * uniform());
+    }
+    samples_of(lattice, [&](const VoxelIndex& at) {
+      const std::array<std::int64_t, 3> sample{at.x, at.y, at.z};
+      const auto behind = [&](std::size_t axis) { return (sample[axis] >> 3) - places.first[axis]; };
+      const std::int64_t block = (behind(2) * places.counts[1] + behind(1)) * places.counts[0] + behind(0);
+      const int side = side_of_block[static_cast<std::size_t>(block)];
+      inside.push_back(side == 2 ? random() % 2 : static_cast<std::uint8_t>(side));
+      numbers.push_back(inside.back() != 0 ? -blocks.at(sample) : blocks.at(sample));
+      return 0;
+    });
+  }
+  double uniform() { return static_cast<double>(random()) * 0x1p-32; }
+
+  std::mt19937 random;
+  std::vector<int> side_of_block;
+  DistanceBlocks blocks;
+  std::vector<std::uint8_t> inside;
+  std::vector<double> numbers;
+};
+
+TEST(WriteVdbFields, BlocksOfDistancesMakeTheSameFile) {
+  const TemporaryDirectory directory;
+  std::uint32_t seed = 0;
+  for (const auto precision : {Precision::kHalf, Precision::kSingle, Precision::kDouble}) {
+    for (const Lattice& lattice : {Lattice{{0, 0, 0}, {0.1, 0.1, 0.1}, {-13, 3, -1}, {30, 41, 27}},
+                                   Lattice{{0, 0, 0}, {0.1, 0.1, 0.1}, {-8, 0, 8}, {24, 32, 16}},
+                                   Lattice{{0, 0, 0}, {0.1, 0.1, 0.1}, {5, 5, 5}, {1, 1, 1}}}) {
+      OutputDescription description = described({kDistance});
+      description.precision = precision;
+      const RandomDistances distances(lattice, ++seed, kDistance.background);
+      for (const bool by_blocks : {false, true}) {
+        OutputFile output(directory / (by_blocks ? "blocks.vdb" : "numbers.vdb"));
+        const auto writer = make_lattice_writer(FieldFormat::kVdb, output, lattice, description);
+        const FieldValues numbers = std::span<const double>(distances.numbers);
+        EXPECT_TRUE(writer->takes_blocks());
+        if (by_blocks) {
+          writer->write_blocks({distances.blocks, distances.inside});
+        } else {
+          writer->write(whole(lattice), {&numbers, 1});
+        }
+        writer->finish({});
+      }
+      EXPECT_EQ(contents(directory / "blocks.vdb"), contents(directory / "numbers.vdb"));
+    }
+  }
 }
 
 // A rule may hold where the winding number is 0: what differs from the value far away is then outside.

@@ -141,19 +141,23 @@ class SurfaceMaker {
   // where a plane of the mesh is one of the lattice. `most` in margins.
   std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most, bool nodes) {
     constexpr double kNeedle = 16.0;
-    constexpr std::uint64_t kFewNodes = 64;
+    const std::uint64_t few_nodes = std::max<std::size_t>(64, surface.mesh.vertices.size() / 256);
     const Vec3& h = inside_.lattice().spacing;
     const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
+    PlaneMerger merger(surface, mesh_, inside_.lattice(), {most * unit, kNeedle * unit});
+    std::uint64_t faults_before = 0;
     for (int round = 0; round < kMergingRounds; ++round) {
-      MergedFaces merged = merge_planes(surface, mesh_, inside_.lattice(), kept, {most * unit, kNeedle * unit});
+      MergedFaces merged = merger.merge(kept);
       TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
       const SurfaceFaults faults = faults_of(compact, inside_);
       if (faults.none()) {
         return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       }
-      if (faults.nodes > kFewNodes && !nodes) return std::nullopt;
-      if (round > 0 && !is_right(surface, 0)) return std::nullopt;
+      if (faults.nodes > few_nodes && !nodes) return std::nullopt;
+      const std::uint64_t count = faults.nodes + faults.intersections.pairs;
+      if (round > 0 && count >= faults_before && !is_right(surface, 0)) return std::nullopt;
+      faults_before = count;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
       const NodeSet misplaced = misplaced_nodes(compact, inside_);

@@ -24,8 +24,8 @@ struct SharpenLimits {
 // mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
 // such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
 // stay in them and keep their fronts; what is left of strips vanishes between them. Nothing is done where less than
-// nine of ten faces are in planes. Whether faces intersect now, or nodes have changed sides, is not looked at. The same
-// for any number of threads. Needs DefaultFloatingPoint.
+// three of four faces are in planes. Whether faces intersect now, or nodes have changed sides, is not looked at. The
+// same for any number of threads. Needs DefaultFloatingPoint.
 class Sharpener {
  public:
   // Precondition: sources are triangles of `input`, or kHole. Both meshes must stay, but for what edits change.

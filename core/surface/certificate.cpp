@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -13,8 +14,10 @@
 #include "core/machine/threads.h"
 #include "core/mesh/edge_uses.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/triangle_runs.h"
 #include "core/mesh/vertex_faces.h"
 #include "core/mesh/weld.h"
+#include "core/surface/cell_set.h"
 
 namespace raycone {
 namespace {
@@ -76,36 +79,37 @@ std::uint64_t count_wrong(std::size_t count, const IsWrong& is_wrong) {
 
 // What there is around each vertex.
 struct Fans {
-  std::uint64_t wrong = 0;  // vertices whose faces are no single fan
-  std::vector<std::uint8_t>
-      graphs;  // of each vertex whether these are one, and surely meet in nothing but what they share
+  std::vector<std::uint8_t> wrong;   // whether its faces are no single fan
+  std::vector<std::uint8_t> graphs;  // whether they are one, and surely meet in nothing but what they share
+
+  [[nodiscard]] std::uint64_t count_of_wrong() const {
+    return static_cast<std::uint64_t>(std::ranges::count(wrong, 1));
+  }
 };
 
-Fans fans_of(const TriangleMesh& mesh) {
+// `whole`: of each vertex whether all of its faces are there; nothing is said of others.
+Fans fans_of(const TriangleMesh& mesh, const std::vector<std::uint8_t>* whole = nullptr) {
   const VertexFaces faces(mesh);
-  Fans fans{0, std::vector<std::uint8_t>(mesh.vertices.size(), 0)};
-  std::atomic<std::uint64_t> wrong = 0;
+  Fans fans{std::vector<std::uint8_t>(mesh.vertices.size(), 0), std::vector<std::uint8_t>(mesh.vertices.size(), 0)};
   parallel_for(mesh.vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<FanStep> steps;
-    std::uint64_t here = 0;
     for (auto vertex = static_cast<std::uint32_t>(begin); vertex < end; ++vertex) {
-      if (!is_fan(mesh, vertex, faces.of(vertex), steps)) {
-        ++here;
-      } else {
-        fans.graphs[vertex] = is_surely_graph(mesh.vertices, vertex, steps) ? 1 : 0;
-      }
+      if (whole && (*whole)[vertex] == 0) continue;
+      const bool fan = is_fan(mesh, vertex, faces.of(vertex), steps);
+      fans.wrong[vertex] = fan ? 0 : 1;
+      fans.graphs[vertex] = fan && is_surely_graph(mesh.vertices, vertex, steps) ? 1 : 0;
     }
-    wrong += here;
   });
-  fans.wrong = wrong;
   return fans;
 }
 
+bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
+  const Triangle& t = mesh.triangles[face];
+  return collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+}
+
 std::uint64_t degenerate_faces(const TriangleMesh& mesh) {
-  return count_wrong(mesh.triangles.size(), [&](std::uint32_t face) {
-    const Triangle& t = mesh.triangles[face];
-    return collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-  });
+  return count_wrong(mesh.triangles.size(), [&](std::uint32_t face) { return is_degenerate(mesh, face); });
 }
 
 // The same for equal positions.
@@ -136,6 +140,100 @@ std::uint64_t equal_vertices(const TriangleMesh& mesh) {
   return equal;
 }
 
+// Some faces of a mesh, and the vertices that they have.
+struct MeshPart {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> faces, vertices;  // their numbers in the whole
+  std::vector<std::uint8_t> whole;             // of each vertex, whether the part has all of its faces
+};
+
+// All changed faces, and those whose boxes may meet one's.
+std::vector<std::uint32_t> faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
+  CellSet cells(lattice);
+  for (const std::uint32_t face : change.faces) {
+    if (!is_gone(mesh.triangles[face])) cells.insert(box_of_triangle(mesh, face));
+  }
+  std::vector<std::uint8_t> is_near(mesh.triangles.size());
+  parallel_for(is_near.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (auto face = static_cast<std::uint32_t>(begin); face < end; ++face)
+      is_near[face] = !is_gone(mesh.triangles[face]) && cells.meets(box_of_triangle(mesh, face)) ? 1 : 0;
+  });
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t face = 0; face < is_near.size(); ++face) {
+    if (is_near[face] != 0) faces.push_back(face);
+  }
+  return faces;
+}
+
+// The boxes of all faces at a vertex of a changed face meet that one's.
+MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  MeshPart part;
+  part.faces = faces_near(mesh, change, lattice);
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone);
+  for (const std::uint32_t face : part.faces) {
+    Triangle t = mesh.triangles[face];
+    for (std::uint32_t& corner : t) {
+      if (number[corner] == kNone) {
+        number[corner] = static_cast<std::uint32_t>(part.vertices.size());
+        part.vertices.push_back(corner);
+        part.mesh.vertices.push_back(mesh.vertices[corner]);
+      }
+      corner = number[corner];
+    }
+    part.mesh.triangles.push_back(t);
+  }
+  part.whole.assign(part.vertices.size(), 0);
+  for (const std::uint32_t face : change.faces) {
+    if (is_gone(mesh.triangles[face])) continue;
+    for (const std::uint32_t corner : mesh.triangles[face]) part.whole[number[corner]] = 1;
+  }
+  return part;
+}
+
+// Marks those at the position of another one. Returns their number, without the first of each position.
+std::uint64_t mark_equal_vertices(const std::vector<Vec3>& vertices, std::vector<bool>& marked) {
+  std::vector<std::uint32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](std::uint32_t v) {
+    const Vec3& p = vertices[v];
+    return std::tuple(p.x, p.y, p.z);
+  });
+  std::uint64_t equal = 0;
+  for (std::size_t n = 1; n < order.size(); ++n) {
+    if (vertices[order[n]] != vertices[order[n - 1]]) continue;
+    marked[order[n - 1]] = marked[order[n]] = true;
+    ++equal;
+  }
+  return equal;
+}
+
+// What lies between two states of a closed mesh: the faces of the one, and those of the other turned around. It is
+// closed, too.
+TriangleMesh mesh_between(const TriangleMesh& mesh, const SurfaceEdit& change) {
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  TriangleMesh between;
+  std::vector<std::uint32_t> before(mesh.vertices.size(), kNone), after;
+  std::vector<std::uint32_t> moved(mesh.vertices.size(), kNone);  // places in `change`
+  for (std::uint32_t n = 0; n < change.vertices.size(); ++n) moved[change.vertices[n]] = n;
+  after.assign(change.vertices.size(), kNone);
+  const auto number_of = [&](std::uint32_t v, bool is_after) {
+    const bool is_moved = moved[v] != kNone;
+    std::uint32_t& number = is_moved && is_after ? after[moved[v]] : before[v];
+    if (number != kNone) return number;
+    number = static_cast<std::uint32_t>(between.vertices.size());
+    between.vertices.push_back(is_moved && !is_after ? change.places[moved[v]].before : mesh.vertices[v]);
+    return number;
+  };
+  for (const auto& [old, now] : change.corners) {
+    if (!is_gone(old))
+      between.triangles.push_back({number_of(old[0], false), number_of(old[2], false), number_of(old[1], false)});
+    if (!is_gone(now))
+      between.triangles.push_back({number_of(now[0], true), number_of(now[1], true), number_of(now[2], true)});
+  }
+  return between;
+}
+
 }  // namespace
 
 NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const std::vector<ExteriorEdge>* edges) {
@@ -148,7 +246,7 @@ NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const s
 SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
   SurfaceFaults faults;
   const Fans fans = fans_of(mesh);
-  faults.links = fans.wrong;
+  faults.links = fans.count_of_wrong();
   // An edge goes from a vertex to the next one around it in one face, and back in another: so where all vertices have
   // fans, all edges have their twins, and none is exterior.
   faults.edges = faults.links > 0 ? wrong_edges(mesh) : 0;
@@ -158,6 +256,36 @@ SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
   faults.nodes = misplaced_nodes(mesh, inside, faults.links > 0 ? nullptr : &none).size();
   faults.intersections = self_intersections(mesh, SearchOrder::kCurve, &fans.graphs);
   return faults;
+}
+
+NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
+  const MeshPart part = part_near(mesh, change, lattice);
+  const Fans fans = fans_of(part.mesh, &part.whole);
+  std::vector<bool> faulty(fans.wrong.begin(), fans.wrong.end());
+  NearFaults found;
+  found.faults.links = fans.count_of_wrong();
+  found.faults.equal_vertices = mark_equal_vertices(part.mesh.vertices, faulty);
+  found.faults.intersections = self_intersections(part.mesh, SearchOrder::kCurve, &fans.graphs);
+  found.faults.intersections.first.reset();  // numbers of the part
+  const std::vector<bool> meeting = std::exchange(found.faults.intersections.of_triangle, {});
+  for (std::size_t face = 0; face < part.faces.size(); ++face) {
+    const bool degenerate = is_degenerate(part.mesh, face);
+    found.faults.degenerate_faces += degenerate ? 1 : 0;
+    if (!degenerate && !meeting[face]) continue;
+    for (const std::uint32_t corner : part.mesh.triangles[face]) faulty[corner] = true;
+  }
+  for (std::size_t v = 0; v < faulty.size(); ++v) {
+    if (faulty[v]) found.vertices.push_back(part.vertices[v]);
+  }
+  std::ranges::sort(found.vertices);
+  return found;
+}
+
+NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
+  const std::vector<ExteriorEdge> none;
+  const WindingNumberEvaluator between(mesh_between(mesh, change), RayEngine::kScan, SimdLevel::kBest,
+                                       Summation::kCheapest, &none);
+  return nodes_inside(between, Rule{RuleKind::kNonzero}, lattice);
 }
 
 std::string described(const SurfaceFaults& faults) {

@@ -9,6 +9,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/intersections/self_intersections.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_edit.h"
 
 namespace raycone {
 
@@ -36,6 +37,22 @@ struct SurfaceFaults {
 // `edges`: its exterior edges, where known, to spare finding them.
 [[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside,
                                       const std::vector<ExteriorEdge>* edges = nullptr);
+
+// Faults where a mesh has been changed, and the vertices at them.
+struct NearFaults {
+  SurfaceFaults faults;
+  std::vector<std::uint32_t> vertices;  // increasing; not those of misplaced nodes
+};
+
+// The faults that faults_of() finds in a mesh since it was changed, in time and memory of what is near the change:
+// each that a changed face has part in, and some others nearby. `mesh`: after the change; within the lattice, or not
+// far from it; without the faces that are gone, and the vertices that no face has. But for nodes: these are
+// changed_nodes().
+[[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
+
+// The nodes of a lattice that were on the other side of a mesh before it was changed. Precondition: it is closed, and
+// was so before.
+[[nodiscard]] NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
 // "3 edges, 1 pair of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/machine/threads.h"
+#include "core/surface/surface_edit.h"
 
 namespace raycone {
 namespace {
@@ -42,31 +43,50 @@ void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t
   }
 }
 
+}  // namespace
+
+// What faces and vertices are so far.
+struct PlaneMerger::Work {
+  std::vector<Triangle>& triangles;  // those that are gone have three equal corners
+  const std::vector<std::int32_t>& sources;
+  std::vector<std::uint32_t>& into;
+  std::vector<std::uint8_t>& settled;  // of each vertex, what PatchMerger::is_settled() said
+};
+
 class BrickMerger {
  public:
-  BrickMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
-              const std::vector<bool>& kept, const MergeLimits& limits)
-      : vertices_(surface.mesh.vertices),
-        input_(input),
-        lattice_(lattice),
-        kept_(kept),
-        limits_(limits),
-        merged_{surface.mesh.triangles, surface.sources, {}},
-        settled_(surface.mesh.vertices.size(), 0) {
-    merged_.into.resize(vertices_.size());
-    std::iota(merged_.into.begin(), merged_.into.end(), 0U);
-  }
+  BrickMerger(const std::vector<Vec3>& vertices, const TriangleMesh& input, const Lattice& lattice,
+              const std::vector<bool>& kept, const MergeLimits& limits, PlaneMerger::Work work)
+      : vertices_(vertices), input_(input), lattice_(lattice), kept_(kept), limits_(limits), work_(work) {}
 
-  // A brick's faces fit into the cache, and threads share bricks. What is at their borders is merged in other bricks,
-  // shifted by half of one; then what is left, as a whole.
-  MergedFaces merge() {
-    constexpr std::array kShifts{0.0, 0.5};
-    for (const double shift : kShifts) merge_all(bricks(shift));
-    merge_all(one_brick());
-    for (std::uint32_t& target : merged_.into) {
-      while (merged_.into[target] != target) target = merged_.into[target];
+  void merge_bricks(double shift) { merge_all(bricks(shift)); }
+  void merge_whole() { merge_all(sorted(std::vector<std::uint32_t>(work_.triangles.size(), 0), 1)); }
+
+  // Those bricks alone that have a vertex of `changed`, from `first` on, as merge_bricks() would: a vertex that is kept
+  // or is no longer so matters to the one brick that has all of its faces.
+  void merge_bricks_again(const std::vector<std::uint32_t>& changed, const std::vector<Triangle>& first) {
+    std::vector<Triangle> merged = std::exchange(work_.triangles, first);  // bricks are those of then
+    const Bricks all = bricks(0.0);
+    std::vector<std::uint8_t> again(all.begin.size() - 1, 0);
+    for (const std::uint32_t v : changed) {
+      if (all.owner[v] < again.size()) again[all.owner[v]] = 1;
     }
-    return std::move(merged_);
+    for (std::uint32_t v = 0; v < all.owner.size(); ++v) {
+      if (all.owner[v] >= again.size() || again[all.owner[v]] == 0) continue;
+      work_.into[v] = v;
+      work_.settled[v] = 0;
+    }
+    for (std::size_t brick = 0; brick < again.size(); ++brick) {
+      for (std::size_t n = all.begin[brick]; n < all.begin[brick + 1] && again[brick] != 0; ++n)
+        merged[all.faces[n]] = first[all.faces[n]];
+    }
+    work_.triangles = std::move(merged);
+    local_.assign(vertices_.size(), kNone);
+    parallel_for(again.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) {
+        if (again[brick] != 0) merge_one(all, brick);
+      }
+    });
   }
 
  private:
@@ -91,10 +111,10 @@ class BrickMerger {
 
   // A face is in the brick of its first corner. Bricks are in the order of their first faces.
   [[nodiscard]] Bricks bricks(double shift) const {
-    std::vector<std::uint32_t> brick_of(merged_.triangles.size());
+    std::vector<std::uint32_t> brick_of(work_.triangles.size());
     parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t face = begin; face < end; ++face) {
-        brick_of[face] = brick_at(vertices_[merged_.triangles[face][0]], shift);
+        brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift);
       }
     });
     std::vector<std::uint32_t> numbers(static_cast<std::size_t>(bricks_along(0) * bricks_along(1) * bricks_along(2)),
@@ -107,8 +127,6 @@ class BrickMerger {
     }
     return sorted(brick_of, count);
   }
-
-  [[nodiscard]] Bricks one_brick() const { return sorted(std::vector<std::uint32_t>(merged_.triangles.size(), 0), 1); }
 
   [[nodiscard]] Bricks sorted(const std::vector<std::uint32_t>& brick_of, std::size_t count) const {
     Bricks result{std::vector<std::uint32_t>(brick_of.size()), std::vector<std::size_t>(count + 1, 0),
@@ -125,7 +143,7 @@ class BrickMerger {
   void find_owners(const std::vector<std::uint32_t>& brick_of, std::vector<std::uint32_t>& owner) const {
     parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t face = begin; face < end; ++face) {
-        for (const std::uint32_t corner : merged_.triangles[face]) {
+        for (const std::uint32_t corner : work_.triangles[face]) {
           const std::atomic_ref of_corner(owner[corner]);
           std::uint32_t known = of_corner.load(std::memory_order_relaxed);
           if (known == kUnmet) of_corner.compare_exchange_strong(known, brick_of[face], std::memory_order_relaxed);
@@ -141,15 +159,6 @@ class BrickMerger {
     parallel_for(bricks.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
     });
-    std::size_t left = 0;
-    for (std::size_t face = 0; face < merged_.triangles.size(); ++face) {
-      const Triangle& t = merged_.triangles[face];
-      if (t[0] == t[1]) continue;
-      merged_.sources[left] = merged_.sources[face];
-      merged_.triangles[left++] = t;
-    }
-    merged_.triangles.resize(left);
-    merged_.sources.resize(left);
   }
 
   // Bricks change their own faces only, and where their own vertices are pulled.
@@ -163,19 +172,20 @@ class BrickMerger {
     merger.merge();
     for (std::size_t n = 0; n < faces.size(); ++n) {
       Triangle t = merger.triangle(n);
-      const bool is_gone = t[0] == t[1];
-      for (std::uint32_t& corner : t) corner = is_gone ? 0 : global[corner];
-      merged_.triangles[faces[n]] = t;
+      if (!is_gone(t)) {
+        for (std::uint32_t& corner : t) corner = global[corner];
+      }
+      work_.triangles[faces[n]] = t;
     }
     for (std::uint32_t v = 0; v < global.size(); ++v) {
-      if (merger.into()[v] != v) merged_.into[global[v]] = global[merger.into()[v]];
+      if (merger.into()[v] != v) work_.into[global[v]] = global[merger.into()[v]];
       note_settled(global[v], patch.settled[v] != 0, merger.is_settled(v));
     }
   }
 
   // Of a vertex with faces in several bricks, each of them may say that these have changed.
   void note_settled(std::uint32_t vertex, bool before, bool is) {
-    if (is != before) std::atomic_ref(settled_[vertex]).store(is ? 1 : 0, std::memory_order_relaxed);
+    if (is != before) std::atomic_ref(work_.settled[vertex]).store(is ? 1 : 0, std::memory_order_relaxed);
   }
 
   // `global`: the numbers of its vertices, increasing: choices among equals then depend little on where bricks are.
@@ -183,7 +193,7 @@ class BrickMerger {
                         std::uint32_t brick, std::vector<std::uint32_t>& global) {
     const auto is_own = [&](std::uint32_t v) { return owner[v] == brick; };
     for (const std::uint32_t face : faces) {
-      for (const std::uint32_t v : merged_.triangles[face]) {
+      for (const std::uint32_t v : work_.triangles[face]) {
         if (is_own(v) && local_[v] != kNone) continue;
         if (is_own(v)) local_[v] = 0;
         global.push_back(v);
@@ -202,7 +212,7 @@ class BrickMerger {
       if (is_own(v)) local_[v] = n;
       patch.vertices.push_back(vertices_[v]);
       patch.roles.push_back(!is_own(v) ? VertexRole::kForeign : kept_[v] ? VertexRole::kKept : VertexRole::kFree);
-      patch.settled.push_back(std::atomic_ref(settled_[v]).load(std::memory_order_relaxed));
+      patch.settled.push_back(std::atomic_ref(work_.settled[v]).load(std::memory_order_relaxed));
     }
     const auto local = [&](std::uint32_t v) {
       if (is_own(v)) return local_[v];
@@ -211,9 +221,9 @@ class BrickMerger {
     patch.triangles.reserve(faces.size());
     patch.sources.reserve(faces.size());
     for (const std::uint32_t face : faces) {
-      const auto [a, b, c] = merged_.triangles[face];
+      const auto [a, b, c] = work_.triangles[face];
       patch.triangles.push_back({local(a), local(b), local(c)});
-      patch.sources.push_back(merged_.sources[face]);
+      patch.sources.push_back(work_.sources[face]);
     }
     return patch;
   }
@@ -223,16 +233,76 @@ class BrickMerger {
   const Lattice& lattice_;
   const std::vector<bool>& kept_;
   MergeLimits limits_;
-  MergedFaces merged_;
-  std::vector<std::uint8_t> settled_;  // of each vertex, what PatchMerger::is_settled() said
-  std::vector<std::uint32_t> local_;   // numbers of vertices in the bricks that have all of their faces
+  PlaneMerger::Work work_;
+  std::vector<std::uint32_t> local_;  // numbers of vertices in the bricks that have all of their faces
 };
+
+namespace {
+
+void drop_gone(MergedFaces& faces) {
+  std::size_t left = 0;
+  for (std::size_t face = 0; face < faces.triangles.size(); ++face) {
+    const Triangle t = faces.triangles[face];
+    if (is_gone(t)) continue;
+    faces.sources[left] = faces.sources[face];
+    faces.triangles[left++] = t;
+  }
+  faces.triangles.resize(left);
+  faces.sources.resize(left);
+}
 
 }  // namespace
 
+PlaneMerger::PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
+                         const MergeLimits& limits)
+    : surface_(surface), input_(input), lattice_(lattice), limits_(limits) {}
+
+// A brick's faces fit into the cache, and threads share bricks. What is at their borders is merged in other bricks,
+// shifted by half of one; then what is left, as a whole. Nearly all time goes to the first bricks.
+MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
+  merge_first_bricks(kept);
+  MergedFaces merged{{}, {}, into_};
+  for (std::size_t face = 0; face < triangles_.size(); ++face) {
+    if (is_gone(triangles_[face])) continue;
+    merged.triangles.push_back(triangles_[face]);
+    merged.sources.push_back(surface_.sources[face]);
+  }
+  std::vector<std::uint8_t> settled = settled_;
+  BrickMerger merger(surface_.mesh.vertices, input_, lattice_, kept, limits_,
+                     {merged.triangles, merged.sources, merged.into, settled});
+  constexpr double kHalf = 0.5;
+  merger.merge_bricks(kHalf);
+  drop_gone(merged);
+  merger.merge_whole();
+  drop_gone(merged);
+  for (std::uint32_t& target : merged.into) {
+    while (merged.into[target] != target) target = merged.into[target];
+  }
+  return merged;
+}
+
+void PlaneMerger::merge_first_bricks(const std::vector<bool>& kept) {
+  const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+  BrickMerger merger(vertices, input_, lattice_, kept, limits_, {triangles_, surface_.sources, into_, settled_});
+  if (into_.empty()) {
+    triangles_ = surface_.mesh.triangles;
+    settled_.assign(vertices.size(), 0);
+    into_.resize(vertices.size());
+    std::iota(into_.begin(), into_.end(), 0U);
+    merger.merge_bricks(0.0);
+  } else {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t v = 0; v < kept.size(); ++v) {
+      if (kept[v] != kept_[v]) changed.push_back(v);
+    }
+    merger.merge_bricks_again(changed, surface_.mesh.triangles);
+  }
+  kept_ = kept;
+}
+
 MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
                          const std::vector<bool>& kept, const MergeLimits& limits) {
-  return BrickMerger(surface, input, lattice, kept, limits).merge();
+  return PlaneMerger(surface, input, lattice, limits).merge(kept);
 }
 
 }  // namespace raycone

@@ -20,9 +20,34 @@ struct MergedFaces {
 
 // The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
 // planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
-// longer ones. Faces keep their order and sources. Vertices of `kept` stay. The same surface everywhere, topologically
-// and within `limits.most`; but where planes agree only up to rounding, faces that come as near to others may cross
-// them. `lattice`: of about the size of the faces. The same for any number of threads.
+// longer ones. Faces keep their order and sources. The same surface everywhere, topologically and within `limits.most`;
+// but where planes agree only up to rounding, faces that come as near to others may cross them. `lattice`: of about the
+// size of the faces. The same for any number of threads, and whatever was kept before.
+class PlaneMerger {
+ public:
+  // All of them must stay as they are.
+  PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice, const MergeLimits& limits);
+
+  // Vertices of `kept` stay. Where few of them are others than in the last call, takes a fraction of its time.
+  [[nodiscard]] MergedFaces merge(const std::vector<bool>& kept);
+
+ private:
+  friend class BrickMerger;
+  struct Work;
+  void merge_first_bricks(const std::vector<bool>& kept);
+
+  const SurfaceMesh& surface_;
+  const TriangleMesh& input_;
+  const Lattice& lattice_;
+  MergeLimits limits_;
+  // Of the last call, when each brick was merged by itself; nothing before the first one.
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> into_;
+  std::vector<std::uint8_t> settled_;
+  std::vector<bool> kept_;
+};
+
+// The same, once.
 [[nodiscard]] MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
                                        const std::vector<bool>& kept, const MergeLimits& limits);
 

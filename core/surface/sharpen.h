@@ -1,12 +1,16 @@
 // Sharp edges where a lattice does not see them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
 #include "core/surface/contour.h"
+#include "core/surface/surface_edit.h"
 
 namespace raycone {
 
@@ -14,23 +18,78 @@ struct SharpenLimits {
   double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
   double reach = 0.0;  // how far a vertex is pulled at most, likewise
   bool single_precision = false;  // vertices are rounded to float
-  bool strips_may_turn = true;    // what is left of them, on the way; they may then cross other faces
-};
-
-struct SharpenedSurface {
-  SurfaceMesh surface;              // vertices keep their numbers; some are no longer used
-  std::vector<std::uint32_t> into;  // of each vertex, what it was pulled into; itself, where it stayed
-  std::size_t pulls = 0;
 };
 
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
 // mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
 // such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
-// stay in them and keep their fronts; what is left of strips vanishes between them. Vertices of `kept` stay, and all do
-// where less than nine of ten faces are in planes. Whether faces intersect now, or nodes have changed sides, is not
-// looked at. The same for any number of threads. Needs DefaultFloatingPoint. Precondition: sources are triangles of
-// `input`, or kHole.
-[[nodiscard]] SharpenedSurface sharpened(const SurfaceMesh& surface, const TriangleMesh& input,
-                                         const std::vector<bool>& kept, const SharpenLimits& limits);
+// stay in them and keep their fronts; what is left of strips vanishes between them. Nothing is done where less than
+// three of four faces are in planes. Whether faces intersect now, or nodes have changed sides, is not looked at. The
+// same for any number of threads. Needs DefaultFloatingPoint.
+class Sharpener {
+ public:
+  // Precondition: sources are triangles of `input`, or kHole. Both meshes must stay, but for what edits change.
+  Sharpener(const SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits);
+  Sharpener(const Sharpener&) = delete;
+  Sharpener& operator=(const Sharpener&) = delete;
+
+  // What pulls change. What is left of strips may turn over on the way, and may then cross other faces.
+  SurfaceEdit sharpen();
+  // What changes if vertices are not pulled: those that were pulled into one of `vertices`, and these; and all that
+  // hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled anew, and do
+  // not turn over. Numbers of other vertices are ignored. Takes time in proportion to these strips.
+  SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
+  // Back to the surface as it was at first.
+  SurfaceEdit undo();
+
+  [[nodiscard]] std::size_t pulls() const;
+  // Where pulled vertices are now; each once for all that were pulled there.
+  template <class Visit>
+  void for_each_target(const Visit& visit) const {
+    for (std::uint32_t n = 0; n < strip_vertices_.size(); ++n) {
+      if (now_.into[n] == n) visit(strip_vertices_[n], now_.places[n]);
+    }
+  }
+
+ private:
+  friend class StripPulls;
+  static constexpr std::uint32_t kNoPlace = UINT32_MAX;
+  // Where a face is: in the plane of its source, or over a hole; off that plane; or so much turned against it, too,
+  // that strips are looked for there. Fine tessellations are off, and hardly turned.
+  enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
+  struct State {
+    std::vector<Triangle> triangles;  // of the faces at strips; those that are gone have three equal corners
+    std::vector<Vec3> places;         // of the vertices of strips
+    std::vector<std::uint32_t> into;  // likewise, by their places
+  };
+  // Strips that hang together: pulls see nothing of others. Its faces and vertices follow each other.
+  struct Part {
+    std::uint32_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;
+    std::size_t pulls = 0;
+    bool may_turn = true;
+  };
+
+  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source) const;
+  void find_strips(const SurfaceMesh& surface, const std::vector<Placed>& of_all);
+  void find_parts(const std::vector<Triangle>& triangles);
+  void add_faces(const SurfaceMesh& surface, const std::vector<Placed>& of_all);
+  [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
+  [[nodiscard]] SurfaceEdit pull_parts(const std::vector<std::uint32_t>& parts);
+  [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before) const;
+
+  const std::vector<Vec3>& vertices_;  // those of no strip stay where they are
+  const TriangleMesh& input_;
+  SharpenLimits limits_;
+  std::optional<DistanceEvaluator> distances_;  // where there are strips
+  std::vector<std::uint32_t> place_;            // of each vertex among strip_vertices_, or kNoPlace
+  std::vector<std::uint32_t> strip_vertices_;
+  std::vector<std::uint8_t> kept_;      // of each of these
+  std::vector<std::uint32_t> part_of_;  // likewise
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> faces_;   // with a vertex of a strip
+  std::vector<std::int32_t> sources_;  // of these
+  std::vector<Placed> placed_;         // likewise
+  State first_, now_;
+};
 
 }  // namespace raycone

@@ -72,7 +72,11 @@ class SurfaceMaker {
                     : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
       FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
-        if (std::optional<FinishedSurface> made = attempt(sharp, margins)) return std::move(*made);
+        if (std::optional<FinishedSurface> made = attempt(sharp, margins, true)) return std::move(*made);
+        // Faults are looked for in what contour() made, which has vertices of known numbers.
+        if (is_sharpened_) {
+          if (std::optional<FinishedSurface> made = attempt(sharp, margins, false)) return std::move(*made);
+        }
         sharp = sharp.without(involved(sharp));
       }
     }
@@ -89,15 +93,16 @@ class SurfaceMaker {
 
   // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
   // has, or nothing is merged.
-  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins) {
+  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens) {
     enter("joining them by triangles");
     auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
+    is_sharpened_ = false;
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
     // Merging keeps sources, so that it changes no area of theirs.
     settle_sources(mesh_, farthest_source(), surface);
-    if (places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
+    if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);
@@ -136,19 +141,23 @@ class SurfaceMaker {
   // where a plane of the mesh is one of the lattice. `most` in margins.
   std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most, bool nodes) {
     constexpr double kNeedle = 16.0;
-    constexpr std::uint64_t kFewNodes = 64;
+    const std::uint64_t few_nodes = std::max<std::size_t>(64, surface.mesh.vertices.size() / 256);
     const Vec3& h = inside_.lattice().spacing;
     const double unit = margin * std::min({h.x, h.y, h.z});
     std::vector<bool> kept(surface.mesh.vertices.size(), false);
+    PlaneMerger merger(surface, mesh_, inside_.lattice(), {most * unit, kNeedle * unit});
+    std::uint64_t faults_before = 0;
     for (int round = 0; round < kMergingRounds; ++round) {
-      MergedFaces merged = merge_planes(surface, mesh_, inside_.lattice(), kept, {most * unit, kNeedle * unit});
+      MergedFaces merged = merger.merge(kept);
       TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
       const SurfaceFaults faults = faults_of(compact, inside_);
       if (faults.none()) {
         return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       }
-      if (faults.nodes > kFewNodes && !nodes) return std::nullopt;
-      if (round > 0 && !is_right(surface, 0)) return std::nullopt;
+      if (faults.nodes > few_nodes && !nodes) return std::nullopt;
+      const std::uint64_t count = faults.nodes + faults.intersections.pairs;
+      if (round > 0 && count >= faults_before && !is_right(surface, 0)) return std::nullopt;
+      faults_before = count;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
 
       const NodeSet misplaced = misplaced_nodes(compact, inside_);
@@ -166,30 +175,42 @@ class SurfaceMaker {
   // nothing is pulled; where that does not help, nothing at all.
   void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins) {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
-    constexpr int kSharpeningRounds = 4;
+    constexpr int kPartialRounds = 3, kSharpeningRounds = 8;
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    SharpenLimits limits{kOff * margins.inner * most, kReach * least, options_.single_precision};
-    std::vector<bool> kept(surface.mesh.vertices.size(), false);
+    Sharpener sharpener(surface, mesh_, {kOff * margins.inner * most, kReach * least, options_.single_precision});
+    SurfaceEdit change = sharpener.sharpen();
+    if (sharpener.pulls() == 0) return;
+    NodeSet misplaced(inside_.lattice());
     for (int round = 0; round < kSharpeningRounds; ++round) {
-      const SharpenedSurface sharp = sharpened(surface, mesh_, kept, limits);
-      if (sharp.pulls == 0) return;
-      SurfaceMesh compact{used_part(sharp.surface.mesh.vertices, sharp.surface.mesh.triangles), sharp.surface.sources};
-      const SurfaceFaults faults = faults_of(compact.mesh, inside_);
-      if (faults.none()) {
-        surface = std::move(compact);
-        is_right_ = true;
+      change.apply(surface.mesh);
+      NearFaults near = faults_near(surface.mesh, change, inside_.lattice());
+      misplaced.flip(changed_nodes(surface.mesh, change, inside_.lattice()));
+      if (near.faults.none() && misplaced.empty()) {
+        drop_gone_faces(surface);
+        is_sharpened_ = true;
         return;
       }
-      const std::vector<bool> touched = faulty_vertices(kept.size(), sharp.surface.mesh.triangles, faults);
-      const NodeSet misplaced = misplaced_nodes(compact.mesh, inside_);
-      const std::vector<bool> before = kept;
-      for (std::size_t v = 0; v < kept.size(); ++v) {
-        kept[v] = kept[v] || touched[sharp.into[v]] || is_beside(sharp.surface.mesh.vertices[sharp.into[v]], misplaced);
-      }
-      if (kept == before) return;  // faults of other kinds
-      limits.strips_may_turn = false;
+      sharpener.for_each_target([&](std::uint32_t vertex, const Vec3& p) {
+        if (is_beside(p, misplaced)) near.vertices.push_back(vertex);
+      });
+      change = sharpener.keep(near.vertices, round >= kPartialRounds);
+      if (change.faces.empty()) break;  // such faults do not come from pulls
     }
+    sharpener.undo().apply(surface.mesh);
+  }
+
+  static void drop_gone_faces(SurfaceMesh& surface) {
+    std::size_t left = 0;
+    for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+      const Triangle t = surface.mesh.triangles[face];
+      if (is_gone(t)) continue;
+      surface.sources[left] = surface.sources[face];
+      surface.mesh.triangles[left++] = t;
+    }
+    surface.mesh.triangles.resize(left);
+    surface.sources.resize(left);
+    surface.mesh = used_part(surface.mesh.vertices, surface.mesh.triangles);
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
@@ -286,6 +307,7 @@ class SurfaceMaker {
   double tolerance_;
   std::vector<EdgePoint> points_;
   std::optional<bool> is_right_;  // the surface of this attempt, before merging, where that is known
+  bool is_sharpened_ = false;     // likewise
   SurfaceFaults faults_;          // of the last one that is not
   TriangleMesh failed_;
 };

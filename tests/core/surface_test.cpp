@@ -143,6 +143,52 @@ TEST(Surface, IsRightForRandomLabels) {
   }
 }
 
+TriangleMesh without_gone(TriangleMesh mesh) {
+  std::erase_if(mesh.triangles, is_gone);
+  return mesh;
+}
+
+// With the vertices that faces have.
+TriangleMesh compacted(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  TriangleMesh mesh;
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  for (Triangle t : triangles) {
+    for (std::uint32_t& corner : t) {
+      const auto [at, is_new] = numbers.try_emplace(corner, static_cast<std::uint32_t>(mesh.vertices.size()));
+      if (is_new) mesh.vertices.push_back(vertices[corner]);
+      corner = at->second;
+    }
+    mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+// Some vertices move by up to a distance along each axis; or one is pulled into a neighbour, whatever comes of it.
+SurfaceEdit random_change(const TriangleMesh& mesh, Random& random, bool pull, double most) {
+  SurfaceEdit change;
+  const auto any = [&](std::size_t count) {
+    return static_cast<std::uint32_t>(uniform(random, 0.0, static_cast<double>(count)));
+  };
+  const Triangle& at = mesh.triangles[any(mesh.triangles.size())];
+  const std::uint32_t u = at[0], v = at[1];
+  const auto moved = [&](const Vec3& p) {
+    return p + Vec3{uniform(random, -most, most), uniform(random, -most, most), uniform(random, -most, most)};
+  };
+  const bool to_another = !pull && uniform(random, 0.0, 1.0) < 0.2;
+  change.vertices = {u};
+  change.places = {{mesh.vertices[u], to_another ? mesh.vertices[v] : moved(mesh.vertices[u])}};
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    const Triangle& before = mesh.triangles[face];
+    Triangle after = before;
+    if (pull) std::ranges::replace(after, v, u);
+    if (std::ranges::count(after, u) == 2) after.fill(u);
+    if (std::ranges::find(after, u) == after.end()) continue;
+    change.faces.push_back(face);
+    change.corners.push_back({before, after});
+  }
+  return change;
+}
+
 // The certificate has to see what is wrong.
 TEST(SurfaceCertificate, FindsEachFault) {
   Random random(3);
@@ -166,6 +212,36 @@ TEST(SurfaceCertificate, FindsEachFault) {
   const auto last = static_cast<std::uint32_t>(pinched.vertices.size() - 1);
   for (Triangle& t : pinched.triangles) std::ranges::replace(t, last, 0U);
   EXPECT_GT(faults_of(pinched, nodes).links + faults_of(pinched, nodes).edges, 0U);
+}
+
+// Vertices move to random places, or into a neighbour. What is found near them is right if all is, and is looked for
+// only there.
+TEST(SurfaceCertificate, FindsFaultsNearAChange) {
+  Random random(5);
+  const DefaultFloatingPoint guard;
+  const Lattice lattice = lattice_of(8);
+  int right = 0, wrong = 0;
+  for (int round = 0; round < 400; ++round) {
+    const NodeSet nodes = nodes_where(lattice, [&](auto i, auto j, auto k) { return i + j + k < 9 + round % 4; });
+    const SurfaceCells cells(nodes);
+    TriangleMesh mesh = contour(cells, random_edge_points(cells, random, false), {}, {}, 0.0, kMargins).surface.mesh;
+    const SurfaceEdit change = random_change(mesh, random, round % 2 == 0, round % 4 < 2 ? 0.3 : 3.0);
+    change.apply(mesh);
+    const SurfaceFaults all = faults_of(compacted(mesh.vertices, without_gone(mesh).triangles), nodes);
+    const NearFaults near = faults_near(mesh, change, lattice);
+    EXPECT_EQ(near.faults.links > 0, all.links > 0) << round;
+    EXPECT_EQ(near.faults.equal_vertices, all.equal_vertices) << round;
+    EXPECT_EQ(near.faults.degenerate_faces, all.degenerate_faces) << round;
+    EXPECT_EQ(near.faults.intersections.pairs, all.intersections.pairs) << round;
+    EXPECT_EQ(near.vertices.empty(), near.faults.none()) << round;
+    // Where the surface passes through itself, nodes are more than on one side or the other.
+    if (all.intersections.pairs == 0) {
+      EXPECT_EQ(changed_nodes(mesh, change, lattice).size(), all.nodes) << round;
+    }
+    ++(all.none() ? right : wrong);
+  }
+  EXPECT_GT(right, 50);
+  EXPECT_GT(wrong, 50);
 }
 
 // Vertices that have left their edge, face or tetrahedron by less than anything else would notice.
@@ -397,14 +473,48 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size())};
   std::iota(surface.sources.begin(), surface.sources.end(), 0);
   surface.sources[0] = surface.sources[1] = on_the_top(cut);
-  const std::vector<bool> none(cut.vertices.size(), false);
   const SharpenLimits limits{1e-9, 0.2, false};
-  EXPECT_EQ(sharpened(surface, cut, none, limits).pulls, 0U);
+  Sharpener of_cut(surface, cut, limits);
+  static_cast<void>(of_cut.sharpen());
+  EXPECT_EQ(of_cut.pulls(), 0U);
   for (std::int32_t& source : surface.sources) source %= 24;  // triangles of the whole boxes
   settle_sources(whole_box, 0.01, surface);
-  const SharpenedSurface sharp = sharpened(surface, whole_box, none, limits);
-  EXPECT_EQ(sharp.pulls, 2U);
-  EXPECT_NEAR(mesh_statistics(sharp.surface.mesh).signed_volume.value_or(0.0), 2.0, 1e-12);
+  Sharpener of_whole(surface, whole_box, limits);
+  of_whole.sharpen().apply(surface.mesh);
+  EXPECT_EQ(of_whole.pulls(), 2U);
+  EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
+  // One end of the cut stays: so does what would be pulled into it.
+  of_whole.keep({0}, false).apply(surface.mesh);
+  EXPECT_EQ(of_whole.pulls(), 1U);
+  of_whole.keep({0}, true).apply(surface.mesh);
+  EXPECT_EQ(of_whole.pulls(), 0U);
+  EXPECT_EQ(surface.mesh.triangles, cut.triangles);
+  EXPECT_EQ(surface.mesh.vertices, cut.vertices);
+}
+
+// Strips that do not hang together have nothing to do with each other.
+TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
+  const DefaultFloatingPoint guard;
+  TriangleMesh second = cut_box(), second_box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  for (TriangleMesh* mesh : {&second, &second_box}) {
+    for (Vec3& p : mesh->vertices) p = p + Vec3{0, 3, 0};
+  }
+  const TriangleMesh others = test::joined(test::box_mesh({2, 0, 0}, {3, 1, 1}), test::box_mesh({4, 0, 0}, {5, 1, 1}));
+  const TriangleMesh cut = test::joined(test::joined(cut_box(), second), others);
+  const TriangleMesh whole = test::joined(test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), second_box), others);
+  SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
+  settle_sources(whole, 0.01, surface);
+  Sharpener sharpener(surface, whole, {1e-9, 0.2, false});
+  sharpener.sharpen().apply(surface.mesh);
+  ASSERT_EQ(sharpener.pulls(), 4U);
+  const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, false);
+  change.apply(surface.mesh);
+  EXPECT_EQ(sharpener.pulls(), 2U);
+  EXPECT_EQ(change.vertices.size(), 2U);
+  EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 4.0 - 0.005, 1e-12);
+  sharpener.undo().apply(surface.mesh);
+  EXPECT_EQ(surface.mesh.triangles, cut.triangles);
+  EXPECT_EQ(surface.mesh.vertices, cut.vertices);
 }
 
 // The surface over the opening of a box meets the walls at the rim.
@@ -558,21 +668,6 @@ TEST(Surface, OfABoxOfManyBricksHasFewFaces) {
   EXPECT_LT(turned.mesh.triangles.size(), 6 * coarse.mesh.triangles.size());
 }
 
-// With the vertices that faces have.
-TriangleMesh compacted(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  TriangleMesh mesh;
-  std::map<std::uint32_t, std::uint32_t> numbers;
-  for (Triangle t : triangles) {
-    for (std::uint32_t& corner : t) {
-      const auto [at, is_new] = numbers.try_emplace(corner, static_cast<std::uint32_t>(mesh.vertices.size()));
-      if (is_new) mesh.vertices.push_back(vertices[corner]);
-      corner = at->second;
-    }
-    mesh.triangles.push_back(t);
-  }
-  return mesh;
-}
-
 // Bricks that meet share vertices, and so would share edges that each of them makes by itself. With limits that are
 // wide vertices of curved parts are pulled, too: faces may cross one another then, but every edge is still one of two
 // faces.
@@ -588,6 +683,24 @@ TEST(MergedFaces, CloseUpWhereBricksMeet) {
       EXPECT_EQ(faults.edges, 0U) << most;
       EXPECT_EQ(faults.links, 0U) << most;
     }
+  }
+}
+
+// However often faces were merged before, and whatever was kept then.
+TEST(MergedFaces, AreTheSameWhateverWasKeptBefore) {
+  Random random(6);
+  const TriangleMesh mesh = rotated(test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}));
+  const auto [fine, lattice] = surface_of(mesh, 80, {.rule = {}, .merge_planes = false});
+  const MergeLimits limits{1e-9 * lattice.spacing.x, 0.0};
+  std::vector<bool> kept(fine.mesh.vertices.size(), false);
+  PlaneMerger merger(fine, mesh, lattice, limits);
+  for (int round = 0; round < 6; ++round) {
+    const MergedFaces again = merger.merge(kept), once = merge_planes(fine, mesh, lattice, kept, limits);
+    EXPECT_EQ(again.triangles, once.triangles) << round;
+    EXPECT_EQ(again.sources, once.sources) << round;
+    EXPECT_EQ(again.into, once.into) << round;
+    for (int n = 0; n < 1 << round; ++n)
+      kept[static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(kept.size())))].flip();
   }
 }
 

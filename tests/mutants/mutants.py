@@ -524,7 +524,14 @@ MUTANTS = [
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
         ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [
-        ("core/surface/sharpen.cpp", "return distance <= limits_.off;", "return distance <= 1e9 * limits_.off;")]),
+        ("core/surface/sharpen.cpp", "return distance <= all_.limits_.off;",
+         "return distance <= 1e9 * all_.limits_.off;")]),
+    Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [
+        ("core/surface/certificate.cpp", "cells.meets(box_of_triangle(mesh, face))",
+         "std::ranges::find(change.faces, face) != change.faces.end()")]),
+    Mutant("bricks_not_merged_again", "bricks in which something else is kept are merged again", [
+        ("core/surface/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
+         "if (kept[v] != kept_[v] && v % 2 == 0) changed.push_back(v);")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
         ("core/surface/face_sources.cpp", "*corner - source.a)) <= off)", "*corner - source.a)) <= 1e9 * off)")]),
     Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [

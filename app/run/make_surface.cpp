@@ -37,7 +37,8 @@ FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, co
   } catch (const LatticeTooFine& error) {
     throw LimitError(name + ": " + error.what() + "; see --resolution and --scale");
   } catch (const std::length_error&) {
-    throw LimitError(name + ": the surface would have more than 2147483647 faces; see --resolution");
+    throw LimitError(name +
+                     ": the surface would have more than 2147483632 faces or edges of the lattice; see --resolution");
   }
 }
 

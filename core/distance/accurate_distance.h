@@ -38,8 +38,4 @@ class AccurateTriangle {
   bool is_thin_;  // it is the segments of its edges
 };
 
-[[nodiscard]] inline double accurate_squared_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  return AccurateTriangle(a, b, c).squared_distance(p);
-}
-
 }  // namespace raycone

@@ -295,7 +295,7 @@ void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, La
 // Whether squares that are not sure are above `least` with care, too.
 HWY_INLINE LaneMask is_farther(const TrianglePack& pack, std::size_t slot, Lanes squares, Lanes least) {
   const double off = 1e-12 * pack.direction_from[slot];  // more than the square of what the closest point is off by
-  const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, 1 + 1e-8)), hn::Set(d, 1e-19));  // beyond_error()
+  const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
   return hn::Gt(hn::Sub(squares, hn::Set(d, off)), reach);
 }
 
@@ -361,7 +361,7 @@ HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, con
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
     const Lanes least = hn::Load(d, &group.least[n]);
     const Lanes bound = hn::Max(hn::Add(distance, dot(away, minus(ps, in_all_lanes(middle)))), hn::Zero(d));
-    const Lanes limit = hn::Add(hn::Mul(least, hn::Set(d, 1 + 1e-8)), hn::Set(d, 1e-19));  // beyond_error()
+    const Lanes limit = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
     nearer = hn::Or(
         nearer, hn::And(hn::Le(hn::Mul(bound, bound), least), hn::Lt(squared_between(lower, upper, ps, ps), limit)));
   }

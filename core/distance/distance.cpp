@@ -229,6 +229,7 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
 }
 
 void DistanceEvaluator::prepare_points() const {
+  const DefaultFloatingPoint guard;
   if (!implementation_->mesh.triangles.empty()) (void)implementation_->nearest();
 }
 

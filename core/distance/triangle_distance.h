@@ -11,7 +11,8 @@ namespace raycone {
 
 // How far squared() may be off, and more: the square of a distance is below this wherever the result of squared() is
 // not above `square`.
-[[nodiscard]] inline double beyond_error(double square) { return square * (1 + 1e-8) + 1e-19; }
+inline constexpr double kBeyondErrorFactor = 1 + 1e-8, kBeyondErrorTerm = 1e-19;
+[[nodiscard]] inline double beyond_error(double square) { return square * kBeyondErrorFactor + kBeyondErrorTerm; }
 
 // A triangle prepared for distances to many points. It may be degenerate: a segment or a point.
 class TriangleDistance {

@@ -4,15 +4,12 @@
 #pragma once
 
 #include "core/data/triangle_mesh.h"
-#include "core/exact/direct_sum.h"
+#include "core/exact/quad.h"
 
 namespace raycone {
 
-// The most by which direct_distance() is off, relative to the distance.
-inline constexpr double kDirectDistanceError = 0x1p-110;
-
 // From q to the nearest point of the closed triangles, whatever their shape: segments and points, too; infinity for an
-// empty mesh. Any finite coordinates; 0 exactly on the surface. Thread-safe.
+// empty mesh. Off by at most 2^-110 of the distance. Any finite coordinates; 0 exactly on the surface. Thread-safe.
 [[nodiscard]] Quad direct_distance(const TriangleMesh& mesh, const Vec3& q);
 
 }  // namespace raycone

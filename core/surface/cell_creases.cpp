@@ -11,8 +11,7 @@
 namespace raycone {
 namespace {
 
-constexpr double kFlat = 0.99999847691328772;   // cos 0.1 degrees
-constexpr double kBlunt = 0.96592582628906829;  // cos 15 degrees
+constexpr double kFlat = 0.99999847691328772;  // cos 0.1 degrees
 
 constexpr double kTouch = 1e-9;  // of barycentric coordinates, where a crease only touches a tetrahedron
 
@@ -53,7 +52,6 @@ struct LinePart {
   double begin = 0.0, end = 1.0;
 
   // Cuts off where a weight that goes from `first` to `last` is negative by more than rounding.
-
   void cut(double first, double last) {
     if (first < 0.0) begin = last > 0.0 ? std::max(begin, first / (first - last)) : 2.0;
     if (last < 0.0) end = first > 0.0 ? std::min(end, first / (first - last)) : -1.0;
@@ -116,7 +114,7 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
     const SideUse& first = uses[begin];
     while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
     const double cosine = end - begin == 2 ? cosine_at(mesh, first, uses[begin + 1]) : 0.0;
-    const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kBlunt ? 0U : 1U << kSharpBit);
+    const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
     sides_[first.triangle] = static_cast<std::uint8_t>(sides_[first.triangle] | bits << first.side);
   }
 }

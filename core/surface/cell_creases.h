@@ -12,6 +12,9 @@
 
 namespace raycone {
 
+// Creases are sharp where the cosine between their triangles is at most this: from 15 degrees on.
+inline constexpr double kSharpCosine = 0.9659258262890683;
+
 // A crease is an edge that is not of two triangles, or whose triangles are at 0.1 degrees or more. It is sharp if they
 // are at 15 degrees or more, or not two. Thread-safe.
 class CellCreases {

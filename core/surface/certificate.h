@@ -54,7 +54,7 @@ struct NearFaults {
 // was so before.
 [[nodiscard]] NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
-// "3 edges, 1 pair of faces that intersect"
+// "3 edges without a twin, 1 pairs of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/machine/threads.h"
+#include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/nearest_triangle.h"
@@ -16,8 +17,6 @@ namespace raycone {
 namespace {
 
 constexpr std::size_t kFacesInTask = 4096;
-
-constexpr double kInLine = 0.9659258262890683;  // cosine of 15 degrees, where creases begin to be sharp
 
 struct Corners {
   const Vec3 &a, &b, &c;
@@ -35,7 +34,7 @@ Corners corners_of(const TriangleMesh& mesh, std::size_t face) {
 // Fronts may look either way: rules take faces from their backs, too.
 bool may_be_of(const Corners& face, const Corners& source, double off) {
   const Vec3 normal = source.normal();
-  if (!(std::abs(dot(normal, face.normal())) >= kInLine)) return false;
+  if (!(std::abs(dot(normal, face.normal())) >= kSharpCosine)) return false;
   for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
     if (!(std::abs(dot(normal, *corner - source.a)) <= off)) return false;
   }
@@ -86,7 +85,7 @@ void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surfa
       if (beside == edges.end() || beside->first != Edge{to, from}) continue;
       std::int32_t& source = surface.sources[beside->second];
       const Vec3 here = corners_of(surface.mesh, face).normal();
-      if (source == kHole || !(dot(here, corners_of(surface.mesh, beside->second).normal()) >= kInLine)) continue;
+      if (source == kHole || !(dot(here, corners_of(surface.mesh, beside->second).normal()) >= kSharpCosine)) continue;
       source = kHole;
       closing.push_back(beside->second);
     }

@@ -25,7 +25,7 @@ struct Bricks {
   std::vector<std::uint32_t> owner;  // kNone where several bricks have faces there; kUnmet where none has
 };
 
-// Sorts few numbers below 2^33 sooner than comparisons do: digit by digit, the lowest first.
+// Sorts many numbers digit by digit, the lowest first, which is sooner than by comparisons; few by comparisons.
 void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t>& spare) {
   constexpr unsigned kDigit = 11;
   constexpr std::size_t kWorthIt = 1024;

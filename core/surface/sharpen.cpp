@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/machine/threads.h"
+#include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
 
@@ -239,7 +240,7 @@ bool StripPulls::is_on_mesh(const Vec3& p) const {
 // Adds a face's plane unless it is there. Planes at less than 15 degrees, where an edge is not sharp, meet nowhere for
 // sure: false.
 bool StripPulls::add_plane(std::uint32_t face, std::vector<Plane>& planes) const {
-  constexpr double kSame = 1 - 1e-10, kSharp = 0.9659258262890683;  // cosines
+  constexpr double kSame = 1 - 1e-10;  // cosine
   const std::int32_t source = all_.sources_[face];
   if (std::ranges::find(planes, source, &Plane::source) != planes.end()) return true;
   const Plane plane = plane_of(all_.input_, source);
@@ -247,7 +248,7 @@ bool StripPulls::add_plane(std::uint32_t face, std::vector<Plane>& planes) const
     const double cosine = std::abs(dot(plane.normal, other.normal));
     const bool same_place = std::abs(other.height(position(state_.triangles[face][0]))) <= 2 * all_.limits_.off;
     if (cosine >= kSame && same_place) return true;
-    if (cosine > kSharp) return false;
+    if (cosine > kSharpCosine) return false;
   }
   planes.push_back(plane);
   return planes.size() <= 3;

@@ -30,7 +30,7 @@ struct SurfaceCell {
 // node in such a cell.
 class SurfaceCells {
  public:
-  // Precondition: !nodes.reaches_border(). Throws std::length_error for 2^31 edges or more.
+  // Precondition: !nodes.reaches_border(). Throws std::length_error for more than 2147483632 edges.
   explicit SurfaceCells(const NodeSet& nodes);
 
   [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }

@@ -119,7 +119,10 @@ void add_operand(const std::string& operand, bool nul_separated_lists, std::vect
     throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
   if (operand.starts_with('@') || operand == "-") {
     const std::string list = operand == "-" ? operand : operand.substr(1);
-    for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists)) add_path(path, meshes);
+    constexpr const char* kHint = "; -0 reads lists whose paths end with NUL";
+    for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists, kHint)) {
+      add_path(path, meshes);
+    }
   } else {
     refuse_missing_directory(operand);
     add_path(operand, meshes);

@@ -127,7 +127,7 @@ class Carrier {
   void carry(Weld& weld) { carry_members<2>(weld); }
   void carry(Normalize& normalize) { carry_members<2>(normalize); }
   void carry(PartsOptions& options) { carry_members<2>(options); }
-  void carry(MeshOptions& options) { carry_members<7>(options); }
+  void carry(MeshOptions& options) { carry_members<8>(options); }
   void carry(RunOptions& options) { carry_members<8>(options); }
   void carry(Rule& rule) { carry_members<2>(rule); }
   void carry(FieldOptions& options) { carry_members<8>(options); }

@@ -25,6 +25,7 @@ Message to_message(const JobResult& result) {
   for (const StampedFile& file : result.companions) {
     message.insert(message.end(), {file.path, file.sha256});
   }
+  message.insert(message.end(), result.warnings.begin(), result.warnings.end());
   return message;
 }
 
@@ -34,13 +35,14 @@ JobResult result_from(const Message& message) {
   const auto row_end = message.begin() + static_cast<std::ptrdiff_t>(columns);
   std::optional<ResultRow> row = row_from({message.begin(), row_end});
   if (!row) throw std::runtime_error("not a result");
-  JobResult result{std::move(*row), {}, message[columns]};
+  JobResult result{std::move(*row), {}, message[columns], {}};
   const auto companions = static_cast<std::size_t>(integer_in(message[columns + 1]));
   std::size_t at = columns + 2;
-  if (message.size() - at != 2 * companions) throw std::runtime_error("not a result");
+  if ((message.size() - at) / 2 < companions) throw std::runtime_error("not a result");
   for (std::size_t i = 0; i < companions; ++i, at += 2) {
     result.companions.push_back({.path = message[at], .sha256 = message[at + 1]});
   }
+  result.warnings.assign(message.begin() + static_cast<std::ptrdiff_t>(at), message.end());
   return result;
 }
 

@@ -14,6 +14,7 @@ struct JobResult {
   ResultRow row;                        // its `mesh` and `output` are left empty
   std::vector<StampedFile> companions;  // further files that were read, by their hashes
   std::string thumbnail;                // BMP in base64; empty where there is none
+  std::vector<std::string> warnings;    // of the row's message, one by one
 };
 
 [[nodiscard]] Message to_message(const JobResult& result);

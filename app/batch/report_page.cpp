@@ -278,14 +278,19 @@ std::string page(const std::string& directory, const BatchRecords& records) {
          "</script>\n</body>\n</html>\n";
 }
 
-// Those that shards are yet to write included.
-void refuse_to_replace_results(const ReportCommand& command) {
+std::vector<std::string> results_in(const std::string& directory) {
   std::vector<std::string> results;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(command.directory, error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
     if (is_results_file(entry.path().filename().string())) results.push_back(entry.path().string());
   }
-  refuse_to_replace_input({{command.output, "report"}}, results);
+  return results;
+}
+
+// Those that shards are yet to write included.
+void refuse_to_replace_results(const ReportCommand& command) {
+  std::error_code error;
+  refuse_to_replace_input({{command.output, "report"}}, results_in(command.directory));
   const fs::path target = follow_links(command.output);
   if (is_results_file(target.filename().string()) &&
       fs::equivalent(directory_of(target.string()), command.directory, error)) {
@@ -298,7 +303,9 @@ void refuse_to_replace_results(const ReportCommand& command) {
 std::size_t write_report_page(const ReportCommand& command) {
   refuse_to_replace_results(command);
   const BatchRecords records = read_all_results(command.directory);
-  if (records.empty()) throw InputError(command.directory + ": no results, expected the results.csv of a batch");
+  if (records.empty() && results_in(command.directory).empty()) {
+    throw InputError(command.directory + ": no results, expected the results.csv of a batch");
+  }
   OutputFile output(command.output);
   const std::string html = page(command.directory, records);
   output.write(html.data(), html.size());

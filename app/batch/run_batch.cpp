@@ -266,12 +266,13 @@ class BatchRun {
   // Whether to go on.
   bool take(std::size_t job, JobResult result, double part) {
     const BatchMesh& mesh = plan_.todo[job].mesh;
+    const std::vector<std::string> warnings = std::move(result.warnings);
     BatchRecord record = record_of(mesh, std::move(result));
     results_.append(record);
     const bool failed = record.row.status != MeshStatus::kOk;
     progress_.erase();
     if (failed) print_message(record.row.message);
-    if (!failed && !record.row.message.empty()) warn(command_, mesh.path + ": " + record.row.message);
+    for (const std::string& warning : warnings) warn(command_, mesh.path + ": " + warning);
     progress_.add(failed, part);
     outcome_.evaluated.insert_or_assign(mesh.name, std::move(record));
     return !(failed && command_.fail_fast);

@@ -113,20 +113,14 @@ MeshFigures figures_of(const RunReport& report) {
           report.orientation.patches};
 }
 
-// "FILE: 3 faces skipped; 1 triangle ..."
-std::string joined(const std::vector<Warning>& warnings) {
-  std::string text;
-  for (const Warning& warning : warnings) text += (text.empty() ? "" : "; ") + line_of(warning);
-  return text;
-}
-
 // `thumbnail`: BMP; empty where there is none.
 JobResult result_of(const RunReport& report, const std::string& thumbnail) {
   JobResult result;
   result.row.figures = figures_of(report);
   result.row.sha256 = report.sha256;
-  result.row.message = joined(report.warnings);
   for (const Warning& warning : report.warnings) {
+    result.warnings.push_back(line_of(warning));
+    result.row.message += (result.row.message.empty() ? "" : "; ") + result.warnings.back();
     result.row.warnings += (result.row.warnings.empty() ? "" : " ") + warning.name;
   }
   result.thumbnail = to_base64(thumbnail);
@@ -159,11 +153,13 @@ MeshStatus status_of(ExitCode code) {
   }
 }
 
-JobResult result_of(const Failure& failure) {
+// Among many meshes an error about the options is one about this mesh.
+JobResult result_of(const Failure& failure, const std::string& mesh) {
   JobResult result;
   result.row.status = status_of(failure.code);
   result.row.exit = static_cast<int>(failure.code);
-  result.row.message = failure.message;
+  const bool is_about_options = failure.code == ExitCode::kUsage && failure.message.starts_with("--");
+  result.row.message = (is_about_options ? mesh + ": " : "") + failure.message;
   return result;
 }
 
@@ -197,7 +193,7 @@ JobResult perform(const OneCommand& command) {
       return evaluate(command, limits);
     });
   } catch (...) {
-    return result_of(current_failure());
+    return result_of(current_failure(), command.mesh.path);
   }
 }
 

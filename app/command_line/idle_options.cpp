@@ -25,11 +25,6 @@ void refuse_option(const Values& values, const std::string& name, const std::str
 
 constexpr const char* kNoDigits = "on inside and label, which have no digits, expected another field";
 
-// Real ones, whose precision can be chosen.
-bool has_numbers(const FieldOptions& field) {
-  return std::ranges::any_of(field.fields, [](Field one) { return one != Field::kInside && one != Field::kLabel; });
-}
-
 bool draws_in_box(const SampleRequest& request) {
   return std::ranges::any_of(request.groups,
                              [](const SampleGroup& group) { return std::holds_alternative<UniformSamples>(group); });
@@ -58,7 +53,7 @@ void refuse_idle_encoding(const Values& values, const FieldOptions& field, const
                           bool stores_numbers) {
   const std::string on_csv = "on CSV, which holds all digits, expected another format";
   if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", on_csv);
-  if (!has_numbers(field) && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
+  if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
 }
@@ -74,7 +69,7 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {
-    if (!has_numbers(command.field)) refuse_flag(values, name, kNoDigits);
+    if (!command.field.has_numbers()) refuse_flag(values, name, kNoDigits);
   }
 }
 

@@ -56,7 +56,7 @@ void check_npy_columns(const PointsCommand& command) {
   if (command.field.diagnostics) {
     throw UsageError("--diagnostics: takes 64 bits in npy, expected --dtype f64, or npz");
   }
-  if (command.field.has(Field::kLabel)) {
+  if (command.field.has(Field::kLabel) && command.field.has_numbers()) {
     throw UsageError("--field label: takes 64 bits beside other fields in npy, expected --dtype f64, or npz");
   }
 }

@@ -23,6 +23,10 @@ std::optional<Field> field_from_name(std::string_view name) {
 
 bool FieldOptions::labels_only() const { return fields == std::vector{Field::kLabel}; }
 
+bool FieldOptions::has_numbers() const {
+  return std::ranges::any_of(fields, [](Field one) { return one != Field::kInside && one != Field::kLabel; });
+}
+
 bool FieldOptions::has_rule() const { return has(Field::kInside) || has_distance() || has(Field::kLabel); }
 
 bool FieldOptions::rule_only() const { return !has(Field::kWinding) && !has(Field::kDensity) && !diagnostics; }

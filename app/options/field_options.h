@@ -51,6 +51,9 @@ struct FieldOptions {
   // Whether the mesh as a whole is not asked about.
   [[nodiscard]] bool labels_only() const;
 
+  // Whether a field is of real numbers, whose precision can be chosen.
+  [[nodiscard]] bool has_numbers() const;
+
   // Whether a field depends on the rule.
   [[nodiscard]] bool has_rule() const;
 

@@ -32,6 +32,7 @@ struct MeshOptions {
   std::optional<Normalize> normalize;  // after scaling, before welding
   std::vector<std::string> further;    // meshes behind the first; for labels only
   PartsOptions parts;
+  std::vector<std::string> lists;  // of which meshes were read, once they have been
 };
 
 }  // namespace raycone

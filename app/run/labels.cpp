@@ -110,6 +110,7 @@ LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldO
     report.vertices += file.vertices;
     report.faces += file.faces;
   }
+  report.files_read.insert(report.files_read.end(), mesh.lists.begin(), mesh.lists.end());
   report.sha256 = report.meshes.front().sha256;
   report.unit = parts_.files().front().unit;
   refuse_to_replace_input(written, report.files_read);

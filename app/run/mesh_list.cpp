@@ -20,7 +20,8 @@ bool is_blank_or_comment(std::string_view line) {
 
 }  // namespace
 
-std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated) {
+std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated,
+                                       const std::string& hint) {
   if (!nul_separated && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<std::string> paths;
   for (std::size_t number = 1; !text.empty(); ++number) {
@@ -29,8 +30,7 @@ std::vector<std::string> paths_in_list(std::string_view text, const std::string&
     if (!nul_separated && line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty() || (!nul_separated && is_blank_or_comment(line))) continue;
     if (line.find('\0') != std::string_view::npos) {
-      throw InputError(list + ':' + std::to_string(number) +
-                       ": holds a NUL, expected a path of text; -0 reads lists whose paths end with NUL");
+      throw InputError(list + ':' + std::to_string(number) + ": holds a NUL, expected a path of text" + hint);
     }
     paths.emplace_back(line);
   }
@@ -38,6 +38,7 @@ std::vector<std::string> paths_in_list(std::string_view text, const std::string&
 }
 
 MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& points) {
+  MeshOptions expanded = mesh;
   std::vector<std::string> operands{mesh.path}, paths;
   operands.insert(operands.end(), mesh.further.begin(), mesh.further.end());
   const auto is_standard_input = [](const std::string& operand) { return operand == "-" || operand == "@-"; };
@@ -50,6 +51,7 @@ MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& point
       continue;
     }
     const std::string list = operand.substr(1);
+    expanded.lists.push_back(list);
     const std::vector<std::string> listed = paths_in_list(read_file(list), list, false);
     if (listed.empty()) throw InputError(list + ": names no mesh, expected one a line");
     paths.insert(paths.end(), listed.begin(), listed.end());
@@ -58,7 +60,6 @@ MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& point
     throw UsageError(std::string("--parts ") + (mesh.parts.by == PartsBy::kGroup ? "group" : "component") +
                      ": has no effect on several meshes, expected one, or --parts file");
   }
-  MeshOptions expanded = mesh;
   expanded.path = paths.front();
   expanded.further.assign(paths.begin() + 1, paths.end());
   return expanded;

@@ -27,6 +27,7 @@
 #include "app/run/slabs.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
+#include "io/files/file_error.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -112,6 +113,20 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
   return writer;
 }
 
+// Of distances, in formats that store fewer digits than CSV.
+void check_range(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const double most = command.field.band * report.lattice->grid.spacing.x;
+  const bool single = command.encoding.format != FieldFormat::kCsv && !description.is(Precision::kDouble);
+  if (!command.field.has_distance() || !single || most <= kLargest) return;
+  char message[160];
+  std::snprintf(
+      message, sizeof message,
+      ": distances of up to %.6g are beyond %.6g, the range of 32 bits; expected --dtype f64, or another --scale", most,
+      kLargest);
+  throw OutputError(report.output + message);
+}
+
 SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
 
 // A wider band is everywhere.
@@ -128,6 +143,7 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
   const double of_writer = writer_memory(lattice.grid, format, description);
+  check_range(command, report, description);
   check_memory(report.mesh, of_writer, limits.memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);

@@ -27,6 +27,7 @@ std::vector<WrittenFile> files_written(const OutputFiles& output, bool text) {
 std::vector<std::string> paths_of(const MeshOptions& mesh) {
   std::vector<std::string> paths{mesh.path};
   paths.insert(paths.end(), mesh.further.begin(), mesh.further.end());
+  paths.insert(paths.end(), mesh.lists.begin(), mesh.lists.end());
   return paths;
 }
 

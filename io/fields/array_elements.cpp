@@ -140,10 +140,11 @@ class TypedElements final : public ArrayElements {
     const auto beyond = std::ranges::find_if(
         numbers, [this](Scalar number) { return std::abs(static_cast<double>(number)) > largest_; });
     if (beyond == numbers.end()) return;
+    const bool half = largest_ <= kLargestHalf;
     char message[160];
     std::snprintf(message, sizeof message,
-                  ": the distance %.6g is beyond %g, the range of 16 bits; expected --dtype f32, or another --scale",
-                  static_cast<double>(*beyond), largest_);
+                  ": the distance %.6g is beyond %g, the range of %d bits; expected --dtype f%d, or another --scale",
+                  static_cast<double>(*beyond), largest_, half ? 16 : 32, half ? 32 : 64);
     throw OutputError(output_ + message);
   }
 
@@ -187,7 +188,9 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
     return std::make_unique<TypedElements<DoubleElement>>(DoubleElement{}, kAny, output);
   }
   if (precision == Precision::kSingle) {
-    return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, kAny, output);
+    constexpr double kLargestFloat = std::numeric_limits<float>::max();
+    const double largest = field.kind == FieldKind::kDistance ? kLargestFloat : kAny;
+    return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, largest, output);
   }
   const Narrowing narrowing(field, &nearest_half, &next_half_above);
   // Winding numbers beyond are stored as the largest half, which every rule takes for the same.

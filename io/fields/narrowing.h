@@ -16,7 +16,7 @@ namespace raycone {
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
 // side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
 // half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
-// magnitude, only for itself. Half-integers beyond 2^23 are not floats.
+// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Negative distances stay negative.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field)
@@ -25,6 +25,7 @@ class Narrowing {
   // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards.
   Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
       : keeps_sides_(field.kind == FieldKind::kReal || field.kind == FieldKind::kDensity),
+        keeps_negative_(field.kind == FieldKind::kDistance),
         of_magnitude_(field.threshold_of_magnitude),
         threshold_(field.threshold),
         low_(std::min(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
@@ -34,6 +35,7 @@ class Narrowing {
 
   [[nodiscard]] float operator()(double value) const {
     const float stored = nearest_(value);
+    if (keeps_negative_ && value < 0.0) return std::min(stored, down(0.0F));
     if (!keeps_sides_ || static_cast<double>(stored) == value) return stored;
     if (of_magnitude_) return std::copysign(on_side(std::abs(stored), std::abs(value)), stored);
     return on_side(stored, value);
@@ -63,6 +65,7 @@ class Narrowing {
   }
 
   bool keeps_sides_;
+  bool keeps_negative_;
   bool of_magnitude_;
   double threshold_, low_, high_;
   float (*nearest_)(double);

@@ -135,9 +135,11 @@ TextScanner::TextScanner(const NamedBytes& source)
     line_end_ = source.bytes[first_end];
 }
 
-void TextScanner::skip_continued_line() {
+void TextScanner::skip_continued_line(char comment) {
   do {
+    const char* const from = position_;
     skip_line();
+    if (std::memchr(from, comment, static_cast<std::size_t>(position_ - from))) return;
     const char* last = position_ - 1;  // the line's end, unless the text ends without one
     if (last > begin_ && last[-1] == '\r' && line_end_ == '\n') --last;
     if (last <= begin_ || last[-1] != '\\') return;

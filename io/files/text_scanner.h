@@ -58,8 +58,9 @@ class TextScanner {
     const void* found = std::memchr(position_, line_end_, remaining());
     position_ = found ? static_cast<const char*>(found) + 1 : end_;
   }
-  // The same, but a line that ends in a backslash takes the next one with it.
-  void skip_continued_line();
+  // The same, but a line that ends in a backslash takes the next one with it; not where a comment begins before: its
+  // last backslash may end the name of a directory.
+  void skip_continued_line(char comment);
   // Moves to the first token of the first line, from here on, that has one; false at the end of the text.
   bool skip_empty_lines();
   [[nodiscard]] std::string_view rest() const { return {position_, remaining()}; }

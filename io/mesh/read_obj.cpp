@@ -53,11 +53,7 @@ class ObjReader {
       group_.clear();
       continue_group();
     }
-    // A comment does not continue: its last backslash may end the name of a directory.
-    if (text_.peek() == '#')
-      text_.skip_line();
-    else
-      text_.skip_continued_line();
+    text_.skip_continued_line('#');
   }
 
   // What follows the keyword, with single blanks.

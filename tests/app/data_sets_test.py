@@ -118,7 +118,21 @@ class Lattices(DataSets):
             self.works("lattice %s --resolution 33 --padding 2v -o w.npy --dtype %s" % (OPEN_BOX, dtype))
             self.assertTrue((numpy.load("w.npy") == loaded[dtype]["w"]).all())
         self.refused("lattice %s -o a.npz --field sdf --dtype f16 --scale 1e7" % CUBE, 3, "beyond 65504")
-        self.assertFalse(os.path.exists("a.npz"))
+        for end in ("npy", "npz", "vdb", "vti", "nrrd"):
+            self.refused("lattice %s -o a.%s --field sdf --scale 1e40" % (CUBE, end), 3, "the range of 32 bits")
+            self.assertFalse(os.path.exists("a." + end))
+        self.works("lattice %s -o a.npy --field sdf --scale 1e40 --resolution 5 --double" % CUBE)
+        self.assertTrue(numpy.isfinite(numpy.load("a.npy")).all())
+        self.refused("points %s --sample uniform=5 -o a.npz --field sdf --dtype f32 --scale 1e40" % CUBE, 4, "32 bits")
+
+    def test_what_is_inside_has_a_negative_distance(self):
+        """Also where 16 or 32 bits round it to 0."""
+        with open("p.csv", "w") as file:
+            file.write("x,y,z\n" + "".join("0.5,0.5,%g\n" % z for z in (1e-8, 1e-12, 1e-44, 1e-50, 1e-150, 0.25)))
+        for dtype in ("f16", "f32", "f64"):
+            self.works("points %s p.csv -o p.npz --field sdf,inside --dtype %s" % (CUBE, dtype))
+            values = numpy.load("p.npz")
+            self.assertTrue(((values["sdf"] < 0) == (values["inside"] == 1)).all() and values["inside"].all(), dtype)
 
     def test_like_takes_the_lattice_again(self):
         self.works("lattice %s -o a.npz --voxel-size .1,.2,.3 --centers --field winding,inside" % TEAPOT)

@@ -332,7 +332,13 @@ class Names(Labels):
                          self.works("lattice left_lobe.obj right.obj -o - --format csv --resolution 2 --field label"))
         self.works("lattice @list right.obj -o d.csv --resolution 2 --field label --depfile d")
         self.assertEqual(read("d").split(), [b"d.csv:", b"\\", b"left_lobe.obj", b"\\", b"bones/femur.left.obj.gz",
-                                             b"\\", b"right.obj"])
+                                             b"\\", b"right.obj", b"\\", b"list"])
+        before = read("list")
+        for words in ("lattice @list -o list --format npy", "lattice @list -o l.npy --report list",
+                      "lattice @list right.obj -o l.npy --depfile list", "slice @list -o list --format png",
+                      "points @list --sample uniform=5 -o list --format npz"):
+            self.refused(words + " --field label", 1, "list: is input and")
+            self.assertEqual(read("list"), before, words)
 
     def test_names_are_in_files_and_reports(self):
         words = "lattice groups.obj --field label --parts group --orient auto" + BOX
@@ -457,6 +463,8 @@ class Refusals(Labels):
 
     def test_what_cannot_be_read(self):
         self.refused("lattice left_lobe.obj absent.obj -o l.npy --field label", 2, "absent.obj: cannot be")
+        self.write("points.csv", "0,0,0\n")
+        self.refused("points right.obj points.csv -o l.npy --field label --dtype f32", 1, "have no digits")
         self.refused("lattice @absent -o l.npy --field label", 2, "absent: cannot be")
         self.write("empty", "# nothing\n")
         self.refused("lattice @empty -o l.npy --field label", 2, "empty: names no mesh")

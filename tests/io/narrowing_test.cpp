@@ -102,6 +102,19 @@ TEST(Narrowing, LeavesOtherFieldsAlone) {
   }
 }
 
+TEST(Narrowing, KeepsNegativeDistancesNegative) {
+  FieldDescription field;
+  field.kind = FieldKind::kDistance;
+  const Narrowing narrowing(field);
+  for (const double tiny : {1e-40, 1e-46, 1e-50, 1e-300, 5e-324}) {
+    EXPECT_LT(narrowing(-tiny), 0.0F) << tiny;
+    EXPECT_GE(narrowing(-tiny), -std::max(static_cast<float>(1.01 * tiny), 1.5e-45F)) << tiny;
+    EXPECT_GE(narrowing(tiny), 0.0F) << tiny;
+  }
+  EXPECT_EQ(narrowing(-0.0), 0.0F);
+  EXPECT_EQ(narrowing(-0.3), -0.3F);
+}
+
 // Eleven binary digits, as halves between 2^-14 and 65504 have.
 float nearest_short(double value) {
   if (value == 0.0) return 0.0F;

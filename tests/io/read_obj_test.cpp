@@ -66,6 +66,12 @@ TEST(ReadObj, ContinuationOfAnIgnoredStatementIsIgnored) {
 TEST(ReadObj, BackslashAtTheEndOfACommentDoesNotContinue) {
   EXPECT_EQ(triangles(with_triangle("# C:\\models\\\nf 1 2 3 # C:\\models\\\n")), kOneTriangle);
   EXPECT_EQ(triangles("# C:\\models\\\n" + with_triangle("f 1 2 3\n")), kOneTriangle);
+  // Nor behind any other statement, whether it is read or ignored.
+  EXPECT_EQ(triangles("v 0 0 0 # x\\\nv 1 0 0#\\\nv 0 1 0\nf 1 2 3\n"), kOneTriangle);
+  for (const char* const before : {"usemtl a", "s off", "vn 0 0 1", "vt 0 0", "g a", "o a", "curv 1", "vp \\\n 1"}) {
+    EXPECT_EQ(triangles(with_triangle(before + std::string(" # c \\\nf 1 2 3\n"))), kOneTriangle) << before;
+    EXPECT_EQ(triangles(with_triangle(before + std::string(" # c \\\r\nf 1 2 3\r\n"))), kOneTriangle) << before;
+  }
 }
 
 TEST(ReadObj, WeightsAndColoursBehindCoordinatesAreIgnored) {

@@ -300,7 +300,10 @@ MUTANTS = [
         ("core/distance/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
          "return std::abs(to_unit(coordinate)) <= std::numeric_limits<double>::max();")]),
     Mutant("band_ends_with_what_is_near", "samples that are not far may be farther than that from the mesh", [
-        ("core/distance/distance.cpp", "std::min(to_unit(band), 4 * kFar)", "std::min(to_unit(band), kFar)")]),
+        ("core/distance/distance.cpp", "const double unit_band = std::min(to_unit(band), 4 * kFar);",
+         "const double unit_band = std::min(to_unit(band), kFar);"),
+        ("core/distance/distance.cpp", "visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, visitor);",
+         "visit_band(nearest(), rows, std::min(to_unit(band), kFar), phase, visitor);")]),
     Mutant("origin_has_a_size", "squares of distances to a mesh without a size underflow", [
         ("core/distance/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),
     Mutant("distances_without_care", "next to the surface or a needle rounding shows", [
@@ -333,10 +336,10 @@ MUTANTS = [
         ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_)",
          "if (std::abs(w - threshold) <= -doubt_)")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
-        ("core/boundary/change_bound.cpp", "sum += source.length / square;", "sum += 0.3 * source.length / square;")]),
+        ("core/boundary/change_bound.cpp", "sum += of_length;", "sum += 0.3 * of_length;")]),
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
-        ("core/boundary/change_bound.cpp", "if (source.area > 0.0) sum += source.area",
-         "if (source.area > 1.0) sum += source.area")]),
+        ("core/boundary/change_bound.cpp", "if (source.area == 0.0) return;",
+         "if (source.area <= 1.0) return;")]),
 
     # --- Self-intersections ---
     Mutant("neighbours_intersect", "what is shared does not count", [
@@ -508,13 +511,13 @@ MUTANTS = [
     Mutant("area_too_small", "a node has the area of its triangles", [
         ("core/far/source_tree.cpp", "  node.area *= 1 + kRounding;", "  node.area *= 0.99;")]),
     Mutant("bends_less", "second derivatives of a piece are at most 2 L / (4 pi d^3)", [
-        ("core/boundary/change_bound.cpp", "second += 2 * source.length / cube;",
-         "second += 0.2 * source.length / cube;")]),
+        ("core/boundary/change_bound.cpp", "second += 2 * of_length / distance;",
+         "second += 0.2 * of_length / distance;")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
         ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + mesh_.doubt()",
          "const double needed = 0 * grid.bend + mesh_.doubt()")]),
     Mutant("interpolation_between_wrong_nodes", "a sample is interpolated between the nodes around it", [
-        ("core/evaluation/rule_blocks.cpp", "node + 2 < nodes.size()", "node + 9 < nodes.size()")]),
+        ("core/evaluation/rule_blocks.cpp", "node + order + 1 < nodes.size()", "node + order + 8 < nodes.size()")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

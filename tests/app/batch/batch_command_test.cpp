@@ -307,6 +307,22 @@ TEST_F(Batch, WarnsOncePerMeshAndObeysStrict) {
   EXPECT_EQ(run({"--quiet"}).err, "");
 }
 
+TEST_F(Batch, WarnsInALineOfEachKind) {
+  const std::string mesh = put("a.obj", std::string(kTriangle) + "f 1 2 3\nf 1 2\n");
+  const CommandResult result = run();
+  for (const std::string name : {"skipped-faces", "inconsistent"}) {
+    EXPECT_NE(result.err.find("raycone: warning: " + mesh + ": " + name + ": "), std::string::npos) << result.err;
+  }
+  EXPECT_NE(rows().at("a.obj").message.find("; inconsistent: "), std::string::npos);
+}
+
+TEST_F(Batch, NamesTheMeshThatOptionsDoNotSuit) {
+  const std::string mesh = put("a.obj", open_cube(1));
+  const CommandResult result = run({"--field", "sdf", "--resolution", "3,4,5"});
+  EXPECT_EQ(result.status, 5);
+  EXPECT_NE(result.err.find("raycone: " + mesh + ": --field sdf: voxels of "), std::string::npos) << result.err;
+}
+
 // Two triangles, their corners in box.bin.
 constexpr const char* kBox = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],

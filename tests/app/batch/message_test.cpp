@@ -43,6 +43,7 @@ TEST(Message, CarriesResults) {
   sent.row.warnings = "one two";
   sent.companions = {{.path = "x.bin", .sha256 = "abc"}};
   sent.thumbnail = "iVBO";
+  sent.warnings = {"one: a; b", "two: c"};
   const JobResult received = result_from(to_message(sent));
   EXPECT_EQ(received.row.figures->faces, 12U);
   EXPECT_EQ(received.row.figures->evaluate_s, 0.25);
@@ -50,6 +51,7 @@ TEST(Message, CarriesResults) {
   EXPECT_EQ(received.row.warnings, "one two");
   EXPECT_EQ(received.companions, sent.companions);
   EXPECT_EQ(received.thumbnail, "iVBO");
+  EXPECT_EQ(received.warnings, sent.warnings);
 }
 
 }  // namespace

@@ -42,6 +42,13 @@ TEST_F(Report, CountsWarningsByName) {
   }
 }
 
+TEST_F(Report, OfABatchWithoutMeshesIsEmpty) {
+  std::filesystem::create_directory(dir_ / "nothing");
+  ASSERT_EQ(run_raycone({"batch", dir_ / "nothing", "--out-dir", out_}).status, 0);
+  EXPECT_EQ(run_raycone({"report", out_}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/report.html"));
+}
+
 TEST_F(Report, OfWhatIsNoBatchIsAnInputError) {
   EXPECT_EQ(run_raycone({"report", dir_ / "absent"}).status, 2);
   EXPECT_EQ(run_raycone({"report", dir_.path().string()}).status, 2);

@@ -17,8 +17,6 @@ constexpr std::uint32_t kNone = UINT32_MAX;
 
 using Loop = std::vector<std::uint32_t>;  // vertices, the last joined to the first
 
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // The edges as a graph on their ends, each as often as its multiplicity says.
 class EdgeGraph {
  public:
@@ -89,7 +87,7 @@ class EdgeGraph {
       double best_cosine = -2.0;
       for (std::size_t e = first_[v]; e < left_[v]; ++e) {
         const Vec3 out = vertices_[to_[e]] - vertices_[v];
-        const double cosine = dot(out, back) / (length_of(out) * length_of(back));
+        const double cosine = dot(out, back) / (norm(out) * norm(back));
         if (cosine > best_cosine) best_cosine = cosine, best = e;
       }
     }
@@ -153,7 +151,7 @@ class LoopFiller {
   [[nodiscard]] double length(const Loop& loop) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      sum += length_of(vertices_[loop[(i + 1) % loop.size()]] - vertices_[loop[i]]);
+      sum += norm(vertices_[loop[(i + 1) % loop.size()]] - vertices_[loop[i]]);
     }
     return sum;
   }
@@ -161,7 +159,7 @@ class LoopFiller {
  private:
   void add(Filling& filling, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     const Vec3 normal = cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
-    filling.area += length_of(normal) / 2;
+    filling.area += norm(normal) / 2;
     filling.triangles.push_back({a, b, c});
   }
 

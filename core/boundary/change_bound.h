@@ -1,7 +1,6 @@
 // How fast winding numbers can change from place to place.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "core/distance/block_kernel.h"
@@ -15,8 +14,6 @@ namespace raycone {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
-
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 // Where blocks begin along an axis, behind the first one.
 class BlockEnds {
@@ -51,8 +48,8 @@ class Descent {
     const Box box{{rows_.xs[block.begin[0]], rows_.ys[block.begin[1]], rows_.zs[block.begin[2]]},
                   {rows_.xs[block.end[0] - 1], rows_.ys[block.end[1] - 1], rows_.zs[block.end[2] - 1]}};
     const Vec3 center = 0.5 * (box.lower + box.upper);
-    const double radius = std::max(length(center - box.lower), length(box.upper - center));
-    const double reach = std::min(band_ + radius, distance + length(center - from)) * kSlack;
+    const double radius = std::max(norm(center - box.lower), norm(box.upper - center));
+    const double reach = std::min(band_ + radius, distance + norm(center - from)) * kSlack;
     const double square = tree_.squared_distance(center, reach * reach);
     if (square == kNowhere) return visitor_.beyond(block);
     const double here = std::sqrt(square);

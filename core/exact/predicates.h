@@ -15,7 +15,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "core/data/vec3.h"
 

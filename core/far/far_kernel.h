@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "core/boundary/sample_tile.h"
 #include "core/far/source_tree.h"

@@ -122,8 +122,6 @@ class EdgeSums {
   std::array<std::array<Complex, kMomentTerms>, 3> sums_;
 };
 
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // R_n^m(s), m >= 0.
 std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
   std::array<Complex, kMultipoleTerms> all;
@@ -171,7 +169,7 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
     const std::array<Vec3, 3> sides{scale * (t.b - t.a), scale * (t.c - t.b), scale * (t.a - t.c)};
     for (std::size_t i = 0; i < 3; ++i) {
       sums.add(corners[i], sides[i], t.orientation);
-      reach += length_of(corners[i]) * length_of(sides[i]);
+      reach += norm(corners[i]) * norm(sides[i]);
     }
   }
   sums.finish();
@@ -220,7 +218,7 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
     }
   }
   const MultipoleBounds bounds = bounds_of(part);
-  const double length = length_of(shift);
+  const double length = norm(shift);
   for (int n = 1; n <= kP; ++n) {
     double error = 0, power = 1;  // of the length
     for (int k = 0; k < n; ++k) {

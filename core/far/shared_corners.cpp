@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE

@@ -36,8 +36,6 @@ void extend(Box& box, const Box& by) {
   }
 }
 
-double norm(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 double longest_side(const Box& box) {
   const Vec3 size = box.upper - box.lower;
   return std::max({size.x, size.y, size.z});

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/machine/buckets.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {

@@ -21,13 +21,11 @@ constexpr std::size_t kLargeSurface = 32;  // faces: from here on the cone is fa
 
 std::int64_t in_units(double value, double units) { return std::llround(value * units); }
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // Van Oosterom and Strackee 1983, eq. 8. On the face: the mean of both sides.
 double turns_of(const std::array<Vec3, 3>& corners, const Vec3& q) {
   const Vec3 a = corners[0] - q, b = corners[1] - q, c = corners[2] - q;
   constexpr double kOnFace = 1e-9;  // of the imaginary part beside the real one: far above rounding
-  const double la = length(a), lb = length(b), lc = length(c);
+  const double la = norm(a), lb = norm(b), lc = norm(c);
   const double real = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   const double imaginary = dot(a, cross(b, c));
   if (real < 0.0 && std::abs(imaginary) < -kOnFace * real) return 0.0;
@@ -74,7 +72,7 @@ Box box_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices
 SurfaceDipole dipole_about(const Box& box) {
   SurfaceDipole dipole;
   dipole.centre = 0.5 * box.lower + 0.5 * box.upper;
-  dipole.radius = 0.5 * length(box.upper - box.lower);
+  dipole.radius = 0.5 * norm(box.upper - box.lower);
   return dipole;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/machine/buckets.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {

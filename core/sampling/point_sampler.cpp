@@ -18,8 +18,6 @@ std::uint64_t count_of(const SampleGroup& group) {
   return std::visit([](const auto& one) { return one.count; }, group);
 }
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // Twice the area along each axis, each part rounded once.
 struct AreaVector {
   long double x, y, z;
@@ -32,15 +30,15 @@ AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {part(1, 2), part(2, 0), part(0, 1)};
 }
 
-long double length(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+long double norm(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
-long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return length(area_vector(a, b, c)); }
+long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return norm(area_vector(a, b, c)); }
 
 // Of a triangle with an area, whatever its shape and size.
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const AreaVector v = area_vector(a, b, c);
-  const long double norm = length(v);
-  return {static_cast<double>(v.x / norm), static_cast<double>(v.y / norm), static_cast<double>(v.z / norm)};
+  const long double size = norm(v);
+  return {static_cast<double>(v.x / size), static_cast<double>(v.y / size), static_cast<double>(v.z / size)};
 }
 
 // Twice the area within 1e-9 of itself, whatever the shape and size; 0 if and only if it is 0.
@@ -48,8 +46,8 @@ long double doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double kTiny = 0x1p-450, kHuge = 0x1p450;  // the square roots of what squares need not to leave the range
   constexpr double kThinnest = 0x1p-20;  // sine of the angle: the product is off by 8 u of the sides' lengths
   const Vec3 ab = b - a, ac = c - a;
-  const double product = length(cross(ab, ac)), lengths = length(ab) * length(ac);
-  const bool in_range = length(ab) > kTiny && length(ac) > kTiny && product > kTiny && lengths < kHuge;
+  const double product = norm(cross(ab, ac)), lengths = norm(ab) * norm(ac);
+  const bool in_range = norm(ab) > kTiny && norm(ac) > kTiny && product > kTiny && lengths < kHuge;
   return in_range && product > kThinnest * lengths ? product : exact_doubled_area(a, b, c);
 }
 
@@ -91,7 +89,7 @@ double diagonal_of(const TriangleMesh& mesh) {
   const int exponent = largest_exponent(mesh);
   const PowerOfTwo to_unit(-exponent), to_world(exponent);
   const Box box = bounding_box(mesh);
-  return to_world(length(to_unit(box.upper) - to_unit(box.lower)));
+  return to_world(norm(to_unit(box.upper) - to_unit(box.lower)));
 }
 
 }  // namespace

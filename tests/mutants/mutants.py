@@ -283,8 +283,8 @@ MUTANTS = [
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
         ("core/distance/tree_kernel.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
     Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
-        ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + length(center - from))",
-         "std::min(band_, distance + length(center - from))")]),
+        ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + norm(center - from))",
+         "std::min(band_, distance + norm(center - from))")]),
     Mutant("half_spaces_without_bend", "closest points seen from elsewhere are farther than by their direction", [
         ("core/distance/block_kernel.cpp", "nearest.distance + bend(nearest.distance, middle.radius) +",
          "nearest.distance +")]),

@@ -59,8 +59,9 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
 }
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  constexpr double kUnit = 5.2e-9;    // of a direct sum
-  constexpr double kInBlocks = 9e-9;  // of blocks, with all that they take beside triangles; of five meshes at 256
+  // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so these are in the middle.
+  constexpr double kUnit = 3.3e-9;    // of a direct sum
+  constexpr double kInBlocks = 5e-9;  // of blocks, with all that they take beside triangles; of five meshes at 256
   constexpr double kSource = 1e-5;    // in the tree
   if (mesh.is_closed()) return 0.0;
   double samples = 1.0;

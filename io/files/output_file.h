@@ -49,10 +49,11 @@ class OutputFile {
   std::shared_ptr<State> state_;
 };
 
-// Files of which either all appear or none: those that have been committed wait for commit() of the group.
+// Files that appear together: those that have been committed wait for commit() of the group. Where one of them cannot
+// be written, none appears. Members may be destroyed before.
 class OutputGroup {
  public:
-  // Renames them, in the order in which they were committed. Throws OutputError.
+  // Renames them, in the order in which they were committed. Throws OutputError; those before are in place then.
   void commit();
 
  private:

@@ -10,29 +10,13 @@ import json
 import os
 import shutil
 import subprocess
-import sys
-import tempfile
 import unittest
 import zipfile
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import CommandCase, mesh, numpy_or_skip, read, run
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, TEAPOT, OPEN_BOX = (os.path.join(MESHES, name) for name in ("cube.obj", "teapot.obj", "open_box.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
-
-
-def run(words, **options):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
-
-
-def read(path):
-    with open(path, "rb") as file:
-        return file.read()
+numpy = numpy_or_skip()
+CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
 
 
 def bits_of(archive):
@@ -40,25 +24,7 @@ def bits_of(archive):
     return numpy.unpackbits(archive["inside"])[: shape.prod()].reshape(shape).astype(bool)
 
 
-class DataSets(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words, **options):
-        result = run(words + " --quiet", **options)
-        self.assertEqual(result.returncode, 0, (words, result.stderr))
-        self.assertEqual(result.stderr, b"", words)
-        return result.stdout
-
-    def refused(self, words, status, expected):
-        result = run(words)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
-        self.assertIn(expected, result.stderr.decode(), words)
-        self.assertEqual(result.stderr.count(b"\n"), 1, words)
-
+class DataSets(CommandCase):
     def csv(self, words):
         text = self.works(words + " -o - --format csv").decode()
         return numpy.genfromtxt(io.StringIO(text), delimiter=",", names=True)

@@ -4,31 +4,18 @@ The oracle: differences of the winding numbers that raycone prints itself, and t
 """
 
 import json
-import os
-import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import CommandCase, mesh, numpy_or_skip
 
+numpy = numpy_or_skip()
 try:
     import pyopenvdb
 except ImportError:
     pyopenvdb = None
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, OPEN_BOX = (os.path.join(MESHES, name) for name in ("cube.obj", "open_box.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
+CUBE, OPEN_BOX = map(mesh, ("cube", "open_box"))
 LATTICE = "lattice %s --resolution 6,5,4 --padding .3 --field gradient -o " % OPEN_BOX
-
-
-def run(words, **options):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
 
 
 def table(text):
@@ -39,23 +26,7 @@ def vectors(rows):
     return numpy.stack([rows["gradient_" + axis] for axis in "xyz"], axis=-1)
 
 
-class Gradient(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words, **options):
-        result = run(words + " --quiet", **options)
-        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
-        return result.stdout
-
-    def refused(self, words, expected):
-        result = run(words)
-        self.assertEqual(result.returncode, 1, words)
-        self.assertIn(expected, result.stderr.decode(), words)
-
+class Gradient(CommandCase):
     def expected(self):
         """As CSV has them: shape (nx, ny, nz, 3)."""
         rows = table(self.works(LATTICE + "- --format csv"))
@@ -143,9 +114,9 @@ class Gradient(unittest.TestCase):
 
     def test_what_holds_numbers_only_refuses_it(self):
         for name in ("nrrd", "nii", "nii.gz"):
-            self.refused(LATTICE + "a." + name, "--field gradient: %s holds one number per sample" % name)
-        self.refused(LATTICE + "a.csv --rule odd", "--rule odd: has no effect on winding, density and gradient")
-        self.refused("slice %s -o a.png --field gradient" % CUBE, "--field gradient: expected winding, inside, sdf or label")
+            self.refused(LATTICE + "a." + name, 1, "--field gradient: %s holds one number per sample" % name)
+        self.refused(LATTICE + "a.csv --rule odd", 1, "--rule odd: has no effect on winding, density and gradient")
+        self.refused("slice %s -o a.png --field gradient" % CUBE, 1, "--field gradient: expected winding, inside, sdf or label")
 
     def test_batches(self):
         self.works("batch %s --out-dir out --format npy --field gradient --resolution 6,5,4 --padding .3" % OPEN_BOX)

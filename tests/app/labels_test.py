@@ -9,30 +9,14 @@ import gzip
 import json
 import os
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import CommandCase, numpy_or_skip, read
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+numpy = numpy_or_skip()
 SHARED = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else ""
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
 BOX = " --bounds -.25,-.25,-.25,3.25,1.75,1.75 --resolution 15,9,9"
-
-
-def run(words, **options):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
-
-
-def read(path):
-    with open(path, "rb") as file:
-        return file.read()
 
 
 def box(corner, size=1.0, flipped=False, lid=True):
@@ -97,12 +81,9 @@ PARTS = {"left lobe": box((0, 0, 0)), "right": box((0.5, 0.5, 0.5)), "open": box
          "turned": box((1.25, 0.125, 0.125), 0.75, flipped=True)}
 
 
-class Labels(unittest.TestCase):
+class Labels(CommandCase):
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
+        super().setUp()
         for name, part in PARTS.items():
             self.write(name.replace(" ", "_") + ".obj", obj({"": part}))
         self.files = " ".join(name.replace(" ", "_") + ".obj" for name in PARTS)
@@ -111,19 +92,6 @@ class Labels(unittest.TestCase):
     def write(self, name, text):
         with open(name, "wb") as file:
             file.write(text if isinstance(text, bytes) else text.encode())
-
-    def works(self, words, quiet=True, **options):
-        result = run(words + (" --quiet" if quiet else ""), **options)
-        self.assertEqual(result.returncode, 0, (words, result.stderr))
-        if quiet:
-            self.assertEqual(result.stderr, b"", words)
-        return result.stderr.decode() if not quiet else result.stdout
-
-    def refused(self, words, status, expected, **options):
-        result = run(words, **options)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
-        self.assertIn(expected, result.stderr.decode(), words)
-        self.assertEqual(result.stderr.count(b"\n"), 1, words)
 
     def lattice(self, words, options="", place=BOX):
         self.works("lattice %s -o labels.npy --field label%s%s" % (words, place, options))
@@ -261,7 +229,7 @@ class Values(Labels):
         self.assertEqual(set(labels.ravel()), {0, 1, 2, 3})
 
     def test_verification_finds_what_is_right(self):
-        message = self.works("lattice %s -o l.npy --field label --verify 200%s" % (self.files, BOX), quiet=False)
+        message = self.reported("lattice %s -o l.npy --field label --verify 200%s" % (self.files, BOX))
         self.assertIn("verified 200 samples", message)
 
     def test_results_do_not_depend_on_threads_and_engines(self):
@@ -477,8 +445,7 @@ class Refusals(Labels):
         self.assertFalse(os.path.exists("l.npy"))
 
     def test_warnings_name_their_mesh(self):
-        text = self.works("lattice left_lobe.obj turned.obj right.obj -o l.npy --field label --report r.json" + BOX,
-                          quiet=False)
+        text = self.reported("lattice left_lobe.obj turned.obj right.obj -o l.npy --field label --report r.json" + BOX)
         warnings = [line for line in text.split("\n") if "warning" in line]
         self.assertEqual(len(warnings), 2, text)
         self.assertRegex(warnings[0], r"\Araycone: warning: turned\.obj: reversed: 1 closed")

@@ -8,25 +8,14 @@ installed.
 import itertools
 import json
 import os
-import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import CommandCase, mesh, numpy_or_skip, read, run
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, TEAPOT, OPEN_BOX = (os.path.join(MESHES, name) for name in ("cube.obj", "teapot.obj", "open_box.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
-
-
-def run(words):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
+numpy = numpy_or_skip()
+CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
 
 
 def rotation(seed):
@@ -57,24 +46,7 @@ SIGNED_PERMUTATIONS = [numpy.eye(3)[list(order)] * numpy.array(signs)[:, None]
                        for order in itertools.permutations(range(3)) for signs in itertools.product((1, -1), repeat=3)]
 
 
-class Like(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words):
-        result = run(words + " --quiet")
-        self.assertEqual(result.returncode, 0, (words, result.stderr))
-        return result.stdout
-
-    def refused(self, words, status, expected):
-        result = run(words)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
-        self.assertIn(expected, result.stderr.decode(), words)
-        self.assertEqual(result.stderr.count(b"\n"), 1, words)
-
+class Like(CommandCase):
     def table(self, words):
         return numpy.array([line.split(b",") for line in self.works(words).split(b"\n")[1:-1]])
 

@@ -5,43 +5,20 @@ distances to any mesh (tests/core/distance_test.cpp has the oracle of those); an
 """
 
 import json
-import os
 import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import RAYCONE, SURFACE, CommandCase, mesh, numpy_or_skip
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-TEAPOT, CUBE, MOEBIUS = (os.path.join(MESHES, name) for name in ("teapot.obj", "cube.obj", "moebius.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
-ALL = "closed,oriented,outward,manifold,embedded"
+numpy = numpy_or_skip()
+TEAPOT, CUBE, MOEBIUS = map(mesh, ("teapot", "cube", "moebius"))
 
 
-def run(words):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
-
-
-class Simplify(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words):
-        result = run(words + " --quiet")
-        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
-
+class Simplify(CommandCase):
     def surface(self, words, output):
         """Its faces, and the spacing of the lattice."""
         self.works("surface %s -o %s --report report.json" % (words, output))
-        self.works("info %s --require %s" % (output, ALL))
+        self.works("info %s --require %s" % (output, SURFACE))
         with open("report.json") as file:
             report = json.load(file)
         return report["surface"]["faces"], report["lattice"]["spacing"][0]

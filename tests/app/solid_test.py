@@ -9,26 +9,13 @@ import itertools
 import json
 import math
 import os
-import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import CommandCase, mesh, numpy_or_skip, run
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, CUBES, OPEN_BOX, MOEBIUS, SOUP, TEAPOT = (
-    os.path.join(MESHES, name + ".obj")
-    for name in ("cube", "overlapping_cubes", "open_box", "moebius", "soup", "teapot"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
-
-
-def run(words):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, text=True)
+numpy = numpy_or_skip()
+CUBE, CUBES, OPEN_BOX, MOEBIUS, SOUP, TEAPOT = map(
+    mesh, ("cube", "overlapping_cubes", "open_box", "moebius", "soup", "teapot"))
 
 
 def largest_jump(values):
@@ -40,23 +27,7 @@ def largest_jump(values):
     return jump
 
 
-class Solid(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words):
-        result = run(words + " --quiet")
-        self.assertEqual((result.returncode, result.stderr), (0, ""), words)
-        return result.stdout
-
-    def refused(self, words, status, reason):
-        result = run(words)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
-        self.assertIn(reason, result.stderr, words)
-
+class Solid(CommandCase):
     def lattice(self, words):
         """Its NPZ, with distances in 64 bits."""
         self.works("lattice %s -o out.npz --dtype f64" % words)
@@ -148,9 +119,9 @@ class Solid(unittest.TestCase):
                 (CUBE, "--resolution 9 --bounds 0,0,0,1,1,.5", 2, "reaches the border of the lattice"),
                 (CUBE, "--resolution 5,6,7", 1, "--field solid: voxels of 0.25 x 0.2 x 0.166667, expected cubic ones"),
                 (CUBE, "--resolution 9 --memory-limit 1", 4, "memory")):
-            self.refused("lattice %s -o a.vdb --field solid %s" % (mesh, options), status, reason)
+            self.refused("lattice %s -o a.vdb --field solid %s --quiet" % (mesh, options), status, reason)
             self.assertFalse(os.path.exists("a.vdb"))
-        self.refused("batch %s %s --out-dir out --field solid --resolution 5" % (SOUP, CUBE), 5, "")
+        self.assertEqual(run("batch %s %s --out-dir out --field solid --resolution 5" % (SOUP, CUBE)).returncode, 5)
         with open("out/results.csv") as file:
             self.assertIn(",invalid,2,", file.read())
 
@@ -159,7 +130,7 @@ class Solid(unittest.TestCase):
         for words in ("points %s - --field solid", "points %s --sample uniform=5 -o a.npz --field winding,solid",
                       "slice %s -o a.png --field solid", "batch %s --out-dir a --sample uniform=5 --field solid"):
             self.refused(words % CUBE, 1, reason)
-            self.assertNotIn("solid", run(words.split()[0] + " --help").stdout if "batch" not in words else "")
+            self.assertNotIn(b"solid", run(words.split()[0] + " --help").stdout if "batch" not in words else b"")
 
 
 unittest.main()

@@ -6,42 +6,19 @@ boxes and plates that have grown, by Steiner's formula; and `info --require`.
 
 import json
 import math
-import os
-import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy
-except ImportError:
-    print("no numpy in %s: skipped" % sys.executable)
-    sys.exit(0)
+from command_case import SURFACE, CommandCase, mesh, numpy_or_skip, run
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, TEAPOT, MOEBIUS, SOUP = (os.path.join(MESHES, name)
-                               for name in ("cube.obj", "teapot.obj", "moebius.obj", "soup.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
-ALL = "closed,oriented,outward,manifold,embedded"
+numpy = numpy_or_skip()
+CUBE, TEAPOT, MOEBIUS, SOUP = map(mesh, ("cube", "teapot", "moebius", "soup"))
 
 
-def run(words):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
-
-
-class Thicken(unittest.TestCase):
+class Thicken(CommandCase):
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
+        super().setUp()
         with open("sheet.obj", "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-
-    def works(self, words):
-        result = run(words + " --quiet")
-        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
-        return result.stdout
 
     def test_progress_makes_room_for_warnings(self):
         # Two plates, one of them thinner than a voxel.
@@ -60,7 +37,7 @@ class Thicken(unittest.TestCase):
     def surface(self, words, output="a.ply"):
         """Its part of the report, and its volume."""
         self.works("surface %s -o %s --report report.json" % (words, output))
-        self.works("info %s --require %s" % (output, ALL))
+        self.works("info %s --require %s" % (output, SURFACE))
         with open("report.json") as file:
             surface = json.load(file)["surface"]
         return surface, json.loads(self.works("info %s --json" % output))["signed_volume"]

@@ -6,15 +6,12 @@ The oracle is the report of the run that made the file. Damaged files are refuse
 import json
 import os
 import random
-import subprocess
-import sys
-import tempfile
 import unittest
 import zipfile
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-CUBE, TEAPOT = (os.path.join(MESHES, name) for name in ("cube.obj", "teapot.obj"))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
+from command_case import CommandCase, mesh, run
+
+CUBE, TEAPOT = map(mesh, ("cube", "teapot"))
 TURNED = """NRRD0004
 dimension: 3
 space: LPS
@@ -25,31 +22,12 @@ space origin: (0,0,1)
 """
 
 
-def run(words):
-    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE)
-
-
-class VolumeInfo(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-
-    def works(self, words):
-        result = run(words)
-        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
-        return result.stdout.decode()
-
-    def refused(self, words, status, expected):
-        result = run(words)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
-        self.assertIn(expected, result.stderr.decode(errors="replace"), words)
-        self.assertEqual(result.stderr.count(b"\n"), 1, words)
-        return result
+class VolumeInfo(CommandCase):
+    def info(self, words):
+        return self.works("info " + words).decode()
 
     def facts(self, name):
-        return json.loads(self.works("info %s --json" % name))
+        return json.loads(self.info("%s --json" % name))
 
     def test_what_each_format_says(self):
         with open("turned.nrrd", "w") as file:
@@ -58,7 +36,7 @@ class VolumeInfo(unittest.TestCase):
             for name, form, array in (("a.vdb", "OpenVDB", ("inside", "bool")), ("a.npz", "NPZ", ("inside", "|b1")),
                                       ("a.nrrd", "NRRD", ("inside", "uint8")), ("a.nii", "NIfTI-1", ("", "uint8")),
                                       ("a.nii.gz", "NIfTI-1", ("", "uint8"))):
-                words = "lattice %s -o %s --field inside --rule abs=.5 --scale 2 --quiet --report r.json %s"
+                words = "lattice %s -o %s --field inside --rule abs=.5 --scale 2 --report r.json %s"
                 self.works(words % (CUBE, name, lattice))
                 with open("r.json") as file:
                     report = json.load(file)
@@ -89,17 +67,17 @@ class VolumeInfo(unittest.TestCase):
                            ("a.nrrd", ["--centers", "--resolution=7"]),
                            ("p.npz", ["--sample=uniform=9,near=3:0.1", "--seed=7", "--dtype=f16"])):
             options = common + more
-            words = "%s %s -o %s %s --threads 1 --report r.json --quiet" % (
+            words = "%s %s -o %s %s --threads 1 --report r.json" % (
                 "points" if name == "p.npz" else "lattice", CUBE, name, " ".join(options))
             self.works(words)
             with open("r.json") as file:
                 report = json.load(file)
-            self.assertEqual(report["command"], words.split(), name)
+            self.assertEqual(report["command"], words.split() + ["--quiet"], name)
             made = self.facts(name)["made"]
             told = made["options"] if name != "a.vdb" else made["options"].split(" ")
             self.assertEqual(sorted(told), sorted(options), name)
             self.assertEqual(made["transform"], report["transform"], name)
-            text = self.works("info " + name)
+            text = self.info(name)
             for option in options:
                 self.assertIn(option, text, name)
 
@@ -115,15 +93,15 @@ class VolumeInfo(unittest.TestCase):
             self.assertLessEqual(abs(got - expected), tolerance)
 
     def test_text_and_several(self):
-        self.works("lattice %s -o a.vdb --field winding,inside --rule odd --resolution 3 --quiet" % CUBE)
-        self.works("points %s --sample uniform=5 -o p.npz --quiet" % CUBE)
-        text = self.works("info a.vdb p.npz")
+        self.works("lattice %s -o a.vdb --field winding,inside --rule odd --resolution 3" % CUBE)
+        self.works("points %s --sample uniform=5 -o p.npz" % CUBE)
+        text = self.info("a.vdb p.npz")
         for line in ("  grids                winding float\n                       inside bool\n",
                      "  samples              3 x 3 x 3\n", "  spacing              (0.5, 0.5, 0.5) world units\n",
                      "  axes                 those of the world\n", "  rule                 odd\n",
                      "  mesh                 cube.obj\n", "\np.npz\n", "  arrays               points <f8 (5, 3)\n"):
             self.assertIn(line, text)
-        several = json.loads(self.works("info %s a.vdb p.npz --json" % CUBE))
+        several = json.loads(self.info("%s a.vdb p.npz --json" % CUBE))
         self.assertEqual([entry.get("mesh", entry.get("file")) for entry in several], [CUBE, "a.vdb", "p.npz"])
         self.assertIsNone(several[2]["lattice"])
         self.assertEqual(several[2]["made"]["options"], ["--sample=uniform=5"])
@@ -137,7 +115,7 @@ class VolumeInfo(unittest.TestCase):
         facts = self.facts("a.nrrd")
         self.assertEqual((facts["arrays"], facts["lattice"], facts["made"]),
                          ([{"name": "", "type": "float", "shape": [4, 5]}], None, {}))
-        self.assertIn("no lattice           not a readable volume: dimension, expected", self.works("info a.nrrd"))
+        self.assertIn("no lattice           not a readable volume: dimension, expected", self.info("a.nrrd"))
 
     def test_archives_of_others(self):
         with zipfile.ZipFile("a.npz", "w") as archive:
@@ -155,7 +133,7 @@ class VolumeInfo(unittest.TestCase):
                 file.write(b"NRRD0004\ntype: float\x1b[31m\ndimension: 3\nsizes: 1 2 3\nspacings: 1 1 1\nraycone:=" +
                            made.encode("latin1") + b"\n\n")
             self.assertEqual(self.facts("a.nrrd")["lattice"]["index_max"], [0, 1, 2], made[:40])
-            text = self.works("info a.nrrd")
+            text = self.info("a.nrrd")
             self.assertNotIn("\x1b", text)
             self.assertLess(len(text), 10000)
         self.assertEqual(self.facts("a.nrrd")["made"], {})
@@ -163,10 +141,10 @@ class VolumeInfo(unittest.TestCase):
     def test_damaged_files(self):
         """Bytes changed, and ends cut off: facts, or one line."""
         chance = random.Random(3)
-        self.works("lattice %s -o a.vdb --field winding,inside --resolution 3 --quiet" % CUBE)
-        self.works("lattice %s -o a.npz --resolution 3 --quiet" % CUBE)
-        self.works("lattice %s -o a.nrrd --resolution 3 --quiet" % CUBE)
-        self.works("lattice %s -o a.nii --resolution 3 --quiet" % CUBE)
+        self.works("lattice %s -o a.vdb --field winding,inside --resolution 3" % CUBE)
+        self.works("lattice %s -o a.npz --resolution 3" % CUBE)
+        self.works("lattice %s -o a.nrrd --resolution 3" % CUBE)
+        self.works("lattice %s -o a.nii --resolution 3" % CUBE)
         outcomes = set()
         for name in ("a.vdb", "a.npz", "a.nrrd", "a.nii"):
             with open(name, "rb") as file:

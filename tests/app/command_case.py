@@ -1,0 +1,68 @@
+"""What tests of the tool's commands share.
+
+The first two arguments of such a test are the tool and the folder of the project's meshes. Importing this takes them
+off sys.argv.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+PATIENCE = 120  # seconds; more hangs, however busy the machine is
+SURFACE = "closed,oriented,outward,manifold,embedded"  # what `info --require` is asked about surfaces
+
+
+def numpy_or_skip():
+    """The module; without it the whole test is skipped."""
+    try:
+        import numpy
+    except ImportError:
+        print("no numpy in %s: skipped" % sys.executable)
+        sys.exit(0)
+    return numpy
+
+
+def mesh(name):
+    """The path of one of the project's meshes, NAME.obj."""
+    return os.path.join(MESHES, name + ".obj")
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def run(words, **options):
+    return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
+
+
+class CommandCase(unittest.TestCase):
+    """Each test in an empty folder of its own."""
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.addCleanup(os.chdir, "/")
+        os.chdir(directory.name)
+
+    def works(self, words, **options):
+        """Standard output of a run that has nothing to say beside."""
+        result = run(words + " --quiet", **options)
+        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
+        return result.stdout
+
+    def reported(self, words):
+        """What a run that works says."""
+        result = run(words)
+        self.assertEqual(result.returncode, 0, (words, result.stderr))
+        return result.stderr.decode()
+
+    def refused(self, words, status, expected, **options):
+        """With one line, which contains `expected`."""
+        result = run(words, **options)
+        self.assertEqual(result.returncode, status, (words, result.stderr))
+        self.assertIn(expected, result.stderr.decode(errors="replace"), words)
+        self.assertEqual(result.stderr.count(b"\n"), 1, words)

@@ -6,14 +6,16 @@
 namespace raycone {
 namespace {
 
-// Sets of labels, numbered from 0.
-class LabelSets {
+// Sets of numbers from 0 on, each number with a lower one or none above it.
+class DisjointSets {
  public:
-  explicit LabelSets(std::uint32_t labels) : count_(labels), parent_(labels) {
+  explicit DisjointSets(std::size_t numbers) : count_(numbers), parent_(numbers) {
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
-  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  void prefetch(std::uint32_t n) const { __builtin_prefetch(&parent_[n], 1); }
 
   void join(std::uint32_t a, std::uint32_t b) {
     if (parent_[a] == parent_[b]) return;
@@ -23,22 +25,25 @@ class LabelSets {
     --count_;
   }
 
-  // Per label the number of its set; sets are numbered by their lowest labels.
-  [[nodiscard]] std::vector<std::uint32_t> numbers() const {
-    std::vector<std::uint32_t> numbers(parent_.size());
+  // 0, 1 ... for the sets by their lowest numbers, per number for which is_used(number); kUnused for the others.
+  template <class IsUsed>
+  [[nodiscard]] std::vector<std::uint32_t> indices(const IsUsed& is_used) const {
+    std::vector<std::uint32_t> indices(parent_.size(), Components::kUnused);
     std::uint32_t next = 0;
-    for (std::uint32_t l = 0; l < parent_.size(); ++l) numbers[l] = parent_[l] == l ? next++ : numbers[parent_[l]];
-    return numbers;
+    for (std::size_t n = 0; n < parent_.size(); ++n) {
+      if (is_used(n)) indices[n] = parent_[n] == n ? next++ : indices[parent_[n]];
+    }
+    return indices;
   }
 
  private:
-  [[nodiscard]] std::uint32_t root(std::uint32_t l) {
-    while (parent_[l] != l) l = parent_[l] = parent_[parent_[l]];
-    return l;
+  [[nodiscard]] std::uint32_t root(std::uint32_t n) {
+    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+    return n;
   }
 
-  std::uint32_t count_;
-  std::vector<std::uint32_t> parent_;  // lower than their children
+  std::size_t count_;
+  std::vector<std::uint32_t> parent_;  // never higher than its number
 };
 
 }  // namespace
@@ -60,7 +65,7 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
   if (components.count < 2) return components;
   constexpr std::size_t kSome = 4;
   for (const std::size_t step : {kSome, std::size_t{1}}) {
-    LabelSets sets(components.count);
+    DisjointSets sets(components.count);
     for (std::size_t i = 0; i < mesh.triangles.size() && sets.count() > 1; i += step) {
       const Triangle& t = mesh.triangles[i];
       const std::uint32_t a = label[t[0]], b = label[t[1]], c = label[t[2]];
@@ -69,8 +74,8 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
       sets.join(a, c);
     }
     if (sets.count() == components.count) continue;
-    components.count = sets.count();
-    const std::vector<std::uint32_t> numbers = sets.numbers();
+    components.count = static_cast<std::uint32_t>(sets.count());
+    const std::vector<std::uint32_t> numbers = sets.indices([](std::size_t) { return true; });
     for (std::uint32_t& l : label) {
       if (l != Components::kUnused) l = numbers[l];
     }
@@ -80,35 +85,20 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
 }
 
 Components components_of(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
+  DisjointSets sets(mesh.vertices.size());
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);  // bits would wait for each other
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  // Parents are lower than their children, so that a pass by increasing vertices finds all roots.
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    if (parent[a] == parent[b]) return;
-    const std::uint32_t i = root(a), j = root(b);
-    parent[std::max(i, j)] = std::min(i, j);
-  };
-  constexpr std::size_t kAhead = 16;  // triangles: their vertices may be anywhere in memory
+  constexpr std::size_t kAhead = 16;                        // triangles: their vertices may be anywhere in memory
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (i + kAhead < mesh.triangles.size()) {
-      for (const std::uint32_t v : mesh.triangles[i + kAhead]) __builtin_prefetch(&parent[v], 1);
+      for (const std::uint32_t v : mesh.triangles[i + kAhead]) sets.prefetch(v);
     }
     const Triangle& t = mesh.triangles[i];
-    join(t[0], t[1]);
-    join(t[0], t[2]);
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
     for (const std::uint32_t v : t) used[v] = 1;
   }
-  Components components{0, std::vector<std::uint32_t>(mesh.vertices.size(), Components::kUnused)};
-  for (std::size_t v = 0; v < parent.size(); ++v) {
-    if (used[v] == 0) continue;
-    components.of_vertex[v] = parent[v] == v ? components.count++ : components.of_vertex[parent[v]];
-  }
-  return components;
+  const auto unused = static_cast<std::size_t>(std::ranges::count(used, 0));
+  return {static_cast<std::uint32_t>(sets.count() - unused), sets.indices([&](std::size_t v) { return used[v] != 0; })};
 }
 
 }  // namespace raycone

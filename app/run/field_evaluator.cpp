@@ -33,8 +33,10 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
       distance_(options.has(Field::kDistance) ? std::optional<DistanceEvaluator>(std::in_place, mesh, options.simd)
                                               : std::nullopt),
       gradient_(gradient_for(mesh, options, edges)),
-      winding_number_(std::move(mesh), options.engine, options.simd, Summation::kCheapest, edges,
-                      Accuracy{tolerance_of_evaluation(options), samples, options.rule_only()}) {}
+      winding_number_(std::move(mesh), {.ray_engine = options.engine,
+                                        .level = options.simd,
+                                        .accuracy = {tolerance_of_evaluation(options), samples, options.rule_only()},
+                                        .edges = edges}) {}
 
 void FieldEvaluator::prepare_points() const {
   winding_number_.prepare_points();

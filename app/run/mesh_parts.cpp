@@ -42,15 +42,6 @@ void append(const TriangleMesh& mesh, TriangleMesh& all, const std::string& path
   }
 }
 
-Box hull(const Box& a, const Box& b) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
-    box.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
-  }
-  return box;
-}
-
 // Of each of `triangles` its group.
 std::vector<std::uint32_t> group_of_each(const FaceGroups& groups, std::size_t triangles) {
   std::vector<std::uint32_t> group(triangles);

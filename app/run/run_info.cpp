@@ -34,8 +34,8 @@ namespace {
 CostedLattices costed_lattices(const MeshToEvaluate& input, const Box& bounds) {
   constexpr double kMany = 1 << 24;  // samples
   CostedLattices costed;
-  const WindingNumberEvaluator evaluator(input.mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest,
-                                         &input.edges, {FieldOptions{}.tolerance, kMany});
+  const WindingNumberEvaluator evaluator(input.mesh,
+                                         {.accuracy = {FieldOptions{}.tolerance, kMany}, .edges = &input.edges});
   std::vector<Warning> warnings;  // of flat sides: none with one count for all axes
   try {
     for (const std::int64_t resolution : {std::int64_t{64}, std::int64_t{256}}) {

@@ -54,7 +54,7 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
 
   const WindingNumberEvaluator evaluator = timed(report.seconds.prepare, [&] {
     const std::vector<ExteriorEdge> edges = run.take_edges();
-    return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, &edges);
+    return WindingNumberEvaluator(mesh, {.edges = &edges});
   });
   report.exterior_edges = evaluator.exterior_edges();
   SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,

@@ -21,26 +21,6 @@ constexpr double kPlaceError = 1e-14;
 constexpr double kBoundError = 1e-12;
 constexpr double kAreaError = 1e-14;
 
-double square_of_gap(const Box& a, const Box& b) {
-  double sum = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double gap = std::max({a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis], 0.0});
-    sum += gap * gap;
-  }
-  return sum;
-}
-
-Box hull(const Box& a, const Box& b) {
-  Box both;
-  for (int axis = 0; axis < 3; ++axis) {
-    both.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
-    both.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
-  }
-  return both;
-}
-
-Box box_of(const Vec3& a, const Vec3& b) { return hull({a, a}, {b, b}); }
-
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
@@ -50,8 +30,6 @@ double square_of_size(const Box& box) {
   const Vec3 size = box.upper - box.lower;
   return dot(size, size);
 }
-
-double middle(const Box& box, int axis) { return box.lower[axis] / 2 + box.upper[axis] / 2; }
 
 }  // namespace
 
@@ -91,7 +69,7 @@ void ChangeBound::add_narrow(const Caps& caps) {
   for (std::size_t n = 0; n < caps.narrow; ++n) {
     const auto [a, b, c] = corners(caps.mesh, n);
     const Vec3 normal = cross(b - a, c - a);
-    const Box box = hull(box_of(a, b), {c, c});
+    const Box box = box_of(a, b, c);
     const double twice_area = std::sqrt(dot(normal, normal)) + kAreaError * square_of_size(box);
     sources_.push_back({box, 0.0, twice_area / (4 * std::numbers::pi)});
   }
@@ -109,7 +87,7 @@ void ChangeBound::cut(const Vec3& a, const Vec3& b, const Vec3& c, int depth) {
   const double ab = square_of_size(box_of(a, b)), bc = square_of_size(box_of(b, c)), ca = square_of_size(box_of(c, a));
   if (depth == 0 || !(std::max({ab, bc, ca}) > 4 * piece_ * piece_)) {
     const Vec3 error{place_error_, place_error_, place_error_};
-    const Box box = hull(box_of(a, b), {c, c});
+    const Box box = box_of(a, b, c);
     wide_caps_.push_back({box.lower - error, box.upper + error});
     return;
   }

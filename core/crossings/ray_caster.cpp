@@ -75,12 +75,19 @@ struct CandidateContext : RTCRayQueryContext {
 struct CandidateContext : RTCIntersectContext {
 #endif
   std::vector<std::uint32_t>* candidates = nullptr;
+  bool is_complete = true;  // memory did not run out
 };
 
-// Reports no hit, so that the traversal goes on to every box along the ray.
-void collect(const RTCOccludedFunctionNArguments* args) {
+// Reports no hit, so that the traversal goes on to every box along the ray. Embree's interface is one of C: no
+// exception may pass it.
+void collect(const RTCOccludedFunctionNArguments* args) noexcept {
   if (args->valid[0] == 0) return;
-  static_cast<CandidateContext*>(args->context)->candidates->push_back(args->primID);
+  auto& context = *static_cast<CandidateContext*>(args->context);
+  try {
+    context.candidates->push_back(args->primID);
+  } catch (const std::bad_alloc&) {
+    context.is_complete = false;
+  }
 }
 
 void occluded(RTCScene scene, RTCRay& ray, CandidateContext& context) {
@@ -151,6 +158,7 @@ void RayCaster::find_candidates(const Vec3& origin, std::vector<std::uint32_t>& 
   ray.tfar = std::numeric_limits<float>::infinity();
   ray.mask = ~0U;
   occluded(scene_->scene, ray, context);
+  if (!context.is_complete) throw std::bad_alloc();
 }
 
 }  // namespace raycone

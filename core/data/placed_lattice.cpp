@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace raycone {
 namespace {
@@ -101,19 +100,14 @@ bool PlacedLattice::is_cubic(double tolerance) const {
 }
 
 Box box_of(const PlacedLattice& lattice) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  Box box = empty_box();
   for (int corner = 0; corner < 8; ++corner) {
     std::array<std::int64_t, 3> index{};
     for (int a = 0; a < 3; ++a) {
       const auto n = static_cast<std::size_t>(a);
       index[n] = (corner >> a & 1) != 0 ? lattice.grid.index_max(a) : lattice.grid.index_min[n];
     }
-    const Vec3 place = lattice.position(index[0], index[1], index[2]);
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = std::min(box.lower[axis], place[axis]);
-      box.upper[axis] = std::max(box.upper[axis], place[axis]);
-    }
+    extend(box, lattice.position(index[0], index[1], index[2]));
   }
   return box;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/data/box.h"
 #include "core/data/vec3.h"
 
 namespace raycone {
@@ -21,13 +22,8 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
-// Axis-aligned closed box.
-struct Box {
-  Vec3 lower;
-  Vec3 upper;
-};
-
 // The smallest box of the vertices that triangles use. Precondition: at least one triangle.
-[[nodiscard]] Box bounding_box(const TriangleMesh& mesh);
+[[nodiscard]] Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);
+[[nodiscard]] inline Box bounding_box(const TriangleMesh& mesh) { return bounding_box(mesh.triangles, mesh.vertices); }
 
 }  // namespace raycone

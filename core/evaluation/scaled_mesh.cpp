@@ -63,10 +63,12 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
     : scale_(scale),
       inverse_(-scale.exponent()),
       least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
-      options_{options.ray_engine, options.level, options.summation, options.accuracy},
+      options_(options),
       mesh_(in_scale(std::move(mesh), scale)),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, options)) {}
+      term_(boundary_term(mesh_, boundary_, options)) {
+  options_.edges = nullptr;
+}
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 

@@ -30,16 +30,6 @@
 
 namespace raycone {
 
-// How the evaluator was asked to go about it.
-struct EvaluatorOptions {
-  RayEngine ray_engine = RayEngine::kScan;
-  SimdLevel level = SimdLevel::kBest;
-  Summation summation = Summation::kCheapest;
-  Accuracy accuracy;
-  // Of the mesh, where known: scaling changes neither the edges nor their order. Used by the constructor alone.
-  const std::vector<ExteriorEdge>* edges = nullptr;
-};
-
 // How winding numbers change from place to place: by integers where rays begin or cease to cross triangles of the mesh,
 // less those of the caps; beside that as the bound says.
 struct Changes {
@@ -63,6 +53,7 @@ class ScaledMesh {
   ScaledMesh& operator=(const ScaledMesh&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+  // Those of the constructor, without edges: scaling changes neither these nor their order.
   [[nodiscard]] const EvaluatorOptions& options() const { return options_; }
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
   [[nodiscard]] bool is_closed() const { return boundary_.exterior_edges() == 0; }

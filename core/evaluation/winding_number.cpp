@@ -35,13 +35,10 @@ struct WindingNumberEvaluator::Implementation : ScaledMeshes {
   using ScaledMeshes::ScaledMeshes;
 };
 
-WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine, SimdLevel level,
-                                               Summation summation, const std::vector<ExteriorEdge>* edges,
-                                               const Accuracy& accuracy) {
+WindingNumberEvaluator::WindingNumberEvaluator(TriangleMesh mesh, const EvaluatorOptions& options) {
   check_counts(mesh);
   const DefaultFloatingPoint guard;  // scaling must not flush what is tiny; and below
-  implementation_ =
-      std::make_unique<Implementation>(std::move(mesh), EvaluatorOptions{engine, level, summation, accuracy, edges});
+  implementation_ = std::make_unique<Implementation>(std::move(mesh), options);
 }
 WindingNumberEvaluator::~WindingNumberEvaluator() = default;
 WindingNumberEvaluator::WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept = default;

@@ -75,15 +75,22 @@ struct Terms {
   }
 };
 
+// How the evaluator goes about it.
+struct EvaluatorOptions {
+  RayEngine ray_engine = RayEngine::kScan;
+  SimdLevel level = SimdLevel::kBest;
+  Summation summation = Summation::kCheapest;
+  Accuracy accuracy = {};  // rules do not depend on it
+  // exterior_edges(mesh), to spare finding them again (core/mesh/exterior_edges.h). Used by the constructor alone.
+  const std::vector<ExteriorEdge>* edges = nullptr;
+};
+
 class WindingNumberEvaluator {
  public:
   // Prepares what depends on the mesh alone, except what prepare_points() does. Preconditions: `mesh` is welded
-  // (core/mesh/weld.h), and the vertices that triangles use are finite. `edges`: exterior_edges(mesh), to spare finding
-  // them again (core/mesh/exterior_edges.h). `accuracy`: rules do not depend on it. All values of a mesh without
-  // triangles are 0. Throws std::bad_alloc, and std::length_error for more than kMaxTriangles.
-  explicit WindingNumberEvaluator(TriangleMesh mesh, RayEngine engine = RayEngine::kScan,
-                                  SimdLevel level = SimdLevel::kBest, Summation summation = Summation::kCheapest,
-                                  const std::vector<ExteriorEdge>* edges = nullptr, const Accuracy& accuracy = {});
+  // (core/mesh/weld.h), and the vertices that triangles use are finite. All values of a mesh without triangles are 0.
+  // Throws std::bad_alloc, and std::length_error for more than kMaxTriangles.
+  explicit WindingNumberEvaluator(TriangleMesh mesh, const EvaluatorOptions& options = {});
   ~WindingNumberEvaluator();
   WindingNumberEvaluator(WindingNumberEvaluator&&) noexcept;
   WindingNumberEvaluator& operator=(WindingNumberEvaluator&&) noexcept;

@@ -46,14 +46,7 @@ Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, co
 }
 
 // A little less than the distance of a point from a box.
-double distance_from(const Box& box, const Vec3& p) {
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double gap = std::max({box.lower[axis] - p[axis], p[axis] - box.upper[axis], 0.0});
-    square += gap * gap;
-  }
-  return std::sqrt(square) * (1 - 0x1p-40);
-}
+double distance_from(const Box& box, const Vec3& p) { return std::sqrt(square_of_gap(box, p)) * (1 - 0x1p-40); }
 
 }  // namespace
 

@@ -18,10 +18,7 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
   sources_.reserve(tree_.triangles().size());
   for (const SolidTriangle& t : tree_.triangles()) {
     Source source;
-    for (int axis = 0; axis < 3; ++axis) {
-      source.box.lower[axis] = std::min({t.a[axis], t.b[axis], t.c[axis]});
-      source.box.upper[axis] = std::max({t.a[axis], t.b[axis], t.c[axis]});
-    }
+    source.box = box_of(t.a, t.b, t.c);
     source.area = std::sqrt(dot(t.normal, t.normal)) / 2 * (1 + 0x1p-40);
     sources_.push_back(source);
   }

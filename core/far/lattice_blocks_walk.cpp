@@ -48,7 +48,7 @@ std::size_t end_of_sub_block(const SampleBlock& block, std::size_t axis, std::si
   return at + kSubBlock[axis] - (at - block.first[axis]) % kSubBlock[axis];
 }
 
-Box box_of(const Cube& cube) {
+Box box_around(const Cube& cube) {
   const Vec3 half{cube.half, cube.half, cube.half};
   return {cube.centre - half, cube.centre + half};
 }
@@ -173,8 +173,7 @@ double LatticeBlocksWalk::error_of(const LatticeBlocks::Source& source, const Cu
 }
 
 Cover LatticeBlocksWalk::cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const {
-  return cover_in(blocks_.tree_, far, raycone::box_of(cube),
-                  kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
+  return cover_in(blocks_.tree_, far, box_around(cube), kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
 }
 
 Cover LatticeBlocksWalk::cover_at_samples(const SampleBlock& block, const std::array<std::size_t, 3>& first,
@@ -246,7 +245,7 @@ void LatticeBlocksWalk::add_at_nodes(const Cover& far, const Cube& cube, std::si
                                      std::span<double> values) const {
   if (far.cost == 0.0) return;
   const HarmonicFit& fit = HarmonicFit::instance();
-  CoverSums sums(blocks_.tree_, far, raycone::box_of(cube), shared_corners_, far_);
+  CoverSums sums(blocks_.tree_, far, box_around(cube), shared_corners_, far_);
   count_terms(far, HarmonicFit::kNodes);
   SampleTile nodes;
   for (std::size_t begin = 0; begin < HarmonicFit::kNodes; begin += kTile) {

@@ -20,27 +20,8 @@ constexpr double kMostRatio = 0.97;     // of radius and distance, beyond which 
 // 1 / (4 pi (1 - kMostRatio)^2), rounded up: times area over distance squared, what triangles contribute at most.
 constexpr double kNeglected = 100;
 
-Box box_of(const SolidTriangle& t) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::min({t.a[axis], t.b[axis], t.c[axis]});
-    box.upper[axis] = std::max({t.a[axis], t.b[axis], t.c[axis]});
-  }
-  return box;
-}
+Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 
-void extend(Box& box, const Box& by) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::min(box.lower[axis], by.lower[axis]);
-    box.upper[axis] = std::max(box.upper[axis], by.upper[axis]);
-  }
-}
-
-double longest_side(const Box& box) {
-  const Vec3 size = box.upper - box.lower;
-  return std::max({size.x, size.y, size.z});
-}
-double middle(const Box& box, int axis) { return box.lower[axis] / 2 + box.upper[axis] / 2; }
 double area_of(const SolidTriangle& t) { return norm(cross(t.b - t.a, t.c - t.a)) / 2; }
 
 // The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
@@ -184,7 +165,7 @@ void SourceTree::measure(SourceNode& node) const {
     node.area += area_of(triangles_[i]);
   }
   node.area *= 1 + kRounding;
-  node.centre = {middle(box, 0), middle(box, 1), middle(box, 2)};
+  node.centre = middle(box);
   for (std::uint32_t i = node.begin; i < node.end; ++i) {
     const SolidTriangle& t = triangles_[i];
     for (const Vec3* v : {&t.a, &t.b, &t.c}) node.radius = std::max(node.radius, norm(*v - node.centre));

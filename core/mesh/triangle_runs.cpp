@@ -166,9 +166,7 @@ class RunOrder {
 
 Box box_of_triangle(const TriangleMesh& mesh, std::uint32_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
-  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-  return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
-          {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}};
+  return box_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
 std::vector<std::uint32_t> triangles_in_runs(const TriangleMesh& mesh, std::size_t width) {

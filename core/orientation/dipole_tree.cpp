@@ -17,13 +17,8 @@ DipoleTree::DipoleTree(std::vector<SurfaceDipole> dipoles, double reach)
 }
 
 void DipoleTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
-  Box box{dipoles_[order_[begin]].centre, dipoles_[order_[begin]].centre};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = std::min(box.lower[axis], dipoles_[order_[i]].centre[axis]);
-      box.upper[axis] = std::max(box.upper[axis], dipoles_[order_[i]].centre[axis]);
-    }
-  }
+  Box box = empty_box();
+  for (std::uint32_t i = begin; i < end; ++i) extend(box, dipoles_[order_[i]].centre);
   SurfaceDipole sum;
   sum.centre = 0.5 * box.lower + 0.5 * box.upper;
   for (std::uint32_t i = begin; i < end; ++i) {

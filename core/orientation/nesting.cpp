@@ -19,19 +19,6 @@ bool holds_box(const Box& outer, const Box& inner) {
   return true;
 }
 
-Box box_of(const ClosedSurface& surface, const std::vector<Vec3>& vertices) {
-  Box box{vertices[surface.faces.front()[0]], vertices[surface.faces.front()[0]]};
-  for (const Triangle& t : surface.faces) {
-    for (const std::uint32_t v : t) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
-        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
-      }
-    }
-  }
-  return box;
-}
-
 // For each box those that hold it: a sweep along x.
 std::vector<std::vector<std::uint32_t>> boxes_around(const std::vector<Box>& boxes) {
   std::vector<std::uint32_t> order(boxes.size());
@@ -137,7 +124,7 @@ class NestingCandidates {
 std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<const ClosedSurface*>& surfaces,
                                                         const std::vector<Vec3>& vertices) {
   std::vector<Box> boxes;
-  for (const ClosedSurface* surface : surfaces) boxes.push_back(box_of(*surface, vertices));
+  for (const ClosedSurface* surface : surfaces) boxes.push_back(bounding_box(surface->faces, vertices));
   NestingCandidates candidates(surfaces, vertices, boxes_around(boxes));
   constexpr std::size_t kFew = 16, kAll = std::numeric_limits<std::size_t>::max();
   candidates.look_at(kFew);  // enough nearly always where one is not around

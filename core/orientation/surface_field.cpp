@@ -55,19 +55,6 @@ TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>
   return mesh;
 }
 
-Box box_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices) {
-  Box box{vertices[faces.front()[0]], vertices[faces.front()[0]]};
-  for (const Triangle& t : faces) {
-    for (const std::uint32_t v : t) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
-        box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
-      }
-    }
-  }
-  return box;
-}
-
 // Without its area.
 SurfaceDipole dipole_about(const Box& box) {
   SurfaceDipole dipole;
@@ -88,7 +75,7 @@ SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Ve
           (reversed ? -face.sign : face.sign) * in_units(0.5 * twice[axis], kAreaUnits);
     }
   }
-  SurfaceDipole dipole = dipole_about(box_of(faces, vertices));
+  SurfaceDipole dipole = dipole_about(bounding_box(faces, vertices));
   dipole.area = {static_cast<double>(area[0]) / kAreaUnits, static_cast<double>(area[1]) / kAreaUnits,
                  static_cast<double>(area[2]) / kAreaUnits};
   return dipole;
@@ -116,7 +103,7 @@ std::vector<double> SurfaceField::Large::winding_numbers(std::span<const Vec3> p
 
 // The vector area of a surface is that of any other one with its boundary, such as the cone over that.
 SurfaceDipole SurfaceField::Large::dipole() const {
-  SurfaceDipole dipole = dipole_about(box_of(mesh.triangles, mesh.vertices));
+  SurfaceDipole dipole = dipole_about(bounding_box(mesh.triangles, mesh.vertices));
   for (const DirectedEdge& edge : boundary.directed_edges()) {
     dipole.area = dipole.area + 0.5 * edge.multiplicity * cross(edge.from - dipole.centre, edge.to - dipole.centre);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/exact/scale.h"
 
@@ -10,16 +9,10 @@ namespace raycone {
 
 std::vector<Vec3> in_unit_box(const std::vector<Vec3>& vertices,
                               const std::vector<const std::vector<Triangle>*>& faces) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  Box box = empty_box();
   for (const std::vector<Triangle>* part : faces) {
     for (const Triangle& t : *part) {
-      for (const std::uint32_t v : t) {
-        for (int axis = 0; axis < 3; ++axis) {
-          box.lower[axis] = std::min(box.lower[axis], vertices[v][axis]);
-          box.upper[axis] = std::max(box.upper[axis], vertices[v][axis]);
-        }
-      }
+      for (const std::uint32_t v : t) extend(box, vertices[v]);
     }
   }
   double size = 0.0;  // a quarter of it, which cannot overflow

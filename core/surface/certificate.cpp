@@ -237,7 +237,7 @@ TriangleMesh mesh_between(const TriangleMesh& mesh, const SurfaceEdit& change) {
 }  // namespace
 
 NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const std::vector<ExteriorEdge>* edges) {
-  const WindingNumberEvaluator surface(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, edges);
+  const WindingNumberEvaluator surface(mesh, {.edges = edges});
   NodeSet nodes = nodes_inside(surface, Rule{}, inside.lattice());
   nodes.flip(inside);
   return nodes;
@@ -283,8 +283,7 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
 
 NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
   const std::vector<ExteriorEdge> none;
-  const WindingNumberEvaluator between(mesh_between(mesh, change), RayEngine::kScan, SimdLevel::kBest,
-                                       Summation::kCheapest, &none);
+  const WindingNumberEvaluator between(mesh_between(mesh, change), {.edges = &none});
   return nodes_inside(between, Rule{RuleKind::kNonzero}, lattice);
 }
 

@@ -1,7 +1,6 @@
 #include "core/surface/nearest_triangle.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace raycone {
@@ -9,32 +8,13 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;
 
-void widen(Box& box, const Box& by) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::min(box.lower[axis], by.lower[axis]);
-    box.upper[axis] = std::max(box.upper[axis], by.upper[axis]);
-  }
-}
-
-double squared_to_box(const Box& box, const Vec3& p) {
-  double sum = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double off = std::max({box.lower[axis] - p[axis], 0.0, p[axis] - box.upper[axis]});
-    sum += off * off;
-  }
-  return sum;
-}
-
 }  // namespace
 
 NearestTriangle::NearestTriangle(const TriangleMesh& mesh) : scale_(unit_scale(mesh)), order_(mesh.triangles.size()) {
   for (const Triangle& t : mesh.triangles) {
     const Vec3 a = scale_(mesh.vertices[t[0]]), b = scale_(mesh.vertices[t[1]]), c = scale_(mesh.vertices[t[2]]);
     triangles_.emplace_back(a, b, c);
-    Box box{a, a};
-    widen(box, {b, b});
-    widen(box, {c, c});
-    boxes_.push_back(box);
+    boxes_.push_back(box_of(a, b, c));
   }
   std::iota(order_.begin(), order_.end(), 0U);
   build(0, static_cast<std::uint32_t>(order_.size()));
@@ -43,7 +23,7 @@ NearestTriangle::NearestTriangle(const TriangleMesh& mesh) : scale_(unit_scale(m
 void NearestTriangle::build(std::uint32_t begin, std::uint32_t end) {
   const std::size_t number = branches_.size();
   Box box = boxes_[order_[begin]];
-  for (std::uint32_t n = begin + 1; n < end; ++n) widen(box, boxes_[order_[n]]);
+  for (std::uint32_t n = begin + 1; n < end; ++n) extend(box, boxes_[order_[n]]);
   branches_.push_back({box, begin, end, 0});
   if (end - begin > kLeaf) {
     const Vec3 side = box.upper - box.lower;
@@ -63,7 +43,7 @@ std::uint32_t NearestTriangle::of(const Vec3& point, std::uint32_t guess) const 
   std::pair best(triangles_[guess].squared(p), guess);
   for (std::size_t n = 0; n < branches_.size();) {
     const Branch& branch = branches_[n];
-    if (squared_to_box(branch.box, p) > beyond_error(best.first)) {
+    if (square_of_gap(branch.box, p) > beyond_error(best.first)) {
       n = branch.next;
       continue;
     }

@@ -236,8 +236,8 @@ Sampled sampled(const TriangleMesh& mesh, Summation summation, double tolerance,
   }
   std::vector<std::int64_t> crossings(n), degenerate(n);
   const Diagnostics diagnostics{crossings, degenerate, all.on_surface, all.bounds};
-  const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation, nullptr,
-                                         {tolerance, static_cast<double>(n)});
+  const WindingNumberEvaluator evaluator(mesh,
+                                         {.summation = summation, .accuracy = {tolerance, static_cast<double>(n)}});
   if (blocks) {
     evaluator.evaluate(lattice, whole(lattice), all.values, nullptr, &diagnostics);
   } else {
@@ -301,7 +301,7 @@ int check_slice(const char* path) {
     points[i] = {lattice.coordinate(0, n % kSide), lattice.coordinate(1, n / kSide), 0.5};
   }
   std::vector<double> scan(samples), embree(samples), one_by_one(samples);
-  const WindingNumberEvaluator evaluator(mesh), by_embree(mesh, RayEngine::kEmbree);
+  const WindingNumberEvaluator evaluator(mesh), by_embree(mesh, {.ray_engine = RayEngine::kEmbree});
   evaluator.evaluate(lattice, whole(lattice), scan);
   by_embree.evaluate(lattice, whole(lattice), embree);
   evaluator.evaluate(points, one_by_one);

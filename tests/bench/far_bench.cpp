@@ -77,8 +77,7 @@ std::vector<double> values_of(const Workload& workload, const Samples& samples, 
                               benchmark::State* state = nullptr) {
   const Accuracy accuracy{tolerance, static_cast<double>(samples.size())};
   const auto start = std::chrono::steady_clock::now();
-  const WindingNumberEvaluator evaluator(workload.mesh, RayEngine::kScan, SimdLevel::kBest, summation, nullptr,
-                                         accuracy);
+  const WindingNumberEvaluator evaluator(workload.mesh, {.summation = summation, .accuracy = accuracy});
   if (!samples.points.empty()) evaluator.prepare_points();
   const std::chrono::duration<double, std::milli> preparation = std::chrono::steady_clock::now() - start;
   std::vector<double> values(samples.size());

@@ -62,8 +62,7 @@ void time_steps(benchmark::State& state, const std::string& path) {
     linked = std::min(linked, watch.lap());
     found = mesh_defects(mesh, edges, links).reversed_components;
     defects = std::min(defects, watch.lap());
-    const WindingNumberEvaluator prepared(std::move(mesh), RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest,
-                                          &edges);
+    const WindingNumberEvaluator prepared(std::move(mesh), {.edges = &edges});
     evaluator = std::min(evaluator, watch.lap());
   }
   state.counters["read"] = kMs * read;
@@ -90,8 +89,9 @@ int main(int argc, char** argv) {
       continue;
     }
     const std::string name = std::filesystem::path(path).stem().string();
-    benchmark::RegisterBenchmark(name.c_str(), [path](benchmark::State& state) { time_steps(state, path); })
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(name.c_str(), [path](benchmark::State& state) {
+      time_steps(state, path);
+    })->Unit(benchmark::kMillisecond);
   }
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

@@ -41,7 +41,7 @@ TEST(EmptyMesh, HasTheWindingNumberZeroEverywhere) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 2, 3}, {-1e300, 5e-324, 0}};
   for (const TriangleMesh& mesh : empty_meshes()) {
     for (const RayEngine engine : kEngines) {
-      const WindingNumberEvaluator evaluator(mesh, engine);
+      const WindingNumberEvaluator evaluator(mesh, {.ray_engine = engine});
       evaluator.prepare_points();
       EXPECT_EQ(evaluator.exterior_edges(), 0U);
       std::vector<double> values(24, kUnset), at_points(points.size(), kUnset);
@@ -76,7 +76,7 @@ TEST(EmptyMesh, IsInfinitelyFarAway) {
 TEST(EmptyBlock, IsEvaluatedWithoutAnEffect) {
   for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 1, 1}), test::open_box(), TriangleMesh{}}) {
     for (const RayEngine engine : kEngines) {
-      const WindingNumberEvaluator evaluator(mesh, engine);
+      const WindingNumberEvaluator evaluator(mesh, {.ray_engine = engine});
       const DistanceEvaluator distance(mesh);
       for (const std::array<std::int64_t, 3>& counts :
            {std::array<std::int64_t, 3>{0, 0, 0}, {0, 3, 2}, {4, 0, 2}, {4, 3, 0}, {4, 0, 0}}) {

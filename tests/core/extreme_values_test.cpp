@@ -62,7 +62,7 @@ std::vector<Vec3> queries_about(const TriangleMesh& mesh, Random& random, int co
 double largest_error(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine,
                      Summation summation) {
   std::vector<double> values(queries.size());
-  WindingNumberEvaluator(mesh, engine, SimdLevel::kBest, summation).evaluate(queries, values);
+  WindingNumberEvaluator(mesh, {.ray_engine = engine, .summation = summation}).evaluate(queries, values);
   Quad largest = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const QuadWithin exact = perturbed_direct_sum(mesh, queries[i]);
@@ -181,7 +181,7 @@ TEST(ExtremeValues, DoNotDependOnSlabsThatHoldMinuteCoordinates) {
     for (const Summation summation : kBoth) {
       TriangleMesh mesh = test::soup(random, 12);
       for (Vec3& v : mesh.vertices) v = size * (v - Vec3{0.5, 0.5, 0.5});
-      const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation);
+      const WindingNumberEvaluator evaluator(mesh, {.summation = summation});
       const double tiny = 5 * std::numeric_limits<double>::denorm_min();
       for (int axis = 0; axis < 3; ++axis) {
         Lattice lattice{{0.01 * size, 0.02 * size, 0.03 * size}, 0.07 * size * Vec3{1, 1, 1}, {-2, -3, -2}, {5, 6, 4}};

@@ -18,7 +18,8 @@ namespace {
 constexpr double kTolerances[] = {1e-4, 1e-7, 1e-10};
 
 WindingNumberEvaluator evaluator_of(const TriangleMesh& mesh, double tolerance, SimdLevel level = SimdLevel::kBest) {
-  return WindingNumberEvaluator(mesh, RayEngine::kScan, level, Summation::kFarField, nullptr, {tolerance, 1e6});
+  return WindingNumberEvaluator(mesh,
+                                {.level = level, .summation = Summation::kFarField, .accuracy = {tolerance, 1e6}});
 }
 
 // A soup: triangles of a sphere, each moved a little.
@@ -175,8 +176,7 @@ TEST(FarField, ATinyToleranceIsNone) {
 
 TEST(FarField, IsTakenWhereItPays) {
   const auto takes = [](const TriangleMesh& mesh, double tolerance, double samples) {
-    const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kCheapest, nullptr,
-                                           {tolerance, samples});
+    const WindingNumberEvaluator evaluator(mesh, {.accuracy = {tolerance, samples}});
     (void)values_of(evaluator, some_points(10));
     return evaluator.terms().far > 0;
   };

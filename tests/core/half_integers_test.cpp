@@ -74,7 +74,8 @@ std::vector<double> evaluate(const TriangleMesh& mesh, const std::vector<Vec3>& 
                              RayEngine engine = RayEngine::kScan, Summation summation = Summation::kCheapest,
                              SimdLevel level = SimdLevel::kBest) {
   std::vector<double> values(queries.size());
-  WindingNumberEvaluator(mesh, engine, level, summation).evaluate(queries, values);
+  WindingNumberEvaluator(mesh, {.ray_engine = engine, .level = level, .summation = summation})
+      .evaluate(queries, values);
   return values;
 }
 
@@ -234,7 +235,7 @@ TEST(HalfIntegers, AreLookedForWithinABoundThatHolds) {
   for (int i = 0; i < 30; ++i) {
     const TriangleMesh mesh = weld(test::soup(random, 10), {});
     for (const Summation summation : {Summation::kCone, Summation::kTriangles}) {
-      const WindingNumberEvaluator evaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation);
+      const WindingNumberEvaluator evaluator(mesh, {.summation = summation});
       std::vector<Vec3> queries;
       for (int n = 0; n < 10; ++n) {
         queries.push_back(test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}}));

@@ -324,7 +324,7 @@ TriangleMesh sieve() {
 }
 
 WindingNumberEvaluator evaluator(const TriangleMesh& mesh, double tolerance) {
-  return WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kBlocks, nullptr, {tolerance});
+  return WindingNumberEvaluator(mesh, {.summation = Summation::kBlocks, .accuracy = {tolerance}});
 }
 
 TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {

@@ -401,7 +401,7 @@ TEST(Magnitude, TiesWithTrianglesThatTheRayBarelyMissesDoNotCount) {
   for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
     const auto ties = [&](const Vec3& q) {
       double value = 0;
-      return WindingNumberEvaluator(mesh, engine).evaluate({&q, 1}, {&value, 1}).degenerate;
+      return WindingNumberEvaluator(mesh, {.ray_engine = engine}).evaluate({&q, 1}, {&value, 1}).degenerate;
     };
     EXPECT_EQ(ties({0, 4, 0}), 2U);
     EXPECT_EQ(ties({0, 4 + step, 0}), 0U);

@@ -108,7 +108,7 @@ TEST(NestedThreads, PointsOfANewEvaluatorFindItsGridBuilt) {
   std::vector<double> values(points.size());
   for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
     for (int repetition = 0; repetition < kRepetitions / 2; ++repetition) {
-      WindingNumberEvaluator(large_sphere(), engine).evaluate(points, values);
+      WindingNumberEvaluator(large_sphere(), {.ray_engine = engine}).evaluate(points, values);
     }
   }
 }
@@ -142,7 +142,7 @@ TEST(NestedThreads, EvaluatorsServeLoopsOfTheirCaller) {
   DistanceEvaluator(large_sphere()).evaluate(points, expected_distances);
   for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
     for (int repetition = 0; repetition < 2; ++repetition) {
-      const WindingNumberEvaluator evaluator(large_sphere(), engine);
+      const WindingNumberEvaluator evaluator(large_sphere(), {.ray_engine = engine});
       const DistanceEvaluator distance(large_sphere());
       std::atomic<int> wrong{0};
       parallel_for(32, 1, [&](std::size_t, std::size_t) {

@@ -31,14 +31,15 @@ struct Diagnosed {
 Diagnosed at_points(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine = RayEngine::kScan) {
   Diagnosed result(queries.size());
   const Diagnostics spans = result.spans();
-  WindingNumberEvaluator(mesh, engine).evaluate(queries, result.values, nullptr, &spans);
+  WindingNumberEvaluator(mesh, {.ray_engine = engine}).evaluate(queries, result.values, nullptr, &spans);
   return result;
 }
 
 Diagnosed on_lattice(const TriangleMesh& mesh, const Lattice& lattice, RayEngine engine = RayEngine::kScan) {
   Diagnosed result(static_cast<std::size_t>(whole(lattice).size()));
   const Diagnostics spans = result.spans();
-  WindingNumberEvaluator(mesh, engine).evaluate(lattice, whole(lattice), result.values, nullptr, &spans);
+  WindingNumberEvaluator(mesh, {.ray_engine = engine})
+      .evaluate(lattice, whole(lattice), result.values, nullptr, &spans);
   return result;
 }
 

@@ -21,7 +21,7 @@ constexpr Summation kBothSums[] = {Summation::kCone, Summation::kTriangles};
 std::vector<double> evaluate(const TriangleMesh& mesh, const Lattice& lattice, Summation summation,
                              SimdLevel level = SimdLevel::kBest) {
   std::vector<double> values(static_cast<std::size_t>(whole(lattice).size()));
-  WindingNumberEvaluator(mesh, RayEngine::kScan, level, summation).evaluate(lattice, whole(lattice), values);
+  WindingNumberEvaluator(mesh, {.level = level, .summation = summation}).evaluate(lattice, whole(lattice), values);
   return values;
 }
 
@@ -75,7 +75,7 @@ TEST(SolidAngles, AreTheSameAtEverySimdLevelAndForPoints) {
     }
   }
   std::vector<double> values(points.size());
-  WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, Summation::kTriangles).evaluate(points, values);
+  WindingNumberEvaluator(mesh, {.summation = Summation::kTriangles}).evaluate(points, values);
   EXPECT_EQ(values, expected);
 }
 

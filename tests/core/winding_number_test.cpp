@@ -415,7 +415,7 @@ TEST(WindingNumber, EnginesAgreeToTheBit) {
     const TriangleMesh mesh = i % 3 == 0   ? test::random_cells(random, 3)
                               : i % 3 == 1 ? test::lattice_soup(random, 30, 3)
                                            : test::joined(test::sphere(6), test::fan(5, 3));
-    const WindingNumberEvaluator scan(mesh, RayEngine::kScan), embree(mesh, RayEngine::kEmbree);
+    const WindingNumberEvaluator scan(mesh), embree(mesh, {.ray_engine = RayEngine::kEmbree});
     for (const Lattice& lattice : {Lattice{{-1, -1, -1}, {0.25, 0.5, 0.5}, {0, 0, 0}, {21, 11, 11}},
                                    Lattice{{-0.7, 0.1, 0.2}, {0.173, 0.31, 0.37}, {-2, 0, 1}, {25, 9, 8}},
                                    Lattice{{0, 1, 1}, {0.5, 0.5, 0.5}, {-3, 0, 0}, {15, 1, 1}},

@@ -124,10 +124,11 @@ void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
   const std::vector<Vec3> points = points_of(lattice);
   std::vector<double> expected(points.size()), values(points.size());
   for (const Summation summation : {Summation::kCone, Summation::kTriangles}) {
-    WindingNumberEvaluator(mesh, RayEngine::kScan, SimdLevel::kBest, summation).evaluate(points, expected);
+    WindingNumberEvaluator(mesh, {.summation = summation}).evaluate(points, expected);
     for (std::size_t i = 0; i < points.size(); ++i) check_rules(mesh, points[i], expected[i]);
     for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
-      WindingNumberEvaluator(mesh, engine, SimdLevel::kBest, summation).evaluate(lattice, whole(lattice), values);
+      WindingNumberEvaluator(mesh, {.ray_engine = engine, .summation = summation})
+          .evaluate(lattice, whole(lattice), values);
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (std::bit_cast<std::uint64_t>(values[i]) == std::bit_cast<std::uint64_t>(expected[i])) continue;
         report(mesh, {points[i], "another value as a sample of a lattice"});

@@ -23,7 +23,7 @@ std::vector<Answer> evaluate(const TriangleMesh& mesh, RayEngine engine, Summati
   std::vector<std::int64_t> crossings(n), degenerate(n);
   std::vector<std::uint8_t> on_surface(n);
   const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-  const WindingNumberEvaluator evaluator(mesh, engine, SimdLevel::kBest, summation);
+  const WindingNumberEvaluator evaluator(mesh, {.ray_engine = engine, .summation = summation});
   evaluator.evaluate(queries, values, nullptr, &diagnostics);
   closed = evaluator.exterior_edges() == 0;
   std::vector<Answer> answers;

@@ -34,6 +34,7 @@ double square_of_size(const Box& box) {
 }  // namespace
 
 ChangeBound::ChangeBound(const Caps& caps) {
+  if (caps.mesh.triangles.empty()) return;  // edges there and back, which add nothing
   const Box box = bounding_box(caps.mesh);
   double side = 0.0, largest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -121,7 +122,9 @@ void ChangeBound::build(std::uint32_t begin, std::uint32_t end) {
 
 ChangeBound::Bounds ChangeBound::in(const Box& box, double limit) const {
   double sum = 0.0, second = 0.0, third = 0.0;
+  constexpr double kLeastSquare = 0x1p-900;  // less has lost bits, or loses them in what follows
   const auto add = [&](const Source& source, double square) {
+    if (square < kLeastSquare) sum = kInfinity;
     const double distance = std::sqrt(square), of_length = source.length / square;
     sum += of_length;
     second += 2 * of_length / distance;

@@ -18,6 +18,7 @@ namespace raycone {
 // tree gathers all. Thread-safe.
 class ChangeBound {
  public:
+  // Of a mesh in scale: coordinates of at most 1, lest squares overflow.
   explicit ChangeBound(const Caps& caps);
 
   struct Bounds {
@@ -48,7 +49,7 @@ class ChangeBound {
   void cut(const Vec3& a, const Vec3& b, const Vec3& c, int depth);
   void build(std::uint32_t begin, std::uint32_t end);
 
-  double piece_, place_error_;  // length of pieces, and how far they may be from where they are, at most
+  double piece_ = 0, place_error_ = 0;  // length of pieces, and how far they may be from where they are, at most
   std::vector<Source> sources_;
   std::vector<Cluster> clusters_;
   std::vector<Box> wide_caps_;

@@ -72,7 +72,8 @@ void find_samples_on(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row
 // Each component of the normal is off by at most 4 u times the same with absolute values, N+; the differences to a,
 // products and sums round once each; the quotient carries the normal's x (relative error at most 4 / 60 by the
 // condition) and x_c - a_x is within the box. Together less than 8 u sum N+_k H_k / |n_x| with H the box's extent, and
-// two roundings of the result. u = 2^-53.
+// two roundings of the result. What underflows in a component of the normal is below 2^-1073; it is multiplied by H and
+// divided by n_x, too, as is what underflows in the products with H. u = 2^-53.
 TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double u = 0x1p-53;
   constexpr double kNoUnderflow = 0x1p-900;
@@ -86,13 +87,15 @@ TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
     error = std::numeric_limits<double>::infinity();
     return;
   }
-  double reach = 0.0, largest = 0.0;
+  double reach = 0.0, extent = 1.0, largest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double lower = std::min({a[axis], b[axis], c[axis]}), upper = std::max({a[axis], b[axis], c[axis]});
     reach += bound[axis] * (upper - lower);
+    extent += upper - lower;
     if (axis == 0) largest = std::max(std::abs(lower), std::abs(upper));
   }
-  error = 1.01 * u * (8 * reach / nx + 2 * largest) + kNoUnderflow;
+  constexpr double kUnderflow = 0x1p-1070;
+  error = 1.01 * u * (8 * reach / nx + 2 * largest) + kUnderflow / nx * extent + kNoUnderflow;
 }
 
 TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,

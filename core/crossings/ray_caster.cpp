@@ -85,7 +85,7 @@ void collect(const RTCOccludedFunctionNArguments* args) noexcept {
   auto& context = *static_cast<CandidateContext*>(args->context);
   try {
     context.candidates->push_back(args->primID);
-  } catch (const std::bad_alloc&) {
+  } catch (...) {  // of memory or of length
     context.is_complete = false;
   }
 }

@@ -43,11 +43,12 @@ class TriangleSections {
           point(parallel && along == b[axis]) {}
 
     // Where its line is, widened by more than the error: differences, quotient and product are each rounded once (5 u
-    // of the product), the sum once more; u = 2^-53.
+    // of the product), the sum once more; u = 2^-53. A quotient that underflows is off by 2^-1075, and multiplied.
     [[nodiscard]] Interval at(double line) const {
-      constexpr double kError = 8 * 0x1p-53, kUnderflow = 0x1p-1000;
-      const double offset = (line - across) * slope;
-      const double error = kError * (std::abs(along) + std::abs(offset)) + kUnderflow;
+      constexpr double kError = 8 * 0x1p-53, kSlopeUnderflow = 0x1p-1073, kUnderflow = 0x1p-1000;
+      const double reach = line - across, offset = reach * slope;
+      const double error =
+          kError * (std::abs(along) + std::abs(offset)) + kSlopeUnderflow * std::abs(reach) + kUnderflow;
       return {along + offset - error, along + offset + error};
     }
   };

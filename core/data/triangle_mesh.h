@@ -22,7 +22,7 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
-// The smallest box of the vertices that triangles use. Precondition: at least one triangle.
+// The smallest box of the vertices that triangles use; of no triangles, empty_box().
 [[nodiscard]] Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);
 [[nodiscard]] inline Box bounding_box(const TriangleMesh& mesh) { return bounding_box(mesh.triangles, mesh.vertices); }
 

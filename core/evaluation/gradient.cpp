@@ -19,6 +19,11 @@ double within_doubles(Quad x) {
   return static_cast<double>(x);
 }
 
+Vec3 within_doubles(const Vec3& v) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  return {std::clamp(v.x, -kMost, kMost), std::clamp(v.y, -kMost, kMost), std::clamp(v.z, -kMost, kMost)};
+}
+
 QuadVec3 quad_difference(const Vec3& a, const Vec3& b) { return {Quad(a.x) - b.x, Quad(a.y) - b.y, Quad(a.z) - b.z}; }
 
 Quad quad_dot(const QuadVec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -42,7 +47,9 @@ Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q
 }  // namespace
 
 GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges)
-    : scale_(unit_scale(mesh)) {
+    : scale_(unit_scale(mesh)),
+      inverse_(-scale_.exponent()),
+      least_(scale_.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())) {
   segments_.reserve(edges.size());
   for (const ExteriorEdge& edge : edges) {
     const Vec3 from = scale_(mesh.vertices[edge.from]), to = scale_(mesh.vertices[edge.to]);
@@ -68,17 +75,25 @@ Vec3 GradientEvaluator::part(const Segment& segment, const Vec3& q) {
   return segment.weight * ((la + lb) / (lab * opening)) * normal;
 }
 
-Vec3 GradientEvaluator::at(const Vec3& point) const {
+Vec3 GradientEvaluator::sum_in_scale(const Vec3& point) const {
   const Vec3 q = scale_(point);
   // So far away that the gradient is no double but 0.
   if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) return {};
   Vec3 sum;
   for (const Segment& segment : segments_) sum = sum + part(segment, q);
-  constexpr double kMost = std::numeric_limits<double>::max();
-  for (int axis = 0; axis < 3; ++axis) {
-    sum[axis] = std::clamp(scale_(std::clamp(sum[axis], -kMost, kMost)), -kMost, kMost) + 0.0;
-  }
+  return scale_(within_doubles(sum));
+}
+
+// Scaling the mesh lost nothing, so that it can be undone.
+Vec3 GradientEvaluator::sum_unscaled(const Vec3& point) const {
+  Vec3 sum;
+  for (const Segment& s : segments_) sum = sum + careful_part(inverse_(s.from), inverse_(s.to), s.weight, point);
   return sum;
+}
+
+Vec3 GradientEvaluator::at(const Vec3& point) const {
+  const bool fits = can_take(point.x) && can_take(point.y) && can_take(point.z);
+  return within_doubles(fits ? sum_in_scale(point) : sum_unscaled(point)) + Vec3{0.0, 0.0, 0.0};  // no -0
 }
 
 template <class Point>

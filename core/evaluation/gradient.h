@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -46,11 +47,16 @@ class GradientEvaluator {
   };
 
   [[nodiscard]] Vec3 at(const Vec3& point) const;
+  // Whether scaling a query coordinate loses nothing: it may not become subnormal.
+  [[nodiscard]] bool can_take(double x) const { return std::abs(x) >= least_ || x == 0.0; }
+  [[nodiscard]] Vec3 sum_in_scale(const Vec3& point) const;
+  [[nodiscard]] Vec3 sum_unscaled(const Vec3& point) const;
   [[nodiscard]] static Vec3 part(const Segment& segment, const Vec3& q);
   template <class Point>
   void evaluate_each(const Point& point, std::span<Vec3> values, std::atomic<std::uint64_t>* done) const;
 
-  PowerOfTwo scale_;
+  PowerOfTwo scale_, inverse_;
+  double least_;                   // magnitude of query coordinates, beside 0, that scaling keeps
   std::vector<Segment> segments_;  // scaled
 };
 

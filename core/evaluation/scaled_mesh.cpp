@@ -16,11 +16,12 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
 }
 
 // The engine that is asked for.
-std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary,
+std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary, bool in_scale,
                                                   const EvaluatorOptions& options) {
   if (boundary.exterior_edges() == 0) return nullptr;
   const bool cheapest = options.summation != Summation::kCone && options.summation != Summation::kTriangles;
-  const bool triangles_are_cheaper = SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
+  const bool triangles_are_cheaper =
+      in_scale && SolidAngles::are_cheaper(mesh.triangles.size(), boundary.exterior_edges());
   if (options.summation == Summation::kTriangles || (cheapest && triangles_are_cheaper)) {
     auto triangles = std::make_unique<const SolidAngles>(mesh, boundary, options.level);
     if (!cheapest || !triangles->has_repeated_faces()) return triangles;
@@ -65,8 +66,9 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
       least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
       options_(options),
       mesh_(in_scale(std::move(mesh), scale)),
+      is_in_scale_(largest_exponent(mesh_) <= 0),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, options)) {
+      term_(boundary_term(mesh_, boundary_, is_in_scale_, options)) {
   options_.edges = nullptr;
 }
 
@@ -110,7 +112,9 @@ const Blocks& ScaledMesh::blocks() const {
 }
 
 const FarField* ScaledMesh::far_field() const {
-  std::call_once(far_built_, [this] { far_ = make_far_field(mesh_, boundary_, term_.get(), options_); });
+  std::call_once(far_built_, [this] {
+    if (is_in_scale_) far_ = make_far_field(mesh_, boundary_, term_.get(), options_);
+  });
   return far_.get();
 }
 
@@ -137,7 +141,7 @@ bool ScaledMesh::takes_far_field(std::size_t samples) const {
 double ScaledMesh::doubt_of_far_field() const {
   const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
   const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
-  if (!wanted || !(tolerance >= kLeastTolerance)) return 0.0;
+  if (!wanted || !is_in_scale_ || !(tolerance >= kLeastTolerance)) return 0.0;
   return std::min(FarField::doubt(kFarShare * tolerance, most_sources()), Boundary::kMostDoubt);
 }
 

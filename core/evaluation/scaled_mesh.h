@@ -57,6 +57,9 @@ class ScaledMesh {
   [[nodiscard]] const EvaluatorOptions& options() const { return options_; }
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
   [[nodiscard]] bool is_closed() const { return boundary_.exterior_edges() == 0; }
+  // Whether no coordinate exceeds 1, as bounds of far fields, blocks and changes need. A mesh that spans more than
+  // 2^970 cannot be scaled so.
+  [[nodiscard]] bool is_in_scale() const { return is_in_scale_; }
 
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const;
@@ -101,7 +104,7 @@ class ScaledMesh {
   [[nodiscard]] double most_sources() const;
 
   // Whether blocks may be evaluated. Below this tolerance fits would round too much.
-  [[nodiscard]] bool has_blocks() const { return term_ && options_.accuracy.tolerance >= 1e-11; }
+  [[nodiscard]] bool has_blocks() const { return term_ && is_in_scale_ && options_.accuracy.tolerance >= 1e-11; }
 
   // No value from blocks() is off by more.
   [[nodiscard]] double doubt_of_blocks() const;
@@ -143,6 +146,7 @@ class ScaledMesh {
   double least_;  // magnitude of query coordinates, beside 0, that scaling keeps
   EvaluatorOptions options_;
   TriangleMesh mesh_;
+  bool is_in_scale_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;

@@ -66,7 +66,7 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
 bool certificates_pay(const ScaledMesh& mesh, const LatticeBlock& block) {
   constexpr double kWorthCaps = 0x1p20;
   const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
-  return mesh.counts_crossings() && work > kWorthCaps;
+  return mesh.is_in_scale() && mesh.counts_crossings() && work > kWorthCaps;
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.

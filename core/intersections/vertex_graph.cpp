@@ -22,7 +22,8 @@ Vec3 normal_of(const std::vector<Vec3>& vertices, std::uint32_t vertex, std::spa
 // Whether the turn from a to b is surely positive, seen against a direction.
 bool turns_left(const Vec3& direction, const Vec3& a, const Vec3& b) {
   const Vec3 p = absolute(a), q = absolute(b), d = absolute(direction);
-  const Vec3 terms{p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
+  constexpr double kTiny = 0x1p-1000;  // more than what underflows in the cross product, times 2^50
+  const Vec3 terms{p.y * q.z + p.z * q.y + kTiny, p.z * q.x + p.x * q.z + kTiny, p.x * q.y + p.y * q.x + kTiny};
   return dot(direction, cross(a, b)) > kRoundings * dot(d, terms) + kUnderflow;
 }
 

@@ -20,10 +20,11 @@ class Buckets {
   // same ones however often it is asked. Items of a bucket keep the order of their inputs, for any number of threads.
   template <class Produce>
   Buckets(std::size_t inputs, std::size_t count, const Produce& produce) : begin_(count + 1, 0) {
-    const std::size_t chunks = (inputs + kChunk - 1) / kChunk;
+    const std::size_t size = std::max(kChunk, count);  // so that there are no more places to count than inputs
+    const std::size_t chunks = (inputs + size - 1) / size;
     const auto for_each_chunk = [&](const auto& body) {
       parallel_for(chunks, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t c = first; c < last; ++c) body(c, c * kChunk, std::min(inputs, (c + 1) * kChunk));
+        for (std::size_t c = first; c < last; ++c) body(c, c * size, std::min(inputs, (c + 1) * size));
       });
     };
     std::vector<std::size_t> places(chunks * count, 0);  // per chunk and bucket: how many items, then where the next is
@@ -48,7 +49,7 @@ class Buckets {
   }
 
  private:
-  static constexpr std::size_t kChunk = std::size_t{1} << 16;  // inputs
+  static constexpr std::size_t kChunk = std::size_t{1} << 16;  // inputs at least
 
   std::vector<std::size_t> begin_;  // per bucket, and the end
   std::unique_ptr<Item[]> items_;

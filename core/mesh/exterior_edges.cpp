@@ -81,7 +81,7 @@ class Cancellation {
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
       const Waiting& here = waiting_[i];
       const auto low = static_cast<std::uint32_t>(first_ + i);
-      if (links && here.lanes[1][kMarks] != 0 && !links->is_used(low)) links->use(low);
+      if (links && here.lanes[1][kMarks] != 0) links->use(low);
       if (equal(_mm_or_si128(load(here.lanes[1]), load(here.lanes[0])), _mm_setzero_si128()) == kAllPlaces) continue;
       for (std::size_t place = 0; place < kMarks; ++place) {
         if (here.lanes[1][place] != kFree) rest.push_back({low, here.lanes[1][place], 1});

@@ -33,8 +33,11 @@ class Selection {
 
   void select(std::size_t count) {
     std::size_t begin = 0, end = triangles_.size();
+    // Halves would need half as many rounds. An order that defeats the samples is not to take quadratic time.
+    int rounds = 4 * std::bit_width(end);
     while (begin < count && count < end) {
       if (end - begin <= kFew) return sort_few(begin, end);
+      if (rounds-- == 0) return select_slowly(begin, count, end);
       const std::size_t middle = partition(begin, end, pivot(begin, end, count));
       (middle <= count ? begin : end) = middle;
     }
@@ -68,6 +71,12 @@ class Selection {
       middle += triangle.key(axis_) < pivot ? 1 : 0;
     }
     return middle;
+  }
+
+  void select_slowly(std::size_t begin, std::size_t count, std::size_t end) {
+    const auto at = [&](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(n); };
+    std::nth_element(at(begin), at(count), at(end),
+                     [&](const PlacedTriangle& a, const PlacedTriangle& b) { return a.key(axis_) < b.key(axis_); });
   }
 
   // Each goes where as many keys as are below its own say.

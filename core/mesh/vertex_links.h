@@ -31,8 +31,12 @@ class VertexLinks {
   }
   // A triangle uses it; several threads may say so.
   void use(std::uint32_t v) {
+    const std::atomic_ref lower(lower_[v]);
     std::uint32_t none = kNone;
-    std::atomic_ref(lower_[v]).compare_exchange_strong(none, v, std::memory_order_relaxed);
+    // Mostly it is known already, and a look costs less than an exchange.
+    if (lower.load(std::memory_order_relaxed) == kNone) {
+      lower.compare_exchange_strong(none, v, std::memory_order_relaxed);
+    }
   }
   // The lowest vertices of triangles of which an earlier one may have the same three vertices, in any order.
   void add_twins(const std::vector<std::uint32_t>& lowest) {

@@ -187,5 +187,28 @@ TEST(Gradient, OfALatticeIsThatAtItsPointsForAnyThreads) {
   EXPECT_EQ(values, gradients_of(mesh, points));
 }
 
+// Numbers that would become subnormal, or 0, in the scale of the mesh.
+TEST(Gradient, NextToAVertexOfAHugeMesh) {
+  for (const double size : {1e10, 1e40, 1e200}) {
+    const TriangleMesh mesh{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}}, {{0, 1, 2}, {0, 3, 1}}};
+    std::vector<Vec3> points;
+    for (const double small : {1e-290, 1e-200, 1e-100, 1.0}) {
+      for (const Vec3& direction : {Vec3{1, 2, 1}, Vec3{-1, 0.5, 3}, Vec3{0.25, 0, 1}}) {
+        points.push_back(small * direction);
+      }
+    }
+    const std::vector<Vec3> gradients = gradients_of(mesh, points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const DirectGradient expected = direct_gradient(mesh, points[n]);
+      for (int axis = 0; axis < 3; ++axis) {
+        // The evaluator's bound is 1e-12 of each edge's part.
+        EXPECT_NEAR(gradients[n][axis], component(expected.value, axis),
+                    1e-12 * static_cast<double>(expected.magnitude))
+            << size << " " << n;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raycone

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <thread>
 
 #include "core/evaluation/winding_number.h"
 #include "core/exact/predicates.h"
+#include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
@@ -513,6 +515,102 @@ TEST(Magnitude, OfLatticesEqualsThatOfPointsToTheBit) {
       }
     }
   }
+}
+
+// Coordinates of all exponents in one mesh: products underflow, and large factors bring back what was lost. The lattice
+// scan's filters against the predicates alone, which Embree's candidates are given to.
+TEST(Magnitude, ScansAreRightWhereProductsUnderflow) {
+  Random random(10);
+  std::uint64_t inside = 0;
+  const auto coordinate = [&](int lowest) {
+    const std::array<int, 8> exponents{0, 0, -1, -50, lowest / 4, lowest / 2, lowest, lowest + 30};
+    const std::uint64_t kind = random() % 4;
+    if (kind == 0) return 0.0;
+    const double mantissa = kind == 1 ? 1.0 : kind == 2 ? 1.5 : test::uniform(random, 0.5, 1.5);
+    return std::ldexp(random() % 2 == 0 ? mantissa : -mantissa, exponents[random() % exponents.size()]);
+  };
+  for (int n = 0; n < 3000; ++n) {
+    const int lowest = n % 3 == 0 ? -870 : n % 3 == 1 ? -450 : -1000, shift = n % 5 == 0 ? 1000 : 0;
+    TriangleMesh mesh{{}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    for (int v = 0; v < 4; ++v) {
+      mesh.vertices.push_back({coordinate(lowest), coordinate(lowest), coordinate(lowest)});
+      for (int axis = 0; axis < 3; ++axis) mesh.vertices.back()[axis] = std::ldexp(mesh.vertices.back()[axis], shift);
+    }
+    std::array<Vec3, 2> ends;
+    for (Vec3& end : ends) {
+      double all = 0.0;
+      std::array<double, 4> weights;
+      for (double& weight : weights) all += weight = std::pow(test::uniform(random, 0.0, 1.0), 3);
+      for (std::size_t v = 0; v < 4; ++v) end = end + (weights[v] / all) * mesh.vertices[v];
+    }
+    const Box box = box_of(ends[0], ends[1]);
+    const Lattice lattice{box.lower, 0.125 * (box.upper - box.lower), {0, 0, 0}, {9, 9, 9}};
+    if (!(lattice.spacing.x > 0.0 && lattice.spacing.y > 0.0 && lattice.spacing.z > 0.0)) continue;
+    std::vector<double> scanned(9 * 9 * 9), expected(scanned.size());
+    WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
+    WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+    ASSERT_EQ(scanned, expected) << n;
+    inside += static_cast<std::uint64_t>(std::ranges::count_if(scanned, [](double w) { return w != 0.0; }));
+  }
+  EXPECT_GT(inside, 100'000U);  // else nothing has been tested
+}
+
+// A plane whose normal underflows in y, and is multiplied by much.
+TEST(Magnitude, PlanesOfTrianglesWhoseNormalsUnderflow) {
+  const double u = 0x1p-200, t = 0x1p-890;
+  const TriangleMesh mesh{{{0, 0, 0}, {u, 1, 0}, {0, 0.5, t}, {1, 0.5, t / 4}},
+                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const Lattice lattice{{-u, 0.4, t / 4}, {2 * u / 15, 0.2 / 3, 0.35 / 3 * t}, {0, 0, 0}, {16, 4, 4}};
+  std::vector<double> scanned(16 * 4 * 4), expected(scanned.size());
+  WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
+  WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+  EXPECT_EQ(scanned, expected);
+}
+
+// The slope of an edge in a mesh that cannot be scaled: it underflows, and is multiplied by much.
+TEST(Magnitude, EdgesWhoseSlopesUnderflow) {
+  const double h = 0x1p999, y = 1.1 * 0x1p-50, dy = 1.2345678901 * 0x1p-50;
+  const TriangleMesh mesh{{{1, y, -h}, {1, y + dy, h}, {2, -1, 0}, {2, 1, 0}},
+                          {{0, 1, 2}, {1, 0, 3}, {0, 2, 3}, {1, 3, 2}}};
+  const double z = 0.3 * h, middle = y + 0.65 * dy;
+  for (const double step : {0x1p-80, 0x1p-90, 0x1p-100}) {
+    const Lattice lattice{{0, middle - 32 * step, z}, {0.125, step, 1}, {0, 0, 0}, {4, 64, 1}};
+    std::vector<double> scanned(4 * 64), expected(scanned.size());
+    WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
+    WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+    EXPECT_EQ(scanned, expected) << step;
+  }
+}
+
+// A cup of which one coordinate is so small that scaling the others down to 1 would lose it: squares of distances
+// overflow. The oracle is the cup of size 1, where that coordinate makes no difference that the samples could tell.
+TEST(Magnitude, SidesOfMeshesThatCannotBeScaled) {
+  const double size = 0x1p515;
+  TriangleMesh cup = test::sphere(12);
+  std::erase_if(cup.triangles, [&](const Triangle& t) {
+    return std::ranges::any_of(t, [&](std::uint32_t v) { return cup.vertices[v].z < -0.1; });
+  });
+  TriangleMesh huge = test::moved(cup, {size, size, size}, {});
+  for (Vec3& v : huge.vertices) {
+    if (v.z == size) v.x = 1.1e-165;
+  }
+  EXPECT_EQ(unit_scale(huge).exponent(), 0);
+  const Lattice lattice{{-0.3125, -0.3125, -0.8125}, {0.015625, 0.015625, 0.03125}, {0, 0, 0}, {37, 37, 33}};
+  const Lattice huge_lattice{size * lattice.origin, size * lattice.spacing, {0, 0, 0}, lattice.counts};
+  std::vector<double> values(37 * 37 * 33);
+  std::vector<std::uint8_t> sides(values.size());
+  WindingNumberEvaluator(weld(cup, {})).evaluate(lattice, whole(lattice), values);
+  const WindingNumberEvaluator evaluator(weld(huge, {}));
+  EXPECT_GT(static_cast<double>(evaluator.exterior_edges() * values.size()), 0x1p20);  // else certificates do not pay
+  evaluator.evaluate_sides({RuleKind::kThreshold, 0.3}, huge_lattice, whole(huge_lattice), sides);
+  std::uint64_t inside = 0, wrong = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    inside += sides[i];
+    if (std::abs(values[i] - 0.3) > 1e-12) wrong += sides[i] != static_cast<std::uint8_t>(values[i] > 0.3);
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(inside, 1000U);
+  EXPECT_LT(inside, values.size() - 1000);
 }
 
 }  // namespace

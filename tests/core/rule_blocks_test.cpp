@@ -252,5 +252,18 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
   EXPECT_GT(largest_third, 0.1) << "that of third derivatives is";
 }
 
+// Two halves that touch in vertices of their own: edges there and back, which no cap fills.
+TEST(RuleBlocks, OfMeshesWithSeams) {
+  TriangleMesh halves = test::sphere(12);
+  const std::vector<Vec3> shared = halves.vertices;
+  halves.vertices.insert(halves.vertices.end(), shared.begin(), shared.end());
+  for (Triangle& t : halves.triangles) {
+    const double middle = shared[t[0]].z + shared[t[1]].z + shared[t[2]].z;
+    for (std::uint32_t& v : t) v += middle > 0.0 ? static_cast<std::uint32_t>(shared.size()) : 0U;
+  }
+  EXPECT_GT(exterior_edges(halves).size(), 40U);
+  EXPECT_GT(certified(halves, integers(-20, 41, 0.0625)), 0);
+}
+
 }  // namespace
 }  // namespace raycone

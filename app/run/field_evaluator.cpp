@@ -73,7 +73,7 @@ Tally FieldEvaluator::evaluate_along_axes(const Lattice& lattice, const LatticeB
   const Tally tally =
       rule_ ? winding_number_.evaluate_sides(*rule_, lattice, block, samples.sides(), done)
             : winding_number_.evaluate(lattice, block, samples.winding_numbers(), done, samples.diagnostics());
-  if (!rule_) settle([&](std::size_t n) { return sample_point(lattice, block, n); }, samples);
+  if (!rule_) settle([&](std::size_t n) { return lattice.position(block.index_of(n)); }, samples);
   if (DistanceBlocks* const blocks = samples.distance_blocks()) {
     distance_->evaluate(lattice, block, band_width, *blocks);
   } else if (distance_) {

@@ -87,7 +87,7 @@ std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
   if (!(tolerance > 0.0) || bound <= tolerance) return std::nullopt;
   char text[200];
   std::snprintf(text, sizeof text,
-                "values are within %.2g of the true ones for sure, not within %.2g, because sums round; --diagnostics "
+                "values are expected within %.2g of the true ones, not within %.2g, because sums round; --diagnostics "
                 "bounds each value",
                 bound, tolerance);
   return Warning{"tolerance", text};

@@ -12,7 +12,8 @@ namespace {
 // No factor that double precision is trusted with has an argument that is off by more, in turns, its part of the
 // product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
 constexpr double kDoubtPerEdge = 0x1p-41;
-static_assert(kDoubtPerEdge * 9.0 * kMaxTriangles <= Boundary::kMostDoubt);
+constexpr double kMostFactors = 9.0;  // per triangle: three caps, of three factors each
+static_assert(kDoubtPerEdge * kMostFactors * kMaxTriangles <= Boundary::kMostDoubt);
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 namespace raycone {
 namespace {
@@ -15,10 +16,10 @@ constexpr double kMostPieces = 128.0;  // of an edge
 constexpr int kMostCuts = 14;          // of a cap, one after the other
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rounding: of the ends of pieces, relative to the largest coordinate, and of bounds, relative to themselves. Both
-// stand for some units in the last place, 1e-16 each.
+// Rounding: of the ends of pieces, relative to the largest coordinate, for some units in the last place, 1e-16 each;
+// and of bounds, relative to themselves: sums of up to 2^32 numbers that are not negative are off by 2^-21.
 constexpr double kPlaceError = 1e-14;
-constexpr double kBoundError = 1e-12;
+constexpr double kBoundError = 0x1p-20;
 constexpr double kAreaError = 1e-14;
 
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
@@ -46,6 +47,9 @@ ChangeBound::ChangeBound(const Caps& caps) {
   add_edges(caps.wide_loops);
   add_narrow(caps);
   add_wide(caps);
+  if (sources_.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::length_error("raycone: more than 4294967295 pieces of exterior edges and caps");
+  }
   clusters_.reserve(sources_.size());
   if (!sources_.empty()) build(0, static_cast<std::uint32_t>(sources_.size()));
 }

@@ -25,8 +25,9 @@ namespace {
 using Wide = long double;
 
 constexpr Wide u = std::numeric_limits<Wide>::epsilon() / 2;  // half a unit in the last place of 1L
-// Second-order terms of the analysis: relative errors before the last step stay below 2^-48.
-constexpr Wide kSecondOrder = 1 + 1e-12L;
+// Second-order terms of the analysis: relative errors before the last step stay below 2^-48, and sums of 2^33 bounds
+// round by less than 2^-31.
+constexpr Wide kSecondOrder = 1 + 0x1p-30L;
 
 // A vertex as seen from the query.
 struct WideVertex {

@@ -10,8 +10,6 @@
 namespace raycone {
 namespace {
 
-Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
 Interval extent_along_x(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x})};
 }
@@ -78,9 +76,8 @@ TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double u = 0x1p-53;
   constexpr double kNoUnderflow = 0x1p-900;
   const Vec3 e = b - a, f = c - a;
-  const Vec3 ae = absolute(e), af = absolute(f);
   normal = cross(e, f);
-  const Vec3 bound{ae.y * af.z + ae.z * af.y, ae.z * af.x + ae.x * af.z, ae.x * af.y + ae.y * af.x};
+  const Vec3 bound = cross_terms(e, f);
   const double nx = std::abs(normal.x);
   // Written so that NaN has no error bound.
   if (!(nx > 64 * u * bound.x && nx > kNoUnderflow && bound.x + bound.y + bound.z < 1 / kNoUnderflow)) {

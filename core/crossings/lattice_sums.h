@@ -83,7 +83,8 @@ class LatticeSums {
   // For who asks for runs().
   LatticeSums(std::size_t rows, std::size_t samples);
 
-  // Most bytes per sample that this takes beside the caller's spans; for runs(), sizeof(double) more.
+  // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up; for
+  // runs(), sizeof(double) more.
   static constexpr double kBytesPerSample = 3.0;
 
   // What one thread has to say.

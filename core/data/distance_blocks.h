@@ -13,9 +13,9 @@
 
 namespace raycone {
 
-// Numbers are kept of blocks of 8^3 samples, from indices of the lattice that are multiples of 8, which some sample is
-// in the band of; memory is in proportion to these. Blocks with the same place along y make up a strip, which one
-// thread fills.
+// Numbers are kept of blocks of 8^3 samples, from indices of the lattice that are multiples of 8, which have a sample
+// in the band. That, and four bytes for each block of the lattice, is the memory. Blocks with the same place along y
+// make up a strip, which one thread fills.
 class DistanceBlocks {
  public:
   static constexpr std::int64_t kSide = 8;

@@ -21,6 +21,9 @@ struct Lattice {
     const double step = static_cast<double>(index) * spacing[axis];
     return origin[axis] + step;
   }
+  [[nodiscard]] Vec3 position(const std::array<std::int64_t, 3>& index) const {
+    return {coordinate(0, index[0]), coordinate(1, index[1]), coordinate(2, index[2])};
+  }
   [[nodiscard]] std::int64_t index_max(int axis) const {
     const auto a = static_cast<std::size_t>(axis);
     return index_min[a] + counts[a] - 1;
@@ -37,6 +40,12 @@ struct LatticeBlock {
   std::array<std::int64_t, 3> counts{0, 0, 0};
 
   [[nodiscard]] std::int64_t size() const { return counts[0] * counts[1] * counts[2]; }
+  // In the lattice, of the sample `number`, counted from 0 in the order of values.
+  [[nodiscard]] std::array<std::int64_t, 3> index_of(std::size_t number) const {
+    const auto n = static_cast<std::int64_t>(number);
+    const std::int64_t row = n / counts[0];
+    return {first[0] + n % counts[0], first[1] + row % counts[1], first[2] + row / counts[1]};
+  }
 };
 
 [[nodiscard]] inline LatticeBlock whole(const Lattice& lattice) { return {lattice.index_min, lattice.counts}; }

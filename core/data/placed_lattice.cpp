@@ -41,10 +41,8 @@ Vec3 PlacedLattice::position(std::int64_t i, std::int64_t j, std::int64_t k) con
 }
 
 Vec3 PlacedLattice::position(const LatticeBlock& block, std::size_t number) const {
-  const auto n = static_cast<std::int64_t>(number);
-  const std::int64_t row = n / block.counts[0];
-  return position(block.first[0] + n % block.counts[0], block.first[1] + row % block.counts[1],
-                  block.first[2] + row / block.counts[1]);
+  const auto [i, j, k] = block.index_of(number);
+  return position(i, j, k);
 }
 
 bool PlacedLattice::along_axes() const {

@@ -25,6 +25,13 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+inline Vec3 absolute(const Vec3& a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
+// The components of cross(a, b) with the magnitudes of their products added: what rounding is to be judged by.
+inline Vec3 cross_terms(const Vec3& a, const Vec3& b) {
+  return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
+          std::abs(a.x * b.y) + std::abs(a.y * b.x)};
+}
+
 // By x, then y, then z: a total order, also of non-finite vertices that no triangle uses.
 inline std::strong_ordering lexicographic_order(const Vec3& a, const Vec3& b) {
   if (const auto order = std::strong_order(a.x, b.x); order != 0) return order;

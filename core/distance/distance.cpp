@@ -59,10 +59,6 @@ void take_block(const SampleBox& box, std::span<const double> numbers, DistanceB
   }
 }
 
-Vec3 position(const Lattice& lattice, const LatticeIndex& index) {
-  return {lattice.coordinate(0, index[0]), lattice.coordinate(1, index[1]), lattice.coordinate(2, index[2])};
-}
-
 bool holds(const LatticeBlock& block, const LatticeIndex& index) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (index[a] < block.first[a] || index[a] >= block.first[a] + block.counts[a]) return false;
@@ -201,7 +197,7 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
   double* distance = distances.data();
   for_each_sample(block, [&](const LatticeIndex& sample) {
     *distance++ =
-        holds(near, sample) ? *near_distance++ : std::min(length_without_overflow(position(lattice, sample)), band);
+        holds(near, sample) ? *near_distance++ : std::min(length_without_overflow(lattice.position(sample)), band);
   });
 }
 

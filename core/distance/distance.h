@@ -28,7 +28,8 @@ class DistanceEvaluator {
   // Throws std::length_error for more than kMaxBlockSide samples along an axis.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
-  // The same of the samples in the band, in blocks; memory and time are in proportion to their number.
+  // The same of the samples in the band, in blocks: memory and time are in proportion to their number, beside a little
+  // for each block of the lattice.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, DistanceBlocks& distances) const;
 
   // Builds the search tree. Without this call, the first evaluation does.

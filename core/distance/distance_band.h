@@ -13,7 +13,7 @@
 
 namespace raycone {
 
-// Blocks of samples begin where a multiple of 8 of these is: of each axis, how far the first sample is behind one.
+// Blocks begin at indices of the lattice that are multiples of 8. Per axis: the index of the first sample modulo 8.
 using BlockPhase = std::array<std::size_t, 3>;
 
 // Who wants to know of the band. Called from all threads, but of a strip of blocks, which have the same place along y,

@@ -26,18 +26,12 @@ Vec3 within_doubles(const Vec3& v) {
 
 QuadVec3 quad_difference(const Vec3& a, const Vec3& b) { return {Quad(a.x) - b.x, Quad(a.y) - b.y, Quad(a.z) - b.z}; }
 
-Quad quad_dot(const QuadVec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-QuadVec3 quad_cross(const QuadVec3& a, const QuadVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // As GradientEvaluator::part(), for queries next to the segment and for numbers whose products leave the doubles.
 Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q) {
   const QuadVec3 a = quad_difference(from, q), b = quad_difference(to, q);
-  const Quad la = sqrtq(quad_dot(a, a)), lb = sqrtq(quad_dot(b, b)), ab = quad_dot(a, b);
-  const QuadVec3 normal = quad_cross(la < lb ? a : b, quad_difference(to, from));
-  const Quad square = quad_dot(normal, normal);
+  const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), ab = dot(a, b);
+  const QuadVec3 normal = cross(la < lb ? a : b, quad_difference(to, from));
+  const Quad square = dot(normal, normal);
   if (square == 0) return {};
   const Quad opening = ab < 0 ? square / (la * lb - ab) : la * lb + ab;
   const Quad factor = weight * ((la + lb) / (la * lb * opening));
@@ -109,7 +103,7 @@ void GradientEvaluator::evaluate_each(const Point& point, std::span<Vec3> values
 
 void GradientEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<Vec3> values,
                                  std::atomic<std::uint64_t>* done) const {
-  evaluate_each([&](std::size_t n) { return sample_point(lattice, block, n); }, values, done);
+  evaluate_each([&](std::size_t n) { return lattice.position(block.index_of(n)); }, values, done);
 }
 
 void GradientEvaluator::evaluate(std::span<const Vec3> points, std::span<Vec3> values,

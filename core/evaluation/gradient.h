@@ -15,15 +15,6 @@
 
 namespace raycone {
 
-// Of the block's sample `number`, counted from 0 in the order of its values.
-[[nodiscard]] inline Vec3 sample_point(const Lattice& lattice, const LatticeBlock& block, std::size_t number) {
-  const auto n = static_cast<std::int64_t>(number);
-  const std::int64_t row = n / block.counts[0];
-  return {lattice.coordinate(0, block.first[0] + n % block.counts[0]),
-          lattice.coordinate(1, block.first[1] + row % block.counts[1]),
-          lattice.coordinate(2, block.first[2] + row / block.counts[1])};
-}
-
 // The gradient of the winding number beside its jumps, turns per world unit: the law of Biot and Savart over the
 // exterior edges (docs/method.md, "The gradient"). Exactly 0 for closed meshes. An edge whose line the query is on
 // adds nothing: its part has no limit on the edge, and is 0 on the rest of the line. Each edge's part is off by less

@@ -31,13 +31,12 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
 
 constexpr double kTriangleSummed = 1.9;    // directly, in units of an exterior edge
 constexpr double kLeastTolerance = 1e-12;  // less is as good as nothing
-constexpr double kMostTolerance = 0x1p-4;  // more would not be settled at half-integers
 constexpr double kFarShare = 0.75;         // of the tolerance; near triangles round, too
 
 // The far field, where it is asked for and estimated to be cheaper. `direct` is what it stands in for.
 std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const Boundary& boundary,
-                                               const BoundaryTerm* direct, const EvaluatorOptions& options) {
-  const double tolerance = std::min(options.accuracy.tolerance, kMostTolerance);
+                                               const BoundaryTerm* direct, double tolerance,
+                                               const EvaluatorOptions& options) {
   if (!direct || !(tolerance >= kLeastTolerance)) return nullptr;
   const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
   // Many a sample lies in the plane of flat caps, which are ties then.
@@ -104,16 +103,15 @@ const Blocks& ScaledMesh::blocks() const {
   std::call_once(blocks_built_, [this] {
     TriangleMesh caps = counts_crossings() ? all_caps(boundary_) : TriangleMesh();
     SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
-    const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
     blocks_.reset(new Blocks{std::move(caps), !faces.has_repeated_faces,
-                             LatticeBlocks(std::move(faces.triangles), tolerance, options_.level)});
+                             LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level)});
   });
   return *blocks_;
 }
 
 const FarField* ScaledMesh::far_field() const {
   std::call_once(far_built_, [this] {
-    if (is_in_scale_) far_ = make_far_field(mesh_, boundary_, term_.get(), options_);
+    if (is_in_scale_) far_ = make_far_field(mesh_, boundary_, term_.get(), tolerance(), options_);
   });
   return far_.get();
 }
@@ -140,14 +138,12 @@ bool ScaledMesh::takes_far_field(std::size_t samples) const {
 // Whether there is one or not, which is not known before it is built.
 double ScaledMesh::doubt_of_far_field() const {
   const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
-  const double tolerance = std::min(options_.accuracy.tolerance, kMostTolerance);
-  if (!wanted || !is_in_scale_ || !(tolerance >= kLeastTolerance)) return 0.0;
-  return std::min(FarField::doubt(kFarShare * tolerance, most_sources()), Boundary::kMostDoubt);
+  if (!wanted || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return 0.0;
+  return std::min(FarField::doubt(kFarShare * tolerance(), most_sources()), Boundary::kMostDoubt);
 }
 
 double ScaledMesh::doubt_of_blocks() const {
-  if (!has_blocks()) return 0.0;
-  return std::min(LatticeBlocks::doubt(options_.accuracy.tolerance, most_sources()), Boundary::kMostDoubt);
+  return has_blocks() ? LatticeBlocks::doubt(tolerance(), most_sources()) : 0.0;
 }
 
 // A loop of n edges has n - 2 caps.

@@ -103,8 +103,12 @@ class ScaledMesh {
   // Triangles that a far field sums, at most.
   [[nodiscard]] double most_sources() const;
 
-  // Whether blocks may be evaluated. Below this tolerance fits would round too much.
-  [[nodiscard]] bool has_blocks() const { return term_ && is_in_scale_ && options_.accuracy.tolerance >= 1e-11; }
+  // Whether blocks may be evaluated. Below this tolerance fits would round too much, as they would with sources so many
+  // that no value is sure to half a turn.
+  [[nodiscard]] bool has_blocks() const {
+    return term_ && is_in_scale_ && options_.accuracy.tolerance >= 1e-11 &&
+           LatticeBlocks::doubt(tolerance(), most_sources()) <= Boundary::kMostDoubt;
+  }
 
   // No value from blocks() is off by more.
   [[nodiscard]] double doubt_of_blocks() const;
@@ -134,6 +138,8 @@ class ScaledMesh {
 
  private:
   [[nodiscard]] double doubt_of_far_field() const;
+  // That of the accuracy, where it is of use: more would not be settled at half-integers.
+  [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   [[nodiscard]] bool takes_far_field(std::size_t samples) const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values) const;

@@ -28,14 +28,6 @@ namespace raycone {
 inline constexpr double kTurnTrust = 0x1p-49;
 inline constexpr double kTurnUnderflow = 0x1p-960;
 
-[[nodiscard]] inline Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
-// The components of cross(|a|, |b|) with plus signs.
-[[nodiscard]] inline Vec3 cross_terms(const Vec3& a, const Vec3& b) {
-  return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
-          std::abs(a.x * b.y) + std::abs(a.y * b.x)};
-}
-
 // 1 where a, b, c turn left, -1 where they turn right, 0 where they lie on a line.
 [[nodiscard]] inline int turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 first = b - a, second = c - a;

@@ -51,7 +51,9 @@ double distance_from(const Box& box, const Vec3& p) { return std::sqrt(square_of
 }  // namespace
 
 Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box, double tolerance) {
-  const double per_area = tolerance / 2 / std::max(tree.area(), 0x1p-1000);
+  // Areas of nodes that have no triangle in common sum to that of the tree but for the rounding of sums.
+  constexpr double kSlack = 1 - 0x1p-18;
+  const double per_area = kSlack * tolerance / 2 / std::max(tree.area(), 0x1p-1000);
   const double per_triangle = tolerance / 2 / static_cast<double>(tree.triangles().size());
   return cover(tree, triangles, [&](const SourceNode& node) {
     const double distance = distance_from(box, node.centre);

@@ -186,7 +186,51 @@ const HarmonicFit& HarmonicFit::instance() {
   return fit;
 }
 
+namespace {
+
+// Of each parity class a basis of the harmonics, orthonormal at the nodes of an octant.
+std::vector<OrthonormalRows> bases_of(std::span<const Vec3> octant) {
+  std::vector<std::vector<std::array<std::size_t, 3>>> terms;
+  std::vector<OrthonormalRows> bases;
+  for (std::size_t parity = 0; parity < 8; ++parity) {
+    terms.push_back(terms_of(parity));
+    std::vector<std::size_t> places;
+    for (const auto& [i, j, k] : terms.back()) places.push_back(kRows.begin(j, k) + i);
+    bases.emplace_back(octant.size(), std::move(places));
+  }
+  SolidHarmonics(octant).for_each([&](std::size_t parity, const Harmonic& h) {
+    std::vector<double> row = h.values;
+    for (const auto& [i, j, k] : terms[parity]) row.push_back(h.terms.at(i, j, k));
+    bases[parity].add(std::move(row));
+  });
+  return bases;
+}
+
+// A row per coefficient, a column per node of an octant, of which there are eight.
+std::vector<double> matrix_of(const OrthonormalRows& basis, std::size_t octant) {
+  std::vector<double> matrix(basis.places().size() * octant, 0.0);
+  for (std::size_t n = 0; n < basis.size(); ++n) {
+    const double* const values = basis.row(n).data();
+    const double* const coefficients = values + octant;
+    for (std::size_t term = 0; term < basis.places().size(); ++term) {
+      const double factor = coefficients[term] / 8;
+      for (std::size_t i = 0; i < octant; ++i) matrix[term * octant + i] += factor * values[i];
+    }
+  }
+  return matrix;
+}
+
+}  // namespace
+
 HarmonicFit::HarmonicFit() {
+  set_nodes();
+  const std::vector<OrthonormalRows> bases = bases_of(std::span(nodes_).first(kOctant));
+  for (std::size_t parity = 0; parity < 8; ++parity) {
+    classes_[parity] = {bases[parity].places(), matrix_of(bases[parity], kOctant)};
+  }
+}
+
+void HarmonicFit::set_nodes() {
   std::vector<double> along;
   for (std::size_t n = 1; n <= kNodesAlong / 2; ++n) {
     along.push_back(std::cos(static_cast<double>(2 * n - 1) * std::numbers::pi / (2.0 * kNodesAlong)));
@@ -206,35 +250,6 @@ HarmonicFit::HarmonicFit() {
     const std::size_t mirrored = n / kOctant;
     const Vec3& p = nodes_[n % kOctant];
     nodes_[n] = {mirrored & 4U ? -p.x : p.x, mirrored & 2U ? -p.y : p.y, mirrored & 1U ? -p.z : p.z};
-  }
-
-  std::vector<std::vector<std::array<std::size_t, 3>>> terms;
-  std::vector<OrthonormalRows> rows;
-  for (std::size_t parity = 0; parity < 8; ++parity) {
-    terms.push_back(terms_of(parity));
-    std::vector<std::size_t> places;
-    for (const auto& [i, j, k] : terms.back()) places.push_back(kRows.begin(j, k) + i);
-    rows.emplace_back(kOctant, std::move(places));
-  }
-  SolidHarmonics(std::span(nodes_).first(kOctant)).for_each([&](std::size_t parity, const Harmonic& h) {
-    std::vector<double> row = h.values;
-    for (const auto& [i, j, k] : terms[parity]) row.push_back(h.terms.at(i, j, k));
-    rows[parity].add(std::move(row));
-  });
-  for (std::size_t parity = 0; parity < 8; ++parity) {
-    const OrthonormalRows& basis = rows[parity];
-    ParityClass& c = classes_[parity];
-    c.places = basis.places();
-    c.matrix.assign(c.places.size() * kOctant, 0.0);
-    for (std::size_t n = 0; n < basis.size(); ++n) {
-      const double* const values = basis.row(n).data();
-      const double* const coefficients = values + kOctant;
-      for (std::size_t term = 0; term < c.places.size(); ++term) {
-        const double factor = coefficients[term] / 8;  // one for each octant
-        double* const row = &c.matrix[term * kOctant];
-        for (std::size_t i = 0; i < kOctant; ++i) row[i] += factor * values[i];
-      }
-    }
   }
 }
 

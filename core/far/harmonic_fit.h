@@ -30,13 +30,14 @@ class HarmonicFit {
   // The value of function f at node n is values[n * kTogether + f]. Sets the first polynomials.size() of kTogether.
   void fit(std::span<const double> values, std::span<Coefficients> polynomials, const MatrixKernel& kernel) const;
 
-  // No value of a fit exceeds kLargestWeights times the largest magnitude at the nodes; a fit rounds by at most
-  // kRounding times that magnitude.
+  // No value of a fit exceeds kLargestWeights times the largest magnitude at the nodes. A fit rounds by at most
+  // kRounding times that magnitude: measured (tests/core/lattice_blocks_test.cpp), not proved.
   static constexpr double kLargestWeights = 41.0;
   static constexpr double kRounding = 4e-12;
 
  private:
   HarmonicFit();
+  void set_nodes();
 
   // Functions that are even or odd along each axis: the values at the nodes of an octant tell the coefficients of like
   // parity.

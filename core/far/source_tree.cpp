@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "core/data/triangle_mesh.h"
@@ -14,9 +15,10 @@ namespace {
 
 constexpr std::size_t kOrders = kMultipoleOrder;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-12;     // more than what distances, radii and areas round, relative
-constexpr double kSmallest = 0x1p-150;  // radius: smaller nodes are never far, or their powers would underflow
-constexpr double kMostRatio = 0.97;     // of radius and distance, beyond which the series is of no use
+constexpr double kRounding = 1e-12;       // more than what distances and radii round, relative
+constexpr double kSumRounding = 0x1p-20;  // and sums of areas, of up to 2^32 triangles
+constexpr double kSmallest = 0x1p-150;    // radius: smaller nodes are never far, or their powers would underflow
+constexpr double kMostRatio = 0.97;       // of radius and distance, beyond which the series is of no use
 // 1 / (4 pi (1 - kMostRatio)^2), rounded up: times area over distance squared, what triangles contribute at most.
 constexpr double kNeglected = 100;
 
@@ -96,6 +98,9 @@ void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
 SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
     : triangles_(std::move(triangles)), tolerance_(tolerance), moments_(moment_kernel(level)) {
   if (triangles_.empty()) return;
+  if (triangles_.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::length_error("raycone: more than 4294967295 sources of a far field");
+  }
   build();
   expand();
 }
@@ -164,7 +169,7 @@ void SourceTree::measure(SourceNode& node) const {
     extend(box, box_of(triangles_[i]));
     node.area += area_of(triangles_[i]);
   }
-  node.area *= 1 + kRounding;
+  node.area *= 1 + kSumRounding;
   node.centre = middle(box);
   for (std::uint32_t i = node.begin; i < node.end; ++i) {
     const SolidTriangle& t = triangles_[i];
@@ -226,7 +231,7 @@ void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
   const std::span all(coefficients_);
   set_coefficients(multipole, node.order, all.subspan(node.first_coefficient));
   const double of_triangles = static_cast<double>(node.triangles()) / static_cast<double>(triangles_.size());
-  const double share = tolerance_ / 2 * (node.area / area() + of_triangles) * (1 - 8 * kRounding);
+  const double share = tolerance_ / 2 * (node.area / area() + of_triangles) * (1 - 4 * kSumRounding);
   const auto ratios = largest_ratios(node, share);
   double least = kInfinity;
   for (int p = 1; p <= node.order; ++p) {

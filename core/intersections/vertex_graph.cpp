@@ -10,8 +10,6 @@ namespace {
 constexpr double kRoundings = 8 * 0x1p-53;
 constexpr double kUnderflow = 0x1p-900;
 
-Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
 Vec3 normal_of(const std::vector<Vec3>& vertices, std::uint32_t vertex, std::span<const FanStep> steps) {
   const Vec3& v = vertices[vertex];
   Vec3 normal;
@@ -21,10 +19,8 @@ Vec3 normal_of(const std::vector<Vec3>& vertices, std::uint32_t vertex, std::spa
 
 // Whether the turn from a to b is surely positive, seen against a direction.
 bool turns_left(const Vec3& direction, const Vec3& a, const Vec3& b) {
-  const Vec3 p = absolute(a), q = absolute(b), d = absolute(direction);
-  constexpr double kTiny = 0x1p-1000;  // more than what underflows in the cross product, times 2^50
-  const Vec3 terms{p.y * q.z + p.z * q.y + kTiny, p.z * q.x + p.x * q.z + kTiny, p.x * q.y + p.y * q.x + kTiny};
-  return dot(direction, cross(a, b)) > kRoundings * dot(d, terms) + kUnderflow;
+  constexpr Vec3 kTiny{0x1p-1000, 0x1p-1000, 0x1p-1000};  // more than what underflows in the cross product, times 2^50
+  return dot(direction, cross(a, b)) > kRoundings * dot(absolute(direction), cross_terms(a, b) + kTiny) + kUnderflow;
 }
 
 // On which side of a plane along `direction` a vector is: 1, -1, or 0 where that is not sure. Two of the direction's

@@ -16,7 +16,9 @@ struct MeshStatistics {
   std::uint64_t duplicate_faces = 0;     // beyond the first of the same three vertices, in either orientation
   std::uint64_t components = 0;          // sets of faces that are joined through vertices
   double surface_area = 0.0;             // world units squared, infinite beyond doubles
-  std::optional<double> signed_volume;   // world units cubed, infinite beyond doubles; absent if the mesh is open
+  // World units cubed, infinite beyond doubles; absent if the mesh is open. Rounding is beside the volumes of the
+  // tetrahedra that it is summed of: where all cancel, some 1e-19 of them may be left.
+  std::optional<double> signed_volume;
 
   [[nodiscard]] bool closed() const { return exterior_edges == 0; }
 };

@@ -19,7 +19,7 @@ struct Representatives {
 // of n log n, wherever they are: at most 2^32 - 1 different ones.
 [[nodiscard]] Representatives representatives_within(const std::vector<Vec3>& vertices, double distance);
 
-// Whether the distance of a and b, rounded to double, is at most `distance`, a positive number.
+// Whether the distance of a and b, as std::hypot() gives it, is at most `distance`, a positive number.
 [[nodiscard]] bool is_near(const Vec3& a, const Vec3& b, double distance);
 
 }  // namespace raycone

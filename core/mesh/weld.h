@@ -17,7 +17,7 @@ struct Weld {
 //   kNone      none are merged
 //   kExact     those of bitwise equal coordinates
 //   kDistance  in lexicographic order of (x, y, z), a vertex joins the first earlier representative within `distance`,
-//              or becomes one; distances are rounded to double, and vertices that are not finite join nobody
+//              or becomes one; distances are as std::hypot() gives them, and vertices that are not finite join nobody
 //
 // Triangles keep their number and order. The result does not depend on the order of faces, with kDistance not on that
 // of vertices either. n vertices take time in proportion to n, with kDistance to n log n, wherever they lie. Uses the

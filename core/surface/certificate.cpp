@@ -43,8 +43,7 @@ bool is_short_cycle(std::span<const FanStep> steps) {
   return false;
 }
 
-// Whether the faces around a vertex, each with the edge that faces it, make up one cycle.
-// Sets `steps` to these edges.
+// Whether the faces around a vertex, each with the edge that faces it, make up one cycle. Sets `steps` to these edges.
 bool is_fan(const TriangleMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> faces,
             std::vector<FanStep>& steps) {
   steps.clear();

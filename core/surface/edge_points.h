@@ -28,8 +28,7 @@ struct SurfaceMargins {
 
 // For each mixed edge the point nearest to its inside end where the rule ceases to hold: on the first triangle that
 // carries the winding number across, or where it passes a threshold by itself, as it does in holes. Positions are moved
-// by no more than the margin. The same for any number of threads. Needs evaluator, cells and
-// triangles of this mesh.
+// by no more than the margin. The same for any number of threads. Needs evaluator, cells and triangles of this mesh.
 [[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
                                                  const Rule& rule, const SurfaceCells& cells,
                                                  const CellTriangles& triangles, const SurfaceMargins& margins);

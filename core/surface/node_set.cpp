@@ -27,6 +27,12 @@ NodeSet::NodeSet(const Lattice& lattice)
       words_per_row_((lattice.counts[0] + 63) / 64),
       words_(static_cast<std::size_t>(words_per_row_ * lattice.counts[1] * lattice.counts[2]), 0) {}
 
+NodeSet NodeSet::on(const Lattice& lattice) const {
+  NodeSet nodes = *this;
+  nodes.lattice_ = lattice;
+  return nodes;
+}
+
 void NodeSet::set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds) {
   std::uint64_t* const words = words_.data() + (k * count(1) + j) * words_per_row_;
   for (std::size_t first = 0; first < holds.size(); first += 64) {

@@ -31,6 +31,9 @@ class NodeSet {
   // Sets a row to the nodes where `holds` is 1; elsewhere it is 0. Precondition: holds.size() == count(0).
   void set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds);
 
+  // The same nodes of another lattice, of as many.
+  [[nodiscard]] NodeSet on(const Lattice& lattice) const;
+
   // The bits of a row, 64 a word; those behind its end are 0.
   [[nodiscard]] const std::uint64_t* row(std::int64_t j, std::int64_t k) const {
     return words_.data() + (k * count(1) + j) * words_per_row_;

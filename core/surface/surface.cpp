@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/distance/distance.h"
+#include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/face_sources.h"
@@ -127,8 +129,7 @@ class SurfaceMaker {
   }
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
-  // as well as that have faults, they are merged where they agree better.
-  // Returns false where faults are left even so.
+  // as well as that have faults, they are merged where they agree better. Returns false where faults are left even so.
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
     enter("merging the triangles of a plane");
     std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
@@ -323,6 +324,59 @@ double largest_coordinate(const Lattice& lattice) {
 
 }  // namespace
 
+namespace {
+
+// What the surface is made of.
+struct SurfaceInput {
+  TriangleMesh mesh;
+  NodeSet inside;
+  SurfaceOptions options;
+
+  // Of each number `in_scale` makes another one. Whether none has lost a bit.
+  bool scale(const PowerOfTwo& in_scale) {
+    const PowerOfTwo back(-in_scale.exponent());
+    bool is_exact = true;
+    const auto scale_number = [&](double& number) {
+      const double scaled = in_scale(number);
+      is_exact = is_exact && (back(scaled) == number || !std::isfinite(number));  // as unused vertices may be
+      number = scaled;
+    };
+    const auto scale_vector = [&](Vec3& v) {
+      for (int axis = 0; axis < 3; ++axis) scale_number(v[axis]);
+    };
+    Lattice lattice = inside.lattice();
+    scale_vector(lattice.origin);
+    scale_vector(lattice.spacing);
+    inside = inside.on(lattice);
+    for (Vec3& v : mesh.vertices) scale_vector(v);
+    scale_number(options.thickness);
+    scale_number(options.simplify);
+    return is_exact;
+  }
+};
+
+// The surface by way of a lattice whose coordinates are near 1, where they are far from it: products of four lengths
+// and more would over- or underflow. None where that would cost a number bits.
+std::optional<FinishedSurface> surface_in_scale(const TriangleMesh& mesh, const NodeSet& inside,
+                                                const SurfaceOptions& options) {
+  constexpr int kFar = 64;  // floats do not get there
+  const int exponent = std::ilogb(largest_coordinate(inside.lattice()));
+  if (options.single_precision || std::abs(exponent) <= kFar) return std::nullopt;
+  SurfaceInput input{mesh, inside, options};
+  if (!input.scale(PowerOfTwo(-exponent))) return std::nullopt;
+  const WindingNumberEvaluator evaluator(input.mesh);
+  FinishedSurface finished = SurfaceMaker(input.mesh, evaluator, input.inside, input.options).make();
+  const PowerOfTwo back(exponent), in_scale(-exponent);
+  for (Vec3& v : finished.surface.mesh.vertices) {
+    const Vec3 scaled = v;
+    v = back(v);
+    if (in_scale(v) != scaled) return std::nullopt;
+  }
+  return finished;
+}
+
+}  // namespace
+
 double surface_margin(const Lattice& lattice, bool single_precision) {
   constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8;
   const Vec3& h = lattice.spacing;
@@ -344,6 +398,7 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEval
     throw LatticeTooFine(std::string("voxels are too small for ") + (options.single_precision ? "single" : "double") +
                          " precision so far from the origin");
   }
+  if (std::optional<FinishedSurface> surface = surface_in_scale(mesh, inside, options)) return *std::move(surface);
   return SurfaceMaker(mesh, evaluator, inside, options).make();
 }
 

@@ -180,7 +180,7 @@ TEST(Gradient, OfALatticeIsThatAtItsPointsForAnyThreads) {
   const Lattice lattice{{-0.5, -0.25, 0.1}, {0.1, 0.2, 0.3}, {-3, 1, 2}, {13, 7, 5}};
   const LatticeBlock block{{-2, 2, 3}, {11, 5, 3}};
   std::vector<Vec3> points, values(static_cast<std::size_t>(block.size()));
-  for (std::size_t n = 0; n < values.size(); ++n) points.push_back(sample_point(lattice, block, n));
+  for (std::size_t n = 0; n < values.size(); ++n) points.push_back(lattice.position(block.index_of(n)));
   EXPECT_EQ(points[12], (Vec3{lattice.coordinate(0, -1), lattice.coordinate(1, 3), lattice.coordinate(2, 3)}));
   evaluator_of(mesh).evaluate(lattice, block, values);
   const ThreadLimit one(1);

@@ -51,7 +51,7 @@ bool holds_at(const WindingNumberEvaluator& evaluator, const Rule& rule, const L
               double w) {
   for (const double threshold : thresholds_to_settle(rule)) {
     if (std::abs(w - threshold) <= evaluator.doubt()) {
-      w = evaluator.settle(sample_point(lattice, whole(lattice), n), w, threshold);
+      w = evaluator.settle(lattice.position(whole(lattice).index_of(n)), w, threshold);
     }
   }
   return holds(rule, w);

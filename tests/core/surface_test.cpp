@@ -323,6 +323,29 @@ Made surface_of(const TriangleMesh& mesh, std::int64_t side, const SurfaceOption
   return made;
 }
 
+// Far from 1, squares of areas over- or underflow.
+TEST(Surface, IsTheSameInEveryUnitOfLength) {
+  TriangleMesh ball = test::sphere(8);
+  for (Vec3& v : ball.vertices) v = (1.0 + 0.1 * std::sin(5 * v.x + 3 * v.y)) * v;
+  TriangleMesh cup = ball;
+  std::erase_if(cup.triangles, [&](const Triangle& t) { return cup.vertices[t[0]].z > 0.6; });
+  for (const TriangleMesh& mesh : {weld(ball, {}), weld(cup, {})}) {
+    for (const double simplify : {0.0, 0.02}) {
+      SurfaceOptions options;
+      options.simplify = simplify;
+      const TriangleMesh expected = surface_of(mesh, 20, options).surface.mesh;
+      EXPECT_LT(expected.triangles.size(), 3000U);
+      for (const int exponent : {-850, -300, -100, -60, 60, 100, 300, 900}) {
+        const double unit = std::ldexp(1.0, exponent);
+        options.simplify = simplify * unit;
+        const TriangleMesh made = surface_of(test::moved(mesh, {unit, unit, unit}, {}), 20, options).surface.mesh;
+        EXPECT_EQ(made.triangles, expected.triangles) << exponent;
+        EXPECT_EQ(made.vertices, test::moved(expected, {unit, unit, unit}, {}).vertices) << exponent;
+      }
+    }
+  }
+}
+
 double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& mesh) {
   std::vector<double> distances(points.size());
   DistanceEvaluator(mesh).evaluate(points, distances);

@@ -74,7 +74,7 @@ MUTANTS = [
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [
-        ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kUnderflow = 0x1p-1000", "kError = 0, kUnderflow = 0")]),
+        ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kSlopeUnderflow", "kError = 0, kUnderflow = 0")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/crossings/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [

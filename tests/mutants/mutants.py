@@ -74,7 +74,7 @@ MUTANTS = [
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [
-        ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kSlopeUnderflow", "kError = 0, kUnderflow = 0")]),
+        ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kSlopeUnderflow", "kError = 0, kSlopeUnderflow")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/crossings/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
@@ -509,7 +509,7 @@ MUTANTS = [
     Mutant("radius_too_small", "no point of a node is farther from its centre than its radius", [
         ("core/far/source_tree.cpp", "  node.radius *= 1 + kRounding;", "  node.radius *= 0.99;")]),
     Mutant("area_too_small", "a node has the area of its triangles", [
-        ("core/far/source_tree.cpp", "  node.area *= 1 + kRounding;", "  node.area *= 0.99;")]),
+        ("core/far/source_tree.cpp", "  node.area *= 1 + kSumRounding;", "  node.area *= 0.99;")]),
     Mutant("bends_less", "second derivatives of a piece are at most 2 L / (4 pi d^3)", [
         ("core/boundary/change_bound.cpp", "second += 2 * of_length / distance;",
          "second += 0.2 * of_length / distance;")]),

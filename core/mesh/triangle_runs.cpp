@@ -34,7 +34,7 @@ class Selection {
   void select(std::size_t count) {
     std::size_t begin = 0, end = triangles_.size();
     // Halves would need half as many rounds. An order that defeats the samples is not to take quadratic time.
-    int rounds = 4 * std::bit_width(end);
+    int rounds = 4 * static_cast<int>(std::bit_width(end));
     while (begin < count && count < end) {
       if (end - begin <= kFew) return sort_few(begin, end);
       if (rounds-- == 0) return select_slowly(begin, count, end);

@@ -150,7 +150,7 @@ class Tolerances(Contract):
     def test_a_tolerance_that_is_not_kept_is_said(self):
         def warned(mesh, *words):
             result = run(["lattice", os.path.join(MESHES, mesh), "-o", "out.csv", "--resolution", "3", *words])
-            return result.returncode, ": tolerance: values are within 1e-10 " in result.stderr
+            return result.returncode, ": tolerance: values are expected within 1e-10 " in result.stderr
 
         self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12"), (0, True))
         self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12", "--strict"), (2, True))

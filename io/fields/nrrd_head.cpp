@@ -121,7 +121,8 @@ Vec3 signs_of_space(const std::string& path, const NrrdHead& head) {
   if (name == "right-anterior-superior" || name == "ras") return {1, 1, 1};
   if (name == "left-anterior-superior" || name == "las") return {-1, 1, 1};
   if (name == "left-posterior-superior" || name == "lps") return {-1, -1, 1};
-  if (name == "scanner-xyz" || name == "3d-right-handed" || name == "3d-left-handed") return {1, 1, 1};
+  static constexpr std::array kOfNoBody{"scanner-xyz", "3d-right-handed", "3drh", "3d-left-handed", "3dlh"};
+  if (std::ranges::find(kOfNoBody, name) != kOfNoBody.end()) return {1, 1, 1};
   fail_head(path, "its space, expected right-anterior-superior or another of three axes");
 }
 
@@ -206,7 +207,9 @@ NrrdHead read_nrrd_head(const std::string& path) {
     if (rest.starts_with('=')) {
       head.pairs.emplace(without_escapes(key), without_escapes(rest.substr(1)));
     } else if (rest.starts_with(' ')) {
-      head.fields.emplace(lower_case(key), rest.substr(1));
+      if (!head.fields.emplace(lower_case(key), rest.substr(1)).second) {
+        fail_head(path, "its head has two fields \"" + lower_case(key) + '"');
+      }
     }
   }
   return head;

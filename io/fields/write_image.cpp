@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -137,6 +138,23 @@ bool fits_float(const Vec3& v) {
   return fits(v.x) && fits(v.y) && fits(v.z);
 }
 
+// How far the sform, in 32 bits, displaces a sample at most, in voxels: all are sums of its columns.
+double nifti_displacement(const PlacedLattice& lattice) {
+  const Vec3& spacing = lattice.grid.spacing;
+  const auto rounding = [](double number) {
+    return std::abs(static_cast<double>(static_cast<float>(number)) - number);
+  };
+  double most = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = rounding(first_sample(lattice)[axis]);
+    for (std::size_t n = 0; n < 3; ++n) {
+      sum += static_cast<double>(lattice.grid.counts[n] - 1) * rounding(lattice.steps[n][axis]);
+    }
+    most = std::max(most, sum / std::min({spacing.x, spacing.y, spacing.z}));
+  }
+  return most;
+}
+
 void check_nifti(const PlacedLattice& lattice, const std::string& name) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int16_t>::max();
   for (const std::int64_t count : lattice.grid.counts) {
@@ -148,6 +166,13 @@ void check_nifti(const PlacedLattice& lattice, const std::string& name) {
   const auto least = static_cast<float>(std::min({spacing.x, spacing.y, spacing.z}));
   if (!fits_float(spacing) || !fits_float(first_sample(lattice)) || least < std::numeric_limits<float>::min()) {
     throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
+  }
+  constexpr double kMostDisplaced = 0.0625;  // voxels: less than anybody sees
+  if (const double displaced = nifti_displacement(lattice); displaced > kMostDisplaced) {
+    std::array<char, 16> text;
+    std::snprintf(text.data(), text.size(), "%.2g", displaced);
+    throw OutputError(name + ": the 32 bits of NIfTI-1 would displace samples by " + text.data() +
+                      " voxels, so far from the origin; see --normalize, or take NRRD");
   }
 }
 

@@ -133,6 +133,28 @@ TextScanner::TextScanner(const NamedBytes& source)
   const std::size_t first_end = source.bytes.find_first_of("\r\n");
   if (first_end != std::string_view::npos && source.bytes.substr(first_end, 2) != "\r\n")
     line_end_ = source.bytes[first_end];
+  other_end_ = line_end_;
+}
+
+void TextScanner::take_mixed_line_ends() {
+  const char other = line_end_ == '\n' ? '\r' : '\n';
+  for (const char* p = position_;
+       (p = static_cast<const char*>(std::memchr(p, other, static_cast<std::size_t>(end_ - p)))) != nullptr;) {
+    const char* after = std::find_if(p, end_, [](char c) { return c != '\r'; });  // p itself where it is an LF
+    const bool is_crlf = other == '\n' ? p != begin_ && p[-1] == '\r' : after == end_ || *after == '\n';
+    if (!is_crlf) {
+      other_end_ = other;
+      return;
+    }
+    p = std::max(after, p + 1);
+  }
+}
+
+// Byte by byte: lines are short, and a search for one end could pass thousands of lines with the other.
+void TextScanner::skip_mixed_line() {
+  position_ = std::find_if(position_, end_, [this](char c) { return is_line_end(c); });
+  if (remaining() > 1 && position_[0] == '\r' && position_[1] == '\n') ++position_;
+  if (!at_end()) ++position_;
 }
 
 void TextScanner::skip_continued_line(char comment) {
@@ -141,7 +163,7 @@ void TextScanner::skip_continued_line(char comment) {
     skip_line();
     if (std::memchr(from, comment, static_cast<std::size_t>(position_ - from))) return;
     const char* last = position_ - 1;  // the line's end, unless the text ends without one
-    if (last > begin_ && last[-1] == '\r' && line_end_ == '\n') --last;
+    if (last > begin_ && *last == '\n' && last[-1] == '\r') --last;
     if (last <= begin_ || last[-1] != '\\') return;
   } while (!at_end());
 }
@@ -173,15 +195,15 @@ bool TextScanner::skip_word(std::string_view word) {
 bool TextScanner::skip_continuation() {
   if (*position_ != '\\') return false;
   const char* next = position_ + 1;
-  if (next != end_ && *next == '\r' && line_end_ == '\n') ++next;
-  if (next == end_ || *next != line_end_) return false;
+  if (end_ - next > 1 && next[0] == '\r' && next[1] == '\n' && is_line_end('\n')) ++next;
+  if (next == end_ || !is_line_end(*next)) return false;
   position_ = next;
   return true;
 }
 
 std::string TextScanner::found() const {
   if (at_end()) return "the end of the file";
-  if (*position_ == line_end_ || *position_ == '#') return "the end of the line";
+  if (is_line_end(*position_) || *position_ == '#') return "the end of the line";
   constexpr std::size_t kLongest = 32;
   std::string_view word = peek_word();
   if (word.empty()) word = {position_, 1};
@@ -193,7 +215,13 @@ std::string TextScanner::found() const {
 }
 
 void TextScanner::fail_at(std::size_t offset, const std::string& what) const {
-  const auto line = 1 + std::count(begin_, begin_ + offset, line_end_);
+  auto line = 1 + std::count(begin_, begin_ + offset, line_end_);
+  if (other_end_ != line_end_) {
+    for (const char* p = begin_; p != begin_ + offset; ++p) {
+      const bool is_crlf = *p == '\n' && p != begin_ && p[-1] == '\r';
+      line += (*p == other_end_ ? 1 : 0) - (is_crlf ? 1 : 0);
+    }
+  }
   throw InputError(name_ + ":" + std::to_string(line) + ": " + what);
 }
 

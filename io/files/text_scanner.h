@@ -1,7 +1,8 @@
 // A cursor over the text of a mesh file: numbers, words and lines at the speed that files of 100 MB need.
 //
 // Lines end in LF, CR LF or CR; the first line end of the text decides, and whichever character does not end lines is a
-// blank. Numbers are decimal and independent of the locale. Nothing is copied, no line is too long.
+// blank, unless take_mixed_line_ends() says otherwise. Numbers are decimal and independent of the locale. Nothing is
+// copied, no line is too long.
 #pragma once
 
 #include <charconv>
@@ -35,9 +36,13 @@ class TextScanner {
   // Starts behind a UTF-8 byte order mark; throws InputError where there is one of UTF-16. `source` must outlive this.
   explicit TextScanner(const NamedBytes& source);
 
+  // All from here on is text: where files with other line ends have been joined to the first one, each line ends as it
+  // does. Carriage returns before CR LF are blanks still, since some programs write those.
+  void take_mixed_line_ends();
+
   [[nodiscard]] bool at_end() const { return position_ == end_; }
   // At the end of a line or of the text, or at a comment ('#').
-  [[nodiscard]] bool at_line_end() const { return at_end() || *position_ == line_end_ || *position_ == '#'; }
+  [[nodiscard]] bool at_line_end() const { return at_end() || is_line_end(*position_) || *position_ == '#'; }
   // At a blank, a line end, a comment or the end of the text.
   [[nodiscard]] bool at_token_end() const { return ends_token(position_); }
   // Position as an offset into the source's bytes.
@@ -47,7 +52,7 @@ class TextScanner {
 
   // Moves to the next token or line end. A backslash at the end of a line joins the next one to it.
   void skip_blanks() {
-    while (!at_end() && *position_ != line_end_ && (is_space(*position_) || skip_continuation())) ++position_;
+    while (!at_end() && !is_line_end(*position_) && (is_space(*position_) || skip_continuation())) ++position_;
   }
   // Moves to the next token, in whichever line.
   void skip_whitespace() {
@@ -55,6 +60,7 @@ class TextScanner {
   }
   // Moves to the start of the next line.
   void skip_line() {
+    if (other_end_ != line_end_) return skip_mixed_line();
     const void* found = std::memchr(position_, line_end_, remaining());
     position_ = found ? static_cast<const char*>(found) + 1 : end_;
   }
@@ -114,6 +120,8 @@ class TextScanner {
   [[noreturn]] void fail(const std::string& what) const { fail_at(offset(), what); }
 
  private:
+  [[nodiscard]] bool is_line_end(char c) const { return c == line_end_ || c == other_end_; }
+  void skip_mixed_line();
   [[nodiscard]] bool ends_token(const char* p) const { return p == end_ || is_space(*p) || *p == '#' || *p == '\\'; }
   // At a backslash before a line end: moves to the line end and returns true.
   bool skip_continuation();
@@ -123,6 +131,7 @@ class TextScanner {
   const char* end_;
   const char* position_;
   char line_end_ = '\n';
+  char other_end_ = '\n';  // the same but in a text whose lines end differently
 };
 
 }  // namespace raycone

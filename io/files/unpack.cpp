@@ -16,9 +16,28 @@
 namespace raycone {
 namespace {
 
-constexpr std::string_view kGzip = "\x1f\x8b", kZstandard = "\x28\xb5\x2f\xfd";
+constexpr std::string_view kGzipMagic = "\x1f\x8b", kZstandardMagic = "\x28\xb5\x2f\xfd";
+// Behind a byte from 0x50 to 0x5F: a frame of Zstandard that is skipped. pzstd begins its files with one.
+constexpr std::string_view kSkippableMagic = "\x2a\x4d\x18";
+constexpr std::size_t kMagic = 4;  // bytes that tell, at most
 constexpr std::size_t kBlock = std::size_t{1} << 17;
 constexpr int kGzipWindow = 15 + 16, kBareWindow = -15;  // as zlib counts
+
+enum class Packing { kNone, kGzip, kZstandard };
+
+Packing packing_of(std::string_view bytes) {
+  if (bytes.starts_with(kGzipMagic)) return Packing::kGzip;
+  const bool is_skippable =
+      !bytes.empty() && (bytes.front() & 0xF0) == 0x50 && bytes.substr(1).starts_with(kSkippableMagic);
+  return is_skippable || bytes.starts_with(kZstandardMagic) ? Packing::kZstandard : Packing::kNone;
+}
+
+// Whether more bytes may make it packed.
+bool may_become_packed(std::string_view bytes) {
+  if (bytes.size() >= kMagic || packing_of(bytes) != Packing::kNone) return false;
+  if (bytes.empty() || kGzipMagic.starts_with(bytes) || kZstandardMagic.starts_with(bytes)) return true;
+  return (bytes.front() & 0xF0) == 0x50 && kSkippableMagic.starts_with(bytes.substr(1));
+}
 
 // Packed bytes, block by block.
 class PackedInput {
@@ -108,7 +127,7 @@ class InflatingSource final : public ByteSource {
       input_.consume(1);
       return false;
     }
-    if (packed.front() != kGzip.front()) input_.fail("something other than compressed data behind them");
+    if (packed.front() != kGzipMagic.front()) input_.fail("something other than compressed data behind them");
     between_ = false;
     inflateReset(&state_);
     return true;
@@ -183,8 +202,8 @@ class UnpackingSource final : public ByteSource {
  private:
   void find_out() {
     is_known_ = true;
-    std::array<char, 4> first{};
-    while (begun_.size() < first.size() && (kGzip.starts_with(begun_) || kZstandard.starts_with(begun_))) {
+    std::array<char, kMagic> first{};
+    while (may_become_packed(begun_)) {
       const std::size_t count = source_->read(first.data(), first.size() - begun_.size());
       if (count == 0) {
         at_end_ = true;  // of a terminal, which would ask again
@@ -192,9 +211,10 @@ class UnpackingSource final : public ByteSource {
       }
       begun_.append(first.data(), count);
     }
-    if (begun_.starts_with(kGzip)) {
+    const Packing packing = packing_of(begun_);
+    if (packing == Packing::kGzip) {
       source_ = std::make_unique<InflatingSource>(take_input(), kGzipWindow, std::nullopt);
-    } else if (begun_.starts_with(kZstandard)) {
+    } else if (packing == Packing::kZstandard) {
       source_ = std::make_unique<ZstandardSource>(take_input());
     }
   }
@@ -215,7 +235,7 @@ class UnpackingSource final : public ByteSource {
 
 }  // namespace
 
-bool is_packed(std::string_view bytes) { return bytes.starts_with(kGzip) || bytes.starts_with(kZstandard); }
+bool is_packed(std::string_view bytes) { return packing_of(bytes) != Packing::kNone; }
 
 std::unique_ptr<ByteSource> unpacked(std::unique_ptr<ByteSource> packed, const std::string& name) {
   return std::make_unique<UnpackingSource>(std::move(packed), name);

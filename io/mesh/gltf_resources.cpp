@@ -64,12 +64,18 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-// Scheme names are ASCII and case-insensitive (RFC 3986, section 3.1).
-bool is_data_uri(std::string_view uri) {
-  constexpr std::string_view kData = "data:";
-  return uri.size() >= kData.size() && std::equal(kData.begin(), kData.end(), uri.begin(), [](char a, char b) {
-           return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
-         });
+// Of ASCII letters, in any case.
+bool is_same_word(std::string_view text, std::string_view lower) {
+  return std::ranges::equal(text, lower,
+                            [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
+// Both words of a data URI are case-insensitive (RFC 3986, section 3.1; RFC 2397, whose literals are).
+bool is_data_uri(std::string_view uri) { return is_same_word(uri.substr(0, 5), "data:"); }
+
+bool announces_base64(std::string_view head) {
+  constexpr std::string_view kBase64 = ";base64";
+  return head.size() >= kBase64.size() && is_same_word(head.substr(head.size() - kBase64.size()), kBase64);
 }
 
 bool has_scheme(std::string_view uri) {
@@ -94,7 +100,7 @@ std::string decode_data_uri(const NamedBytes& source, std::size_t buffer, std::s
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) refuse(source, buffer, uri, "has no comma, expected a data URI");
   const std::string_view data = uri.substr(comma + 1);
-  if (!uri.substr(0, comma).ends_with(";base64")) return percent_decoded(data);
+  if (!announces_base64(uri.substr(0, comma))) return percent_decoded(data);
   auto decoded = data.find('%') == std::string_view::npos ? from_base64(data) : from_base64(percent_decoded(data));
   if (!decoded) refuse(source, buffer, uri.substr(0, comma), "is not followed by valid base64");
   return *std::move(decoded);

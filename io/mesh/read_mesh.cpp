@@ -117,8 +117,10 @@ std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
 
 MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   const std::string bytes = read_file(path);
-  if (is_packed(bytes)) return parse_mesh(path, unpacked(bytes, path), bytes, options);
-  return parse_mesh(path, bytes, bytes, options);
+  if (!is_packed(bytes)) return parse_mesh(path, bytes, bytes, options);
+  const std::string mesh = unpacked(bytes, path);
+  if (is_packed(mesh)) throw InputError(path + ": is compressed twice, expected once");
+  return parse_mesh(path, mesh, bytes, options);
 }
 
 }  // namespace raycone

@@ -15,7 +15,7 @@ namespace {
 
 class ObjReader {
  public:
-  explicit ObjReader(const NamedBytes& source) : text_(source), builder_(source) {}
+  explicit ObjReader(const NamedBytes& source) : text_(source), builder_(source) { text_.take_mixed_line_ends(); }
 
   ParsedMesh read() {
     groups_.continue_group(kDefaultGroup, 0);

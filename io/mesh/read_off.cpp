@@ -12,7 +12,7 @@ namespace {
 
 class OffReader {
  public:
-  explicit OffReader(const NamedBytes& source) : text_(source), builder_(source) {}
+  explicit OffReader(const NamedBytes& source) : text_(source), builder_(source) { text_.take_mixed_line_ends(); }
 
   ParsedMesh read() {
     read_keyword();

@@ -33,7 +33,7 @@ std::optional<std::int64_t> to_integer(Number value) {
 // same members, so that the reader is written once.
 class AsciiBody {
  public:
-  explicit AsciiBody(const TextScanner& text) : text_(text), row_end_(text.offset()) {}
+  explicit AsciiBody(const TextScanner& text) : text_(text), row_end_(text.offset()) { text_.take_mixed_line_ends(); }
 
   // Bytes that follow, but for blanks.
   [[nodiscard]] std::size_t remaining() {

@@ -15,7 +15,7 @@ namespace {
 
 class AsciiStlReader {
  public:
-  explicit AsciiStlReader(const NamedBytes& source) : text_(source), builder_(source) {}
+  explicit AsciiStlReader(const NamedBytes& source) : text_(source), builder_(source) { text_.take_mixed_line_ends(); }
 
   // Solids follow each other; a missing last "endsolid" does no harm.
   ParsedMesh read() {

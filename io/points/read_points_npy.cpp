@@ -1,14 +1,16 @@
 // Points in NumPy's NPY format, versions 1 to 3 (NumPy documentation, "numpy.lib.format"): shape (n, 3 or more), any
-// real or integer type, byte order and memory order. Read in blocks; only Fortran order needs a file that can be
-// sought.
+// real or integer type, byte order and memory order. Read in blocks, but Fortran order on a pipe or compressed.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
@@ -205,16 +207,21 @@ class RowMajorReader : public NpyPointReader {
   [[nodiscard]] std::size_t row_size() const { return static_cast<std::size_t>(header_.columns) * header_.item_size; }
 };
 
-// Column after column: x, y and z are read side by side.
+// Column after column: x, y and z are read side by side. What cannot be sought is held in memory, as its last number
+// may belong to the first point.
 class ColumnMajorReader : public NpyPointReader {
  public:
-  using NpyPointReader::NpyPointReader;
+  ColumnMajorReader(std::unique_ptr<InputBuffer> input, const NpyHeader& header)
+      : NpyPointReader(std::move(input), header) {
+    if (!input_->is_seekable()) hold();
+    input_->check_rest();
+  }
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.resize(next_count(std::min(max, kBlockRows)));
     std::vector<char> column(batch.size() * header_.item_size);
     for (int axis = 0; axis < 3; ++axis) {
-      input_->read_at(offset_of(row_, axis), column.data(), column.size());
+      read_at(offset_of(row_, axis), column);
       for (std::size_t i = 0; i < batch.size(); ++i) {
         batch[i][axis] = coordinate(column.data() + i * header_.item_size, row_ + i, axis);
       }
@@ -224,6 +231,22 @@ class ColumnMajorReader : public NpyPointReader {
   }
 
   [[nodiscard]] bool would_block() const override { return false; }
+
+ private:
+  void hold() {
+    const std::uint64_t size = header_.rows * header_.columns * header_.item_size;
+    if (size / header_.item_size / header_.columns != header_.rows) fail(*input_, "of more rows than memory holds");
+    require_bytes(*input_, static_cast<std::size_t>(size), "the NPY data");
+    held_.emplace(input_->pending().substr(0, static_cast<std::size_t>(size)));
+    input_->consume(held_->size());
+  }
+
+  void read_at(std::uint64_t offset, std::vector<char>& bytes) const {
+    if (!held_) return input_->read_at(offset, bytes.data(), bytes.size());
+    held_->copy(bytes.data(), bytes.size(), static_cast<std::size_t>(offset - header_.data_offset));
+  }
+
+  std::optional<std::string> held_;  // the data
 };
 
 }  // namespace
@@ -232,11 +255,6 @@ std::unique_ptr<PointReader> read_npy_points(std::unique_ptr<InputBuffer> input)
   const NpyHeader header = read_header(*input);
   check_size(header, *input);
   if (!header.fortran_order) return std::make_unique<RowMajorReader>(std::move(input), header);
-  if (!input->is_seekable()) {
-    throw InputError(input->name() +
-                     ": NPY in Fortran order on a pipe or compressed, expected C order or a file that is neither");
-  }
-  input->check_rest();
   return std::make_unique<ColumnMajorReader>(std::move(input), header);
 }
 

@@ -62,10 +62,16 @@ class LineReader {
     return true;
   }
 
-  // The next line of any kind.
+  // The next line of any kind. It ends in LF, CR LF or CR: a CR is the end at once, since nobody may answer before the
+  // next byte has come.
   std::optional<std::string_view> take_line() {
-    const std::string_view pending = input_->pending();
-    const std::size_t line_end = pending.find('\n', scanned_);
+    std::string_view pending = input_->pending();
+    if (ended_in_cr_ && pending.starts_with('\n')) {
+      input_->consume(1);
+      pending.remove_prefix(1);
+      ended_in_cr_ = false;
+    }
+    const std::size_t line_end = end_of_line(pending);
     const bool is_last = line_end == std::string_view::npos;
     if (is_last && (!at_end_ || pending.empty())) {
       scanned_ = pending.size();
@@ -77,9 +83,9 @@ class LineReader {
     }
     scanned_ = 0;
     input_->consume(is_last ? pending.size() : line_end + 1);
+    ended_in_cr_ = !is_last && pending[line_end] == '\r';
     ++number_;
     std::string_view line = pending.substr(0, line_end);
-    if (line.ends_with('\r')) line.remove_suffix(1);
     if (number_ == 1) {
       if (is_utf16(line)) fail("the text is UTF-16, expected UTF-8");
       if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
@@ -87,23 +93,35 @@ class LineReader {
     return line;
   }
 
+  // npos where it has none yet. Byte by byte: lines are short.
+  [[nodiscard]] std::size_t end_of_line(std::string_view pending) const {
+    const auto found = std::find_if(pending.begin() + static_cast<std::ptrdiff_t>(scanned_), pending.end(),
+                                    [](char c) { return c == '\n' || c == '\r'; });
+    return found == pending.end() ? std::string_view::npos : static_cast<std::size_t>(found - pending.begin());
+  }
+
   std::unique_ptr<InputBuffer> input_;
   std::optional<std::string_view> line_;  // found but not yet returned
   std::uint64_t number_ = 0;              // of the line found last, from 1
   std::size_t scanned_ = 0;               // pending bytes that hold no line end
+  bool ended_in_cr_ = false;              // the line before: an LF that follows is part of its end
   bool at_end_ = false;
 };
 
 // --- Fields ---------------------------------------------------------------------------------------------------------
 
 // The character between the fields of a line: the first of comma, semicolon and tab that occurs outside quotes, else a
-// blank, which stands for any run of blanks. Never guessed from the locale: a decimal comma is an error.
+// blank, which stands for any run of blanks. Never guessed from the locale: a decimal comma is an error. What a comment
+// holds does not count.
 char delimiter_of(std::string_view line) {
   for (const char delimiter : {',', ';', '\t'}) {
     bool quoted = false;
+    char before = ' ';
     for (const char c : line) {
       if (c == '"') quoted = !quoted;
-      if (c == delimiter && !quoted) return delimiter;
+      if (!quoted && c == '#' && std::string_view(" \t,;").find(before) != std::string_view::npos) break;
+      if (!quoted && c == delimiter) return delimiter;
+      before = c;
     }
   }
   return ' ';

@@ -13,7 +13,7 @@ import subprocess
 import unittest
 import zipfile
 
-from command_case import CommandCase, mesh, numpy_or_skip, read, run
+from command_case import PATIENCE, RAYCONE, CommandCase, mesh, numpy_or_skip, read, run
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
@@ -172,6 +172,14 @@ class Images(DataSets):
                 self.check_with_nibabel(name, array, form)
         self.refused("lattice %s -o b.nii --resolution 40000,2,2" % CUBE, 3, "do not fit in the 16 bits of NIfTI-1")
         self.refused("lattice %s -o b.nii --resolution 2 --scale 1e40" % CUBE, 3, "do not fit in the 32 bits")
+        # Far from the origin 32 bits would shift the volume. On an eighth, or with all digits, nothing is lost.
+        for place, status in (("100000.1", 3), ("1000.1", 0), ("100000.125", 0)):
+            words = "lattice %s -o b.nii --bounds %s,0,0,%s,1,1 --resolution 65" % (CUBE, place, float(place) + 1)
+            if status:
+                self.refused(words, 3, "the 32 bits of NIfTI-1 would displace samples by 0.")
+            else:
+                self.works(words)
+                os.remove("b.nii")
         self.assertFalse(os.path.exists("b.nii"))
 
     def check_with_nibabel(self, name, array, form):
@@ -299,6 +307,23 @@ class Provenance(DataSets):
         self.assertEqual(matrix.tolist(), [[4, 0, 0, -2], [0, 4, 0, -2], [0, 0, 4, -2], [0, 0, 0, 1]])
 
 
+class Names(DataSets):
+    def test_files_are_utf8_whatever_bytes_names_have(self):
+        mesh = b"caf\xe9.obj"
+        shutil.copy(CUBE.encode(), mesh)
+        with open(mesh, "ab") as file:
+            file.write(b"g wei\xdf\nf 1 2 3\n")
+        for words in ("lattice %s -o a.vdb --resolution 3", "slice %s -o a.png --size 8",
+                      "lattice %s -o a.nrrd --resolution 3 --field label --parts group --orient auto"):
+            name = words.split()[3]
+            words = [word.encode() if word != "%s" else mesh for word in words.split()]
+            subprocess.run([os.fsencode(RAYCONE), *words, b"--quiet"], check=True, timeout=PATIENCE)
+            data = read(name)
+            self.assertNotIn(b"caf\xe9", data, name)
+            self.assertNotIn(b"wei\xdf", data, name)
+            self.assertIn("caf\ufffd".encode() if name != "a.nrrd" else "wei\ufffd".encode(), data, name)
+
+
 class Points(DataSets):
     def test_npz_goes_in_and_out(self):
         drawn = self.points(CUBE + " --sample uniform=1e3,near=1e2:0.1 --padding 5%")
@@ -308,9 +333,17 @@ class Points(DataSets):
             self.assertTrue((drawn[name] == again[name]).all(), name)
         numpy.savez_compressed("deflated.npz", other=numpy.zeros(3), points=drawn["points"].astype(">f8"))
         numpy.savez("fortran.npz", points=numpy.asfortranarray(drawn["points"]))
+        numpy.savez_compressed("both.npz", points=numpy.asfortranarray(drawn["points"]))
         expected = self.works("points %s drawn.npz" % CUBE)
-        for name in ("deflated.npz", "fortran.npz"):
+        for name in ("deflated.npz", "fortran.npz", "both.npz"):
             self.assertEqual(self.works("points %s %s" % (CUBE, name)), expected)
+        # Sizes that wrap around, packed, so that nothing tells before.
+        for rows in (3, 2**61, 6148914691236517206, 2**64 - 1):
+            head = ("{'descr': '<f8', 'fortran_order': True, 'shape': (%d, 3), }" % rows).encode()
+            head = b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head
+            with gzip.open("short.npy.gz", "wb") as file:
+                file.write(head + bytes(48))
+            self.assertEqual(run("points %s short.npy.gz" % CUBE).returncode, 2, rows)
         self.assertEqual(drawn["points"][:1000].min() < 0, True)  # --padding
         self.assertGreaterEqual(drawn["points"][:1000].min(), -0.05)
 

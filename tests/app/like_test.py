@@ -98,7 +98,8 @@ class Values(Like):
         with open("g.nrrd") as file:
             head = file.read()
         expected = self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX)
-        for space, signs in (("LPS", (-1, -1, 1)), ("left-anterior-superior", (-1, 1, 1)), ("Scanner-XYZ", (1, 1, 1))):
+        for space, signs in (("LPS", (-1, -1, 1)), ("left-anterior-superior", (-1, 1, 1)), ("Scanner-XYZ", (1, 1, 1)),
+                             ("3DRH", (1, 1, 1))):
             write_nrrd("g.nrrd", points[0] * signs, steps * signs, (9, 8, 7), space)
             self.assertEqual(self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX), expected, space)
         with open("g.nrrd", "w") as file:
@@ -300,6 +301,8 @@ class Files(Like):
                                ([[1, 2, 3], [2, 4, 6], [0, 0, 1]], "axes, expected three directions")):
             write_nrrd("g.nrrd", (0, 0, 0), steps, (4, 4, 4))
             self.refused("lattice %s --like g.nrrd -o a.vdb" % CUBE, 2, "g.nrrd: not a readable volume: its " + message)
+        write_nrrd("g.nrrd", (0, 0, 0), rotation(5), (4, 4, 4), "LPS\nSpace: RAS")
+        self.refused("lattice %s --like g.nrrd -o a.vdb" % CUBE, 2, 'its head has two fields "space"')
         write_nrrd("g.nrrd", (0, 0, 0), 1e-6 * rotation(5), (4, 4, 4))
         self.refused("lattice %s --like g.nrrd -o a.vdb" % CUBE, 3, "voxel volume 1e-18 is below 3e-15")
         self.works("lattice %s --like g.nrrd -o a.nrrd" % CUBE)

@@ -71,7 +71,7 @@ add("control_bytes.obj", "v \x1b[31m 0 0\n" + OBJ, 2, "expected a coordinate, fo
 add("random_bytes.obj", bytes(range(256)) * 4, 2, "no triangles")
 add("zip_bomb.obj", zipped.getvalue(), 2, "no part _rels/.rels, expected a 3MF package")
 add("gzip.obj", gzip.compress(OBJ.encode(), mtime=0), 0)
-add("gzip_twice.obj.gz", gzip.compress(gzip.compress(OBJ.encode(), mtime=0), mtime=0), 2, "no triangles")
+add("gzip_twice.obj.gz", gzip.compress(gzip.compress(OBJ.encode(), mtime=0), mtime=0), 2, "is compressed twice, expected once")
 add("gzip_cut.obj.gz", gzip.compress(OBJ.encode(), mtime=0)[:-9], 2, "the compressed data end too early")
 add("gzip_of_nothing.obj.gz", gzip.compress(b"", mtime=0), 2, "the file is empty")
 add("gzip_two.obj.gz", gzip.compress(V.encode(), mtime=0) + gzip.compress(OBJ[len(V):].encode(), mtime=0), 0)

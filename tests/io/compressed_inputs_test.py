@@ -153,7 +153,9 @@ class Compressed(unittest.TestCase):
         return result.stdout
 
     def packed(self, name, data):
-        return ((name + ".gz", gzip.compress(data)), (name + ".zst", zstd(data)))
+        # pzstd writes a frame that is to be skipped before each frame.
+        skipped = struct.pack("<III", 0x184D2A50 + len(data) % 16, 4, len(data))
+        return ((name + ".gz", gzip.compress(data)), (name + ".zst", zstd(data)), ("pzstd_" + name + ".zst", skipped + zstd(data)))
 
     def test_meshes_are_the_same(self):
         for name, data in MESHES.items():
@@ -194,6 +196,11 @@ class Compressed(unittest.TestCase):
                 damaged = bytearray(packed)
                 damaged[4 if packed_name.endswith("zst") else 2] ^= 0xFF  # of the frame's head, or the method
                 self.refused(words, self.write(path, damaged))
+
+    def test_meshes_that_are_packed_twice_are_refused(self):
+        for name, data in MESHES.items():
+            for packed_name, packed in self.packed(name, data):
+                self.refused("info " + self.write(packed_name, gzip.compress(packed)), "is compressed twice, expected once")
 
     def test_damaged_archives_of_arrays_are_refused(self):
         for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):

@@ -1,6 +1,7 @@
 // The OBJ reader on good and on broken text.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "io/mesh/read_mesh.h"
@@ -188,6 +189,31 @@ TEST(ReadObj, LineNumbersCountContinuedLines) {
 
 TEST(ReadObj, EveryTruncationLoadsOrIsRefused) {
   EXPECT_GT(count_loading_prefixes(read_obj, with_triangle("f 1/1/1 2//2 \\\r\n -1 # c\nvn 1.#IND 1e400 nan\n")), 0);
+}
+
+// As `cat` makes them of files of several systems.
+TEST(ReadObj, LinesMayEndDifferently) {
+  const std::array<std::string, 3> ends{"\n", "\r\n", "\r"};
+  for (int code = 0; code < 243; ++code) {
+    std::string text;
+    int rest = code;
+    for (const std::string_view line : {"v 0 0 0 1 1 1", "v 1 0 0", "# v 9 9 9", "v 0 1 0", "f 1 2 3"}) {
+      text += std::string(line) + ends[static_cast<std::size_t>(rest % 3)];
+      rest /= 3;
+    }
+    const ParsedMesh parsed = parse(text);
+    EXPECT_EQ(parsed.mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << code;
+    EXPECT_EQ(parsed.mesh.triangles, kOneTriangle) << code;
+    EXPECT_EQ(error_of(text + " f 1 2 x\n"), "f:6: expected a vertex index, found 'x'") << code;
+  }
+  EXPECT_EQ(error_of("v 0 0 0\r\nv 1 0 0\rv 0 1 0\nf 1 2 x\n"), "f:4: expected a vertex index, found 'x'");
+  EXPECT_EQ(triangles("v 0 0 0\nv 1 0 0\rv 0 1 0\nf 1 \\\r2 \\\n3\n"), kOneTriangle);
+}
+
+// Some programs turn CR LF into CR CR LF.
+TEST(ReadObj, CarriageReturnsBeforeALineEndAreBlanks) {
+  EXPECT_EQ(triangles("v 0 0 0\r\r\nv 1 0 0\r\r\nv 0 1 0\r\r\nf 1 2 3\r\r\n"), kOneTriangle);
+  EXPECT_EQ(triangles("v 0 0 0\nv 1 0 0\r\r\nv 0 1 0\nf 1 2 3\r"), kOneTriangle);
 }
 
 }  // namespace

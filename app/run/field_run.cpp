@@ -10,6 +10,7 @@
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
 #include "app/run/mesh_warnings.h"
+#include "app/text/plain_text.h"
 
 namespace raycone {
 namespace {
@@ -110,7 +111,7 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   OutputDescription description;
   description.fields = describe_fields(field, report.lattice ? field.band * report.lattice->grid.spacing.x : 0.0);
   if (encoding.grid_name) description.fields.front().grid = *encoding.grid_name;
-  description.mesh = std::filesystem::path(report.mesh).filename().string();
+  description.mesh = valid_utf8(std::filesystem::path(report.mesh).filename().string());
   description.mesh_sha256 = report.sha256;
   description.transform = report.transform;
   description.faces = report.faces;
@@ -118,12 +119,12 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   description.precision = encoding.precision;
   description.packs_flags = encoding.pack_bits;
   description.compress = encoding.compress;
-  description.options = report.options;
+  for (const std::string& option : report.options) description.options.push_back(valid_utf8(option));
   std::vector<std::string> names;
   for (const FieldDescription& described : description.fields) names.push_back(described.name);
   description.metadata = provenance_json(report, names, field.has_rule() ? name_of(field.rule) : "");
   if (field.has(Field::kLabel)) {
-    for (const PartReport& part : report.parts) description.labels.push_back(part.name);
+    for (const PartReport& part : report.parts) description.labels.push_back(valid_utf8(part.name));
     description.label_names = label_names_json(report);
   }
   return description;

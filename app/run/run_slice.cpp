@@ -22,6 +22,7 @@
 #include "app/run/mesh_run.h"
 #include "app/run/slice_choice.h"
 #include "app/run/written_files.h"
+#include "app/text/plain_text.h"
 #include "io/fields/write_npy.h"
 #include "io/fields/write_png.h"
 #include "io/files/output_file.h"
@@ -142,7 +143,7 @@ void write_picture(OutputFile& output, const Image& image, const std::string& me
   const PngDescription description{
       image.width(),
       image.height(),
-      {{"Title", name}, {"Description", what}, {"Software", std::string("raycone ") + kVersion}}};
+      {{"Title", valid_utf8(name)}, {"Description", what}, {"Software", std::string("raycone ") + kVersion}}};
   static_assert(sizeof(Rgb) == 3);
   write_png(output, description,
             {reinterpret_cast<const std::uint8_t*>(image.pixels().data()), 3 * image.pixels().size()});

@@ -51,6 +51,16 @@ bool is_shown(std::string_view character) {
          !within(0x2028, 0x202E) && !within(0x2066, 0x2069);
 }
 
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  while (!text.empty()) {
+    const std::string_view character = first_character(text);
+    valid += character.empty() ? "\xEF\xBF\xBD" : character;
+    text.remove_prefix(character.empty() ? 1 : character.size());
+  }
+  return valid;
+}
+
 std::string plain_text(std::string_view text, std::string_view replacement) {
   std::string plain;
   while (!text.empty()) {

@@ -14,6 +14,10 @@ namespace raycone {
 // U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069).
 [[nodiscard]] bool is_shown(std::string_view character);
 
+// `text` with U+FFFD in place of each byte that is no UTF-8, for files whose text must be: names of files and groups
+// may hold any bytes.
+[[nodiscard]] std::string valid_utf8(std::string_view text);
+
 // `text` with each byte that is no UTF-8, and each character that is not shown, replaced.
 [[nodiscard]] std::string plain_text(std::string_view text, std::string_view replacement);
 

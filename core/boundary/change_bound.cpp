@@ -75,7 +75,7 @@ void ChangeBound::add_narrow(const Caps& caps) {
     const auto [a, b, c] = corners(caps.mesh, n);
     const Vec3 normal = cross(b - a, c - a);
     const Box box = box_of(a, b, c);
-    const double twice_area = std::sqrt(dot(normal, normal)) + kAreaError * square_of_size(box);
+    const double twice_area = safe_norm(normal) + kAreaError * square_of_size(box);
     sources_.push_back({box, 0.0, twice_area / (4 * std::numbers::pi)});
   }
 }

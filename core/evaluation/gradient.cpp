@@ -41,9 +41,7 @@ Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q
 }  // namespace
 
 GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges)
-    : scale_(unit_scale(mesh)),
-      inverse_(-scale_.exponent()),
-      least_(scale_.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())) {
+    : scale_(unit_scale(mesh)), inverse_(-scale_.exponent()) {
   segments_.reserve(edges.size());
   for (const ExteriorEdge& edge : edges) {
     const Vec3 from = scale_(mesh.vertices[edge.from]), to = scale_(mesh.vertices[edge.to]);
@@ -86,7 +84,7 @@ Vec3 GradientEvaluator::sum_unscaled(const Vec3& point) const {
 }
 
 Vec3 GradientEvaluator::at(const Vec3& point) const {
-  const bool fits = can_take(point.x) && can_take(point.y) && can_take(point.z);
+  const bool fits = scale_.keeps(point.x) && scale_.keeps(point.y) && scale_.keeps(point.z);
   return within_doubles(fits ? sum_in_scale(point) : sum_unscaled(point)) + Vec3{0.0, 0.0, 0.0};  // no -0
 }
 

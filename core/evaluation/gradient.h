@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,8 +37,6 @@ class GradientEvaluator {
   };
 
   [[nodiscard]] Vec3 at(const Vec3& point) const;
-  // Whether scaling a query coordinate loses nothing: it may not become subnormal.
-  [[nodiscard]] bool can_take(double x) const { return std::abs(x) >= least_ || x == 0.0; }
   [[nodiscard]] Vec3 sum_in_scale(const Vec3& point) const;
   [[nodiscard]] Vec3 sum_unscaled(const Vec3& point) const;
   [[nodiscard]] static Vec3 part(const Segment& segment, const Vec3& q);
@@ -47,7 +44,6 @@ class GradientEvaluator {
   void evaluate_each(const Point& point, std::span<Vec3> values, std::atomic<std::uint64_t>* done) const;
 
   PowerOfTwo scale_, inverse_;
-  double least_;                   // magnitude of query coordinates, beside 0, that scaling keeps
   std::vector<Segment> segments_;  // scaled
 };
 

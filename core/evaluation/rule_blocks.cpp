@@ -58,7 +58,8 @@ struct Block {
 struct NodeGrid {
   std::array<std::vector<std::size_t>, 3> along;
   std::array<bool, 3> is_quadratic{};
-  double bend = 0.0;  // turns by which samples are at most off what is interpolated between nodes
+  double bend = 0.0;    // turns by which samples are at most off what is interpolated between nodes
+  double growth = 1.0;  // of what values at nodes are off by
 
   [[nodiscard]] std::size_t size() const { return along[0].size() * along[1].size() * along[2].size(); }
   [[nodiscard]] std::size_t index(const std::array<std::size_t, 3>& node) const {
@@ -390,6 +391,7 @@ NodeGrid RuleBlocks::grid_of(const Candidate& candidate, std::size_t steps) cons
     }
     const AxisError error = choose_order(grid, axis, candidate.bounds);
     grid.bend = error.bend + error.growth * grid.bend;
+    grid.growth *= error.growth;
   }
   grid.bend *= 1 + kRounding;
   return grid;
@@ -443,7 +445,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, std::vector<Block>& und
   const NodeGrid& grid = candidate.nodes;
   double largest = 0.0;
   for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
-  const double needed = grid.bend + mesh_.doubt() + 32 * kRounding * (1 + largest);
+  const double needed = grid.bend + grid.growth * (mesh_.doubt() + 32 * kRounding * (1 + largest));
   const std::array<std::vector<PlaceInGrid>, 3> places{places_along(block, grid, 0), places_along(block, grid, 1),
                                                        places_along(block, grid, 2)};
   std::vector<double> nodes(grid.along[0].size()), rest(block.count(0));  // along a row

@@ -62,10 +62,9 @@ double distance_to_half_integer(double x) { return 0.5 - std::abs(x - nearest_in
 ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options)
     : scale_(scale),
       inverse_(-scale.exponent()),
-      least_(scale.exponent() >= 0 ? 0.0 : inverse_(std::numeric_limits<double>::min())),
       options_(options),
       mesh_(in_scale(std::move(mesh), scale)),
-      is_in_scale_(largest_exponent(mesh_) <= 0),
+      is_in_scale_(scale.exponent() != 0 || largest_exponent(mesh_) <= 0),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
       term_(boundary_term(mesh_, boundary_, is_in_scale_, options)) {
   options_.edges = nullptr;

@@ -64,9 +64,8 @@ class ScaledMesh {
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const;
 
-  // Whether scaling a query coordinate loses nothing that a predicate could see: scaled down, it may not become
-  // subnormal, even where it would keep its bits; so that on an axis of a lattice few intervals answer alike.
-  [[nodiscard]] bool can_take(double x) const { return std::abs(x) >= least_ || x == 0.0; }
+  // Whether scaling keeps a query coordinate.
+  [[nodiscard]] bool can_take(double x) const { return scale_.keeps(x); }
   [[nodiscard]] bool can_take(const Vec3& q) const { return can_take(q.x) && can_take(q.y) && can_take(q.z); }
 
   [[nodiscard]] double to_scale(double x) const {
@@ -149,7 +148,6 @@ class ScaledMesh {
 
   PowerOfTwo scale_;
   PowerOfTwo inverse_;
-  double least_;  // magnitude of query coordinates, beside 0, that scaling keeps
   EvaluatorOptions options_;
   TriangleMesh mesh_;
   bool is_in_scale_;

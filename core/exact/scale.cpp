@@ -9,7 +9,8 @@ namespace raycone {
 PowerOfTwo::PowerOfTwo(int exponent)
     : exponent_(exponent),
       half_(std::ldexp(1.0, exponent / 2)),
-      other_half_(std::ldexp(1.0, exponent - exponent / 2)) {}
+      other_half_(std::ldexp(1.0, exponent - exponent / 2)),
+      least_(exponent >= 0 ? 0.0 : std::ldexp(std::numeric_limits<double>::min(), -exponent)) {}
 
 namespace {
 

@@ -1,6 +1,8 @@
 // Scaling by a power of two, which commutes with every rounding.
 #pragma once
 
+#include <cmath>
+
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
@@ -10,6 +12,9 @@ class PowerOfTwo {
  public:
   explicit PowerOfTwo(int exponent);
   [[nodiscard]] int exponent() const { return exponent_; }
+  // Whether the product loses nothing that a predicate could see: scaled down, it may not become subnormal, even where
+  // it would keep its bits; so that on an axis of a lattice few intervals answer alike. Not about overflow.
+  [[nodiscard]] bool keeps(double value) const { return std::abs(value) >= least_ || value == 0.0; }
   [[nodiscard]] double operator()(double value) const { return value * half_ * other_half_; }
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {(*this)(p.x), (*this)(p.y), (*this)(p.z)}; }
 
@@ -17,6 +22,7 @@ class PowerOfTwo {
   int exponent_;
   double half_;  // two factors, since 2^exponent itself may not be a double
   double other_half_;
+  double least_;  // magnitude, beside 0, that the product keeps
 };
 
 // e such that the largest coordinate of the triangles is in [2^(e-1), 2^e); 0 where all coordinates are zero.

@@ -19,7 +19,7 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
   for (const SolidTriangle& t : tree_.triangles()) {
     Source source;
     source.box = box_of(t.a, t.b, t.c);
-    source.area = std::sqrt(dot(t.normal, t.normal)) / 2 * (1 + 0x1p-40);
+    source.area = safe_norm(t.normal) / 2 * (1 + 0x1p-40);
     sources_.push_back(source);
   }
 }

@@ -163,6 +163,8 @@ std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& b
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.
 double LatticeBlocksWalk::error_of(const LatticeBlocks::Source& source, const Cube& cube) {
+  constexpr double kLeastHalf = 0x1p-400;  // squares of less lose bits, as areas of sources of that size do
+  if (cube.half < kLeastHalf) return std::numeric_limits<double>::infinity();
   double distance = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     distance =

@@ -24,7 +24,7 @@ constexpr double kNeglected = 100;
 
 Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 
-double area_of(const SolidTriangle& t) { return norm(cross(t.b - t.a, t.c - t.a)) / 2; }
+double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c - t.a)) / 2; }
 
 // The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
 // terms.

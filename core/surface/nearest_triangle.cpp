@@ -10,7 +10,8 @@ constexpr std::uint32_t kLeaf = 4;
 
 }  // namespace
 
-NearestTriangle::NearestTriangle(const TriangleMesh& mesh) : scale_(unit_scale(mesh)), order_(mesh.triangles.size()) {
+NearestTriangle::NearestTriangle(const TriangleMesh& mesh)
+    : scale_(-largest_exponent(mesh)), order_(mesh.triangles.size()) {
   for (const Triangle& t : mesh.triangles) {
     const Vec3 a = scale_(mesh.vertices[t[0]]), b = scale_(mesh.vertices[t[1]]), c = scale_(mesh.vertices[t[2]]);
     triangles_.emplace_back(a, b, c);

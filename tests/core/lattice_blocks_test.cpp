@@ -374,5 +374,33 @@ TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
   }
 }
 
+// A sieve so small, beside a box, that squares of its triangles' areas are no doubles. The box is nowhere on the rays.
+TEST(LatticeBlocksTest, AreasWhoseSquaresUnderflowAreNotNothing) {
+  const TriangleMesh alone = sieve();
+  const Lattice lattice = cube_lattice(24);
+  std::vector<double> expected(24 * 24 * 24), values(expected.size());
+  evaluator(alone, 0.0).evaluate(lattice, whole(lattice), expected);
+  for (const int exponent : {-100, -250, -290, -350}) {
+    const double unit = std::ldexp(1.0, exponent);
+    const TriangleMesh mesh =
+        test::joined(test::moved(alone, {unit, unit, unit}, {}), test::box_mesh({0.5, 0.5, 0.5}, {1, 1, 1}));
+    const Lattice tiny{unit * lattice.origin, unit * lattice.spacing, lattice.index_min, lattice.counts};
+    const WindingNumberEvaluator by_blocks = evaluator(mesh, 1e-9);
+    by_blocks.evaluate(tiny, whole(tiny), values);
+    double largest = 0.0;
+    for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - expected[n]));
+    EXPECT_LT(largest, 1e-9) << exponent;
+    Rule rule;
+    rule.threshold = 0.3;
+    std::vector<std::uint8_t> sides(values.size());
+    by_blocks.evaluate_sides(rule, tiny, whole(tiny), sides);
+    std::uint64_t wrong = 0;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      if (std::abs(expected[n] - 0.3) > 1e-9) wrong += sides[n] != static_cast<std::uint8_t>(expected[n] > 0.3);
+    }
+    EXPECT_EQ(wrong, 0U) << exponent;
+  }
+}
+
 }  // namespace
 }  // namespace raycone

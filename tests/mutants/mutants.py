@@ -75,6 +75,20 @@ MUTANTS = [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [
         ("core/crossings/triangle_sections.h", "kError = 8 * 0x1p-53, kSlopeUnderflow", "kError = 0, kSlopeUnderflow")]),
+    Mutant("plane_underflow_ignored", "what underflows in a normal is multiplied by the extent, and divided", [
+        ("core/crossings/crossings.cpp", " + kUnderflow / nx * extent", "")]),
+    Mutant("slope_underflow_ignored", "what underflows in a slope is multiplied by the reach", [
+        ("core/crossings/triangle_sections.h", "kSlopeUnderflow * std::abs(reach) + ", "")]),
+    Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
+        ("core/evaluation/gradient.cpp", "fits ? sum_in_scale(point)", "true || fits ? sum_in_scale(point)")]),
+    Mutant("changes_out_of_scale", "squares of gaps overflow in a mesh that cannot be scaled", [
+        ("core/evaluation/sides.cpp", "mesh.is_in_scale() && ", "")]),
+    Mutant("source_areas_vanish", "squares of areas underflow", [
+        ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
+    Mutant("cap_areas_vanish", "squares of areas underflow", [
+        ("core/boundary/change_bound.cpp", "safe_norm(normal)", "norm(normal)")]),
+    Mutant("surfaces_unscaled", "products of areas overflow far from 1", [
+        ("core/surface/surface.cpp", "std::abs(exponent) <= kFar", "true || std::abs(exponent) <= kFar")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/crossings/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
@@ -187,7 +201,7 @@ MUTANTS = [
     Mutant("mesh_scaled_at_a_loss", "no scaling where it would cost a vertex bits", [
         ("core/exact/scale.cpp", "return PowerOfTwo(0);\n    }\n  }\n  return scale;", "return scale;\n    }\n  }\n  return scale;")]),
     Mutant("query_scaled_at_a_loss", "no scaling where it would cost a query bits", [
-        ("core/evaluation/scaled_mesh.h", "return std::abs(x) >= least_ || x == 0.0;", "return least_ >= 0.0 || x == 0.0;")]),
+        ("core/exact/scale.h", "return std::abs(value) >= least_ || value == 0.0;", "return least_ >= 0.0 || value == 0.0;")]),
     Mutant("query_not_clamped", "queries beyond 2^1000 mesh sizes are taken to be there", [
         ("core/evaluation/scaled_mesh.h", "std::clamp(scale_(x), -kFarthest, kFarthest)", "scale_(x)")]),
 
@@ -514,8 +528,8 @@ MUTANTS = [
         ("core/boundary/change_bound.cpp", "second += 2 * of_length / distance;",
          "second += 0.2 * of_length / distance;")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + mesh_.doubt()",
-         "const double needed = 0 * grid.bend + mesh_.doubt()")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + grid.growth",
+         "const double needed = 0 * grid.bend + grid.growth")]),
     Mutant("interpolation_between_wrong_nodes", "a sample is interpolated between the nodes around it", [
         ("core/evaluation/rule_blocks.cpp", "node + order + 1 < nodes.size()", "node + order + 8 < nodes.size()")]),
 

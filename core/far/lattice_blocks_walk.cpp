@@ -299,7 +299,7 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
 // As many layers along z as a sub-block has: the polynomial up to `degree`, and what is near.
 void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid,
                                    const BlockSums& sums) const {
-  const auto& [numbers, first, last] = sums;
+  const std::array<std::size_t, 3>&first = sums.first, &last = sums.last;
   const auto coordinates = [&](std::size_t axis) {
     return std::span(axes_[axis]).subspan(first[axis], last[axis] - first[axis]);
   };
@@ -308,9 +308,9 @@ void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree,
     blocks_.far_terms_.fetch_add(samples, std::memory_order_relaxed);
     const auto values = grid.evaluate(block.field->coefficients, degree, block.field->cube, coordinates(0),
                                       coordinates(1), coordinates(2));
-    numbers.assign(values.begin(), values.end());
+    sums.numbers.assign(values.begin(), values.end());
   } else {
-    numbers.assign(sums.row_size() * (last[1] - first[1]) * (last[2] - first[2]), 0.0);
+    sums.numbers.assign(sums.row_size() * (last[1] - first[1]) * (last[2] - first[2]), 0.0);
   }
   if (block.near.empty()) return;
   std::array<std::size_t, 3> begin = first, end = last;

@@ -11,6 +11,8 @@
 namespace raycone {
 namespace {
 
+constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
 using Complex = std::complex<double>;
 constexpr int kP = kMultipoleOrder;
 static_assert(kMomentOrder == kP - 1);
@@ -29,9 +31,7 @@ struct Tables {
   std::array<std::array<double, kP + 1>, kP + 1> choose{};  // sqrt of (2n over 2k)
 
   Tables();
-  [[nodiscard]] double weight(int n, int m) const {
-    return factorial[static_cast<std::size_t>(n + m)] * factorial[static_cast<std::size_t>(n - m)];
-  }
+  [[nodiscard]] double weight(int n, int m) const { return factorial[index(n + m)] * factorial[index(n - m)]; }
 };
 
 Tables::Tables() {
@@ -57,7 +57,7 @@ Tables::Tables() {
   }
   const auto regular_at = [&](int n, int m) { return m > n ? 0.0 : regular[multipole_index(n, std::abs(m))]; };
   for (int n = 0; n <= kP; ++n) {
-    const auto i = static_cast<std::size_t>(n);
+    const auto i = index(n);
     double of_moment = 0, of_shift = 0;
     for (int m = -n; m <= n; ++m) {
       const int k = std::abs(m);
@@ -70,7 +70,7 @@ Tables::Tables() {
     shift[i] = kUp * std::sqrt(of_shift);
     double c = 1;
     for (int k = 0; k <= n; ++k) {
-      choose[i][static_cast<std::size_t>(k)] = kUp * std::sqrt(c);
+      choose[i][index(k)] = kUp * std::sqrt(c);
       c = c * ((2 * n - 2 * k) * (2 * n - 2 * k - 1)) / ((2 * k + 1) * (2 * k + 2));
     }
   }
@@ -89,7 +89,7 @@ class EdgeSums {
   void add(const Vec3& a, const Vec3& along, double sign) {
     const Vec3 normal = sign * cross(a, along);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
+      const auto i = index(axis);
       edges_.from[i][count_] = a[axis];
       edges_.along[i][count_] = along[axis];
       edges_.normal[i][count_] = normal[axis];
@@ -149,9 +149,9 @@ std::array<Degree, kP + 1> rows_of(const At& at) {
   for (int n = 0; n <= kP; ++n) {
     for (int m = 0; m <= n; ++m) {
       const Complex c = at(n, m);
-      Degree& row = rows[static_cast<std::size_t>(n)];
-      row[static_cast<std::size_t>(kP + m)] = c;
-      row[static_cast<std::size_t>(kP - m)] = m % 2 == 0 ? std::conj(c) : -std::conj(c);
+      Degree& row = rows[index(n)];
+      row[index(kP + m)] = c;
+      row[index(kP - m)] = m % 2 == 0 ? std::conj(c) : -std::conj(c);
     }
   }
   return rows;
@@ -183,7 +183,7 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
       all.re[multipole_index(n, m)] = factor * gradient.real();
       all.im[multipole_index(n, m)] = -factor * gradient.imag();
     }
-    const auto i = static_cast<std::size_t>(n);
+    const auto i = index(n);
     const double roundings = 2 * (20.0 * (n - 1) + 40 + 3 * static_cast<double>(triangles.size()));
     all.error[i] = kUp * roundings * kUnitRoundoff * reach * power * tables().moment[i];
     power *= radius;
@@ -199,16 +199,16 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
   for (std::size_t n = 1; n <= kP; ++n) powers[n] = powers[n - 1] * ratio;
   const auto moments = rows_of([&](int n, int m) {
     const std::size_t term = multipole_index(n, m);
-    return powers[static_cast<std::size_t>(n)] * Complex(part.re[term], part.im[term]);
+    return powers[index(n)] * Complex(part.re[term], part.im[term]);
   });
   for (int n = 1; n <= kP; ++n) {
     for (int m = 0; m <= n; ++m) {
       double re = 0, im = 0;
       for (int k = 0; k < n; ++k) {
         const int j = n - k;
-        const Degree &r = regular[static_cast<std::size_t>(k)], &s = moments[static_cast<std::size_t>(j)];
+        const Degree &r = regular[index(k)], &s = moments[index(j)];
         for (int l = std::max(-k, m - j); l <= std::min(k, m + j); ++l) {
-          const Complex a = r[static_cast<std::size_t>(kP + l)], b = s[static_cast<std::size_t>(kP + m - l)];
+          const Complex a = r[index(kP + l)], b = s[index(kP + m - l)];
           re += a.real() * b.real() - a.imag() * b.imag();
           im += a.real() * b.imag() + a.imag() * b.real();
         }
@@ -222,12 +222,12 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
   for (int n = 1; n <= kP; ++n) {
     double error = 0, power = 1;  // of the length
     for (int k = 0; k < n; ++k) {
-      const auto i = static_cast<std::size_t>(n), j = static_cast<std::size_t>(n - k), l = static_cast<std::size_t>(k);
+      const auto i = index(n), j = index(n - k), l = index(k);
       const double roundings = 2 * kUnitRoundoff * (10 * k + 20 + n * n) * tables().shift[l];
       error += power * tables().choose[i][l] * powers[j] * (part.error[j] + roundings * bounds.size[j]);
       power *= length;
     }
-    sum.error[static_cast<std::size_t>(n)] += kUp * error;
+    sum.error[index(n)] += kUp * error;
   }
 }
 
@@ -235,7 +235,7 @@ MultipoleBounds bounds_of(const Multipole& multipole) {
   MultipoleBounds bounds;
   const Tables& t = tables();
   for (int n = 1; n <= kP; ++n) {
-    const auto i = static_cast<std::size_t>(n);
+    const auto i = index(n);
     double square = 0, terms = 0;
     for (int m = 0; m <= n; ++m) {
       const std::size_t term = multipole_index(n, m);
@@ -262,8 +262,7 @@ double beyond_multipoles(double area, double radius, double rho) {
 void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients) {
   for (int m = 0; m <= order; ++m) {
     for (int n = std::max(m, 1); n <= order; ++n) {
-      const double factor =
-          tables().double_factorial[static_cast<std::size_t>(n)] * (m == 0 ? 1 : 2) * (m % 2 == 0 ? 1 : -1);
+      const double factor = tables().double_factorial[index(n)] * (m == 0 ? 1 : 2) * (m % 2 == 0 ? 1 : -1);
       const std::size_t from = multipole_index(n, m), to = multipole_index(n, m, order);
       coefficients[2 * to] = factor * multipole.re[from];
       coefficients[2 * to + 1] = factor * multipole.im[from];

@@ -22,7 +22,8 @@ inline constexpr std::size_t kMultipoleTerms = std::size_t{(kMultipoleOrder + 1)
 
 // Where (n, m), 0 <= m <= n <= order, is among the terms of an expansion up to `order`: m by m.
 [[nodiscard]] constexpr std::size_t multipole_index(int n, int m, int order = kMultipoleOrder) {
-  return static_cast<std::size_t>(m * (2 * order + 3 - m) / 2 + (n - m));
+  const int place = m * (2 * order + 3 - m) / 2 + (n - m);
+  return static_cast<std::size_t>(place);
 }
 
 // M_n^m for m >= 0; M_n^-m = (-1)^m times the conjugate. No lengths: with `unit` for the unit of length.

@@ -31,7 +31,7 @@ double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c -
 int worthwhile_order(std::size_t triangles) {
   const double terms = 20.0 * static_cast<double>(triangles) - 30;
   int order = 0;
-  while (order < kMultipoleOrder && (order + 2) * (order + 3) / 2 <= terms) ++order;
+  while (order < kMultipoleOrder && (order + 2) * (order + 3) <= 2 * terms) ++order;
   return order;
 }
 

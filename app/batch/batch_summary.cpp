@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <utility>
 
 #include "app/process/progress.h"
 #include "io/files/counted.h"
@@ -29,7 +28,7 @@ std::string failures_by_cause(const BatchRecords& records) {
   return text.empty() ? "" : text + ')';
 }
 
-std::string evaluated_line(const BatchOutcome& outcome) {
+std::string of_evaluated(const BatchOutcome& outcome) {
   const std::size_t failed = count_failed(outcome.evaluated);
   double samples = 0.0;
   for (const auto& [mesh, record] : outcome.evaluated) {
@@ -44,46 +43,28 @@ std::string evaluated_line(const BatchOutcome& outcome) {
   return line;
 }
 
-std::string kept_line(const BatchRecords& kept) {
+std::string of_kept(const BatchRecords& kept) {
   const std::string by_cause = failures_by_cause(kept);
   return std::to_string(kept.size()) + " skipped: up to date" +
          (by_cause.empty() ? "" : ", of which " + std::to_string(count_failed(kept)) + " failed earlier" + by_cause);
 }
 
-std::string pruned_line(std::size_t count) {
+std::string of_pruned(std::size_t count) {
   const std::string rows =
       count == 1 ? "1 row of a mesh that is gone" : std::to_string(count) + " rows of meshes that are gone";
   return rows + " removed, outputs left as they are";
-}
-
-std::vector<std::string> slowest_lines(const BatchRecords& records) {
-  constexpr std::size_t kSlowest = 10;
-  std::vector<std::pair<double, std::string>> times;
-  for (const auto& [mesh, record] : records) {
-    if (record.row.figures) times.emplace_back(record.row.figures->seconds(), mesh);
-  }
-  const auto shown = static_cast<std::ptrdiff_t>(std::min(times.size(), kSlowest));
-  std::ranges::partial_sort(times, times.begin() + shown, std::greater<>());
-  std::vector<std::string> lines;
-  for (auto time = times.begin(); time != times.begin() + shown; ++time) {
-    char text[64];
-    std::snprintf(text, sizeof text, "slowest: %9.3f s  ", time->first);
-    lines.push_back(text + time->second);
-  }
-  return lines;
 }
 
 }  // namespace
 
 bool BatchOutcome::any_failed() const { return count_failed(evaluated) + count_failed(kept) > 0; }
 
-std::vector<std::string> summary_lines(const BatchOutcome& outcome) {
-  std::vector<std::string> lines = slowest_lines(outcome.evaluated);
-  lines.push_back(evaluated_line(outcome));
-  if (!outcome.kept.empty()) lines.push_back(kept_line(outcome.kept));
-  if (outcome.pruned > 0) lines.push_back(pruned_line(outcome.pruned));
-  if (outcome.not_done > 0) lines.push_back(std::to_string(outcome.not_done) + " not done");
-  return lines;
+std::string summary_line(const BatchOutcome& outcome) {
+  std::string line = of_evaluated(outcome);
+  if (!outcome.kept.empty()) line += "; " + of_kept(outcome.kept);
+  if (outcome.pruned > 0) line += "; " + of_pruned(outcome.pruned);
+  if (outcome.not_done > 0) line += "; " + std::to_string(outcome.not_done) + " not done";
+  return line;
 }
 
 }  // namespace raycone

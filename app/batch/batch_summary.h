@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "app/batch/batch_record.h"
 
@@ -21,7 +20,7 @@ struct BatchOutcome {
   [[nodiscard]] bool any_failed() const;
 };
 
-// Lines for standard error: counts, failures by cause, samples per second, the ten slowest meshes.
-[[nodiscard]] std::vector<std::string> summary_lines(const BatchOutcome& outcome);
+// One line for standard error: counts, failures by cause, time, samples per second; what was kept, pruned and not done.
+[[nodiscard]] std::string summary_line(const BatchOutcome& outcome);
 
 }  // namespace raycone

@@ -344,9 +344,7 @@ ExitCode run_batch(const BatchCommand& command) {
   make_directory(command.directory);
   BatchRun run(command, std::move(plan), std::move(gone), options);
   if (const int signal = run.run(limits)) raise(signal);
-  if (!command.run.quiet) {
-    for (const std::string& line : summary_lines(run.outcome())) print_message(line);
-  }
+  if (!command.run.quiet) print_message(summary_line(run.outcome()));
   return run.outcome().any_failed() && !command.exit_zero ? ExitCode::kBatch : ExitCode::kDone;
 }
 

@@ -18,7 +18,7 @@ import tempfile
 import unittest
 
 RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
-TIMES = re.compile(r" in [0-9.]+ s.*?(?=->|$)|, [^,\n]*samples/s|slowest: .*", re.M)
+TIMES = re.compile(r" in [0-9.]+ s( \([^)]*\))?|, [^,;\n]*samples/s", re.M)
 
 Row = collections.namedtuple("Row", "words option verdict")
 CHANGES, REFUSED, HARMLESS = "changes the result", "is refused", "is harmless"

@@ -1,6 +1,7 @@
 // raycone batch --prune: rows of meshes that are gone. Black box.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/app/batch/batch_fixture.h"
@@ -35,7 +36,10 @@ TEST_F(BatchPrune, RemovesRowsAndNothingElse) {
   EXPECT_EQ(kept().size(), 4U);
   const CommandResult result = run({"--prune"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.err.find("3 rows of meshes that are gone removed"), std::string::npos) << result.err;
+  EXPECT_TRUE(result.err.starts_with("raycone: 0 meshes done, 0 failed in ")) << result.err;
+  EXPECT_NE(result.err.find("; 1 skipped: up to date; 3 rows of meshes that are gone removed"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << "one summary line";
   EXPECT_EQ(kept(), (Statuses{{"a.obj", "ok"}}));
   EXPECT_EQ(outputs_in(out_), outputs);
   EXPECT_EQ(read_text(out_ + "/batch-state.csv").find("b.obj"), std::string::npos);

@@ -306,7 +306,7 @@ std::size_t write_report_page(const ReportCommand& command) {
   if (records.empty() && results_in(command.directory).empty()) {
     throw InputError(command.directory + ": no results, expected the results.csv of a batch");
   }
-  OutputFile output(command.output);
+  OutputFile output(command.output, command.no_clobber);
   const std::string html = page(command.directory, records);
   output.write(html.data(), html.size());
   output.commit();

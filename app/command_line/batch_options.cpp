@@ -89,6 +89,9 @@ std::string parse_batch_format(const Values& values) {
   std::string format = values.given("--format") ? values.text("--format") : default_format(values.given("--sample"));
   std::ranges::transform(format, format.begin(),
                          [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (format != "none" && !field_format_from_name(format)) {
+    invalid("--format", values.text("--format"), "vdb, csv, npy, npz, vti, nrrd, nii, nii.gz or none");
+  }
   return format;
 }
 

@@ -47,14 +47,16 @@ Precision parse_dtype(const std::string& text) {
 }
 
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
-  if (formats.only) return *formats.only;
   const bool named = values.given("--format");
-  if (!named && output == "-") return FieldFormat::kCsv;
+  if (!named && output == "-") return formats.only.value_or(FieldFormat::kCsv);
   const std::string extension =
       has_extension(output, "nii.gz") ? ".nii.gz" : std::filesystem::path(output).extension().string();
   const std::string name =
       named ? values.text("--format") : extension.substr(std::min<std::size_t>(extension.size(), 1));
   const std::optional<FieldFormat> format = field_format_from_name(name);
+  if (formats.only && format)
+    throw UsageError(output + ": its extension names a format, but --raw writes bare numbers");
+  if (formats.only) return *formats.only;
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
   if (named) invalid("--format", values.text("--format"), formats.listed);
   const std::string wrong = format ? "a format that does not hold what is asked for" : "its extension names no format";

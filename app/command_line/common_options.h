@@ -27,7 +27,7 @@ namespace raycone {
 struct OutputFormats {
   std::vector<FieldFormat> written;
   std::string listed;                    // for messages
-  std::optional<FieldFormat> only = {};  // whatever the output is called
+  std::optional<FieldFormat> only = {};  // of --raw; the output's name may not promise another one
 };
 // Of values that go to `output`: --format, --dtype and --pack-bits.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,

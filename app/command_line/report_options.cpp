@@ -26,7 +26,8 @@ CommandSpec report_spec() {
           .operands = {{"DIR", "The --out-dir of a batch"}},
           .groups = {{"Output",
                       {{"-o,--output", "REPORT.html", "File to write; - for standard output (default: DIR/report.html)",
-                        true}}},
+                        true},
+                       {"--no-clobber", "", "Never replace an existing file"}}},
                      report_run_group()},
           .examples = {"raycone report fields", "raycone report fields -o fields.html"}};
 }
@@ -36,6 +37,7 @@ Command parse_report(const Values& values) {
   command.directory = values.text("DIR");
   if (command.directory.empty()) throw UsageError("DIR: expected a directory, not an empty name");
   command.output = values.given("--output") ? values.text("--output") : command.directory + "/report.html";
+  command.no_clobber = values.given("--no-clobber");
   command.run = parse_run(values);
   return command;
 }

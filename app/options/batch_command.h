@@ -50,6 +50,7 @@ struct BatchCommand {
 struct ReportCommand {
   std::string directory;  // of a batch
   std::string output;     // "-": standard output
+  bool no_clobber = false;
   RunOptions run;
 };
 

@@ -2,11 +2,16 @@
 
 #include <set>
 
+#include "io/files/file_error.h"
+
 namespace raycone {
 namespace {
 
 // As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled.
 std::string escaped(const std::string& name) {
+  if (name.find('\n') != std::string::npos) {
+    throw OutputError(name + ": Make cannot read names with line feeds, expected none with --depfile");
+  }
   std::string text;
   std::string backslashes;
   for (const char c : name) {

@@ -6,7 +6,8 @@
 
 namespace raycone {
 
-// A rule without commands: `output` depends on `inputs`. Standard input and output are left out.
+// A rule without commands: `output` depends on `inputs`. Standard input and output are left out. Throws OutputError for
+// a name with a line feed, which Make cannot read.
 [[nodiscard]] std::string depfile_text(const std::string& output, const std::vector<std::string>& inputs);
 
 }  // namespace raycone

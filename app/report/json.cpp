@@ -112,6 +112,9 @@ Json lines_of(const std::vector<Warning>& warnings) {
   return lines;
 }
 
+// Nothing for what overflows, for which JSON has no number.
+Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
 Json to_object(const MeshInfo& info) {
   const MeshStatistics& s = info.statistics;
   Json document{{"faces", info.faces},
@@ -126,12 +129,12 @@ Json to_object(const MeshInfo& info) {
                 {"inconsistent_edges", s.inconsistent_edges},
                 {"bounds", Json::array({to_array(info.bounds.lower), to_array(info.bounds.upper)})},
                 {"signed_volume", nullptr},
-                {"surface_area", s.surface_area},
+                {"surface_area", finite(s.surface_area)},
                 {"skipped_faces", info.skipped_faces},
                 {"opposite_duplicate_faces", info.opposite_duplicate_faces},
                 {"warnings", names_of(info.warnings)},
                 {"warning_lines", lines_of(info.warnings)}};
-  if (s.signed_volume) document["signed_volume"] = *s.signed_volume;
+  if (s.signed_volume) document["signed_volume"] = finite(*s.signed_volume);
   if (!info.unit.empty()) document["unit"] = info.unit;
   if (info.intersections) document["self_intersections"] = info.intersections->pairs.value_or(0);
   return document;

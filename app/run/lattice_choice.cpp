@@ -189,6 +189,12 @@ Lattice with_layers(Lattice lattice, std::int64_t layers) {
   return lattice;
 }
 
+std::int64_t layers_around(const std::variant<LatticeRequest, GridReference>& asked) {
+  const auto* const request = std::get_if<LatticeRequest>(&asked);
+  const auto* const padding = request ? std::get_if<VoxelPadding>(&request->padding) : nullptr;
+  return padding && padding->samples > 0 ? 0 : 1;
+}
+
 Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<Warning>& warnings) {
   Box box = request.bounds.value_or(mesh_box);
   if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, *padding);

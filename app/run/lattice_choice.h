@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 #include "app/options/lattice_request.h"
@@ -19,8 +20,8 @@ namespace raycone {
 // With this many samples more at either end of every axis. Throws as choose_lattice().
 [[nodiscard]] Lattice with_layers(Lattice lattice, std::int64_t layers);
 
-// With this many samples more at either end of every axis. Throws as choose_lattice().
-[[nodiscard]] Lattice with_layers(Lattice lattice, std::int64_t layers);
+// The layers that the lattice of a surface has around what is asked for: one, unless that has some by itself.
+[[nodiscard]] std::int64_t layers_around(const std::variant<LatticeRequest, GridReference>& asked);
 
 // Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, const WorldPadding& padding);

@@ -35,7 +35,10 @@ FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, co
   try {
     return closed_surface(mesh, evaluator, inside, options);
   } catch (const LatticeTooFine& error) {
-    throw LimitError(name + ": " + error.what() + "; see --resolution and --scale");
+    const char* const other_format = options.single_precision ? ", or write PLY" : "";
+    throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
+  } catch (const LatticeOutOfRange& error) {
+    throw LimitError(name + ": " + error.what() + "; see --scale");
   } catch (const std::length_error&) {
     throw LimitError(name +
                      ": the surface would have more than 2147483632 faces or edges of the lattice; see --resolution");

@@ -24,7 +24,10 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunO
   report.options = options.options;
   report.threads = limits.threads();
   if (written.report) report_file_ = std::make_unique<OutputFile>(*written.report, written.no_clobber, &files);
-  if (written.depfile) depfile_ = std::make_unique<OutputFile>(*written.depfile, written.no_clobber, &files);
+  if (written.depfile) {
+    (void)depfile_text(written.path, {mesh.path});  // throws before the work
+    depfile_ = std::make_unique<OutputFile>(*written.depfile, written.no_clobber, &files);
+  }
 }
 
 TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {

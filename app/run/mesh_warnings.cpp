@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/options/field_options.h"
+#include "core/evaluation/winding_number.h"
 
 namespace raycone {
 namespace {
@@ -84,7 +85,7 @@ bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
 }
 
 std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
-  if (!(tolerance > 0.0) || bound <= tolerance) return std::nullopt;
+  if (!(tolerance >= kLeastTolerance) || bound <= tolerance) return std::nullopt;
   char text[200];
   std::snprintf(text, sizeof text,
                 "values are expected within %.2g of the true ones, not within %.2g, because sums round; --diagnostics "

@@ -31,7 +31,8 @@ namespace raycone {
 // own, is not flat), and the lattice reaches around it but for a voxel.
 [[nodiscard]] bool should_have_inside(const Box& box, const PlacedLattice& lattice);
 
-// `tolerance`, where values are promised within `bound` only: 0 of closed meshes. A tolerance of 0 asks for no promise.
+// `tolerance`, where values are promised within `bound` only: 0 of closed meshes. A tolerance that counts as 0 asks for
+// no promise.
 [[nodiscard]] std::optional<Warning> tolerance_not_kept(double tolerance, double bound);
 
 // `empty`

@@ -196,15 +196,18 @@ void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
   loaded.box = loaded.parts->box();
 }
 
-// The lattice of the surface that solid distances are to: outside nodes around do not change it.
-Lattice solid_lattice(const PlacedLattice& lattice) { return with_layers(world_order(lattice)->lattice, 1); }
+// The lattice of the surface that solid distances are to: that of `raycone surface`, since faces are merged, and points
+// kept off nodes, as the whole lattice has it.
+Lattice solid_lattice(const LatticeCommand& command, const PlacedLattice& lattice) {
+  return with_layers(world_order(lattice)->lattice, layers_around(command.lattice));
+}
 
 // The surface that `raycone surface` would make.
-TriangleMesh solid_of(MeshRun& run, const TriangleMesh& mesh, const Rule& rule) {
+TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const TriangleMesh& mesh) {
   return timed(run.report.seconds.prepare, [&] {
     const WindingNumberEvaluator evaluator(mesh);
-    const Lattice lattice = solid_lattice(*run.report.lattice);
-    SurfaceOptions options{rule};
+    const Lattice lattice = solid_lattice(command, *run.report.lattice);
+    SurfaceOptions options{command.field.rule};
     options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
     MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, lattice, options, run.limits().memory(),
                                     run.start_progress(sample_count(lattice)));
@@ -232,7 +235,7 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   const bool solid = command.field.has(Field::kSolid);
   if (std::isinf(command.field.band)) {
     command.field.band =
-        band_of_all(loaded.box, solid ? PlacedLattice(solid_lattice(*report.lattice)) : *report.lattice);
+        band_of_all(loaded.box, solid ? PlacedLattice(solid_lattice(command, *report.lattice)) : *report.lattice);
   }
   run.print_warnings();
 
@@ -246,7 +249,7 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   FieldRun fields(run, std::move(loaded.mesh), command.field, static_cast<double>(report.samples));
   if (as_points) fields.prepare_points();
   const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
-  if (solid) fields.set_solid(solid_of(run, original, command.field.rule));
+  if (solid) fields.set_solid(solid_of(command, run, original));
   if (takes_blocks(command, *writer, *report.lattice)) fields.use_blocks();
   evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
                    run);

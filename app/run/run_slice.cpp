@@ -20,6 +20,7 @@
 #include "app/run/fields.h"
 #include "app/run/labels.h"
 #include "app/run/mesh_run.h"
+#include "app/run/mesh_warnings.h"
 #include "app/run/slice_choice.h"
 #include "app/run/written_files.h"
 #include "app/text/plain_text.h"
@@ -100,6 +101,7 @@ void evaluate_field(TriangleMesh mesh, const Slice& slice, const FieldOptions& f
     return FieldEvaluator(std::move(mesh), field, &edges, static_cast<double>(values.size()));
   });
   report.exterior_edges = evaluator.winding_number().exterior_edges();
+  if (const auto warning = tolerance_not_kept(field.tolerance, evaluator.accuracy())) run.warn(*warning);
   std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
   report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, field, values, done); });
   report.terms = evaluator.winding_number().terms();

@@ -31,13 +31,9 @@ std::int64_t layers_of(const SurfaceCommand& command, const Vec3& spacing) {
 // With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
 Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const request = std::get_if<LatticeRequest>(&command.lattice);
-  if (request) {
-    Lattice lattice = choose_lattice(bounding_box(mesh), *request, warnings);
-    const std::int64_t around = std::holds_alternative<VoxelPadding>(request->padding) ? 0 : 1;
-    return with_layers(lattice, around + layers_of(command, lattice.spacing));
-  }
-  const Lattice lattice = world_lattice_of_grid(std::get<GridReference>(command.lattice), "surface");
-  return with_layers(lattice, 1 + layers_of(command, lattice.spacing));
+  const Lattice lattice = request ? choose_lattice(bounding_box(mesh), *request, warnings)
+                                  : world_lattice_of_grid(std::get<GridReference>(command.lattice), "surface");
+  return with_layers(lattice, layers_around(command.lattice) + layers_of(command, lattice.spacing));
 }
 
 }  // namespace

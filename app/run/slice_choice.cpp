@@ -118,6 +118,8 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
   slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + printed(at);
+  const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(plane.axis)];
+  slice.is_flat = padded.lower[right] == padded.upper[right] || padded.lower[up] == padded.upper[up];
   return slice;
 }
 
@@ -185,6 +187,7 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   };
   view.width = pixels(width);
   view.height = pixels(height);
+  slice.is_flat = width == 0.0 || height == 0.0;
   const std::int64_t padding = pixels_of(request);
   add_pixels(view.width, padding);
   add_pixels(view.height, padding);
@@ -202,7 +205,7 @@ Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector
   const auto* padding = std::get_if<WorldPadding>(&request.padding);
   const Box padded = padding ? widened(box, *padding) : box;
   Slice slice = std::visit([&](const auto& plane) { return choose(plane, box, padded, request); }, request.plane);
-  if (slice.view.width == 1 || slice.view.height == 1) {
+  if (slice.is_flat && (slice.view.width == 1 || slice.view.height == 1)) {
     warnings.push_back({"flat-box", "the box is flat: the picture is " + std::to_string(slice.view.width) + " x " +
                                         std::to_string(slice.view.height) + " pixels; see --padding"});
   }

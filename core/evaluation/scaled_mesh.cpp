@@ -29,9 +29,8 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   return std::make_unique<const Cone>(boundary, options.level);
 }
 
-constexpr double kTriangleSummed = 1.9;    // directly, in units of an exterior edge
-constexpr double kLeastTolerance = 1e-12;  // less is as good as nothing
-constexpr double kFarShare = 0.75;         // of the tolerance; near triangles round, too
+constexpr double kTriangleSummed = 1.9;  // directly, in units of an exterior edge
+constexpr double kFarShare = 0.75;       // of the tolerance; near triangles round, too
 
 // The far field, where it is asked for and estimated to be cheaper. `direct` is what it stands in for.
 std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const Boundary& boundary,

@@ -52,10 +52,12 @@ enum class Summation {
 
 struct ExteriorEdge;
 
+inline constexpr double kLeastTolerance = 1e-12;  // turns; less counts as 0
+
 // How well values are to be known.
 struct Accuracy {
-  // |value - w| is to be at most this, turns. From 1e-12 on, what is far may act together (docs/method.md, "Far
-  // field"), where that pays. Below, all is summed one by one, and a value is off by its rounding alone.
+  // |value - w| is to be at most this, turns. From kLeastTolerance on, what is far may act together (docs/method.md,
+  // "Far field"), where that pays. Below, all is summed one by one, and a value is off by its rounding alone.
   double tolerance = 0.0;
   // About how many samples the evaluator is for: preparing a far field must pay.
   double samples = 1e6;

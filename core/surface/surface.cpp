@@ -380,24 +380,24 @@ std::optional<FinishedSurface> surface_in_scale(const TriangleMesh& mesh, const 
 double surface_margin(const Lattice& lattice, bool single_precision) {
   constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8;
   const Vec3& h = lattice.spacing;
-  const double rounding = (single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice);
+  const double rounding = std::max((single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice), 0x1p-1074);
   return std::max(kLeast, kRoundings * rounding / std::min({h.x, h.y, h.z}));
 }
 
 FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80;
+  constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
   const Vec3& h = inside.lattice().spacing;
-  if (options.single_precision &&
-      !(largest_coordinate(inside.lattice()) < kLargestFloat && std::min({h.x, h.y, h.z}) > kLeastVoxel)) {
-    throw LatticeTooFine("the lattice is beyond what single precision can hold");
-  }
+  const double largest = largest_coordinate(inside.lattice());
   const double margin = surface_margin(inside.lattice(), options.single_precision);
-  if (!(margin <= kMost)) {
-    throw LatticeTooFine(std::string("voxels are too small for ") + (options.single_precision ? "single" : "double") +
-                         " precision so far from the origin");
+  const std::string precision = options.single_precision ? "single precision" : "double precision";
+  const bool fits_float = largest < kLargestFloat && std::min({h.x, h.y, h.z}) > kLeastVoxel;
+  const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMost);
+  if (is_tiny || (options.single_precision && !fits_float)) {
+    throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");
   }
+  if (!(margin <= kMost)) throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
   if (std::optional<FinishedSurface> surface = surface_in_scale(mesh, inside, options)) return *std::move(surface);
   return SurfaceMaker(mesh, evaluator, inside, options).make();
 }

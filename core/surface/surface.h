@@ -38,8 +38,14 @@ class SurfaceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Coordinates cannot tell the cells of the lattice apart, or not hold them at all. what() says which.
+// The lattice is so far from the origin that coordinates cannot tell its cells apart.
 class LatticeTooFine : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The lattice is so large, or so small, that coordinates cannot hold it.
+class LatticeOutOfRange : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -51,8 +57,8 @@ class LatticeTooFine : public std::runtime_error {
 // plane_tolerance(), off. With `simplify` no point of the surface is farther than that from the surface without, nor
 // the other way round. A face has a source whose plane it is in, within the last; one that cuts an edge off, the
 // nearest to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
-// `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine, std::length_error for more
-// than 2^31 - 1 faces.
+// `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
+// LatticeOutOfRange, std::length_error for more than 2^31 - 1 faces.
 [[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
                                              const NodeSet& inside, const SurfaceOptions& options);
 

@@ -114,7 +114,7 @@ struct AreaSamples {
 };
 
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
-  constexpr double kMost = 64.0;
+  constexpr double kMost = 128.0;  // of so many along a side, each is a small part
   const Triangle& t = mesh.triangles[triangle];
   const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a;
   const double longest = std::max({length_of_vector(u), length_of_vector(v), length_of_vector(v - u)});
@@ -134,7 +134,7 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
   }
 }
 
-double sample_step(const Lattice& lattice) { return 2.0 * length_of_vector(lattice.spacing); }
+double sample_step(const Lattice& lattice) { return 0.5 * length_of_vector(lattice.spacing); }
 
 // Whether a surface between the nodes of a lattice is near to a point, as the nodes tell: it passes between any two
 // neighbours of which just one is inside.
@@ -206,7 +206,7 @@ class DroppedSamples {
   template <class Visit>
   void for_each(const TriangleMesh& mesh, const Visit& visit) {
     std::array<Part, 16> parts;
-    constexpr std::size_t kTrianglesPerPart = 64, kAtOnce = kTrianglesPerPart * std::tuple_size_v<decltype(parts)>;
+    constexpr std::size_t kTrianglesPerPart = 8, kAtOnce = kTrianglesPerPart * std::tuple_size_v<decltype(parts)>;
     const std::size_t count = mesh.triangles.size();
     for (std::size_t first = 0; first < count; first += kAtOnce) {
       parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {

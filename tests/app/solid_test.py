@@ -55,6 +55,15 @@ class Solid(CommandCase):
             self.assertTrue(((found["solid"] < 0) == found["inside"])[off].all(), options)
             self.assertTrue(found["inside"].any(), options)
 
+    def test_is_of_the_very_surface_where_samples_of_padding_are_asked_for(self):
+        for options in (SOUP + " --resolution 34 --orient auto", OPEN_BOX + " --resolution 30 --orient auto"):
+            reports = []
+            for command in ("surface %s -o surface.ply", "lattice %s -o solid.npy --field solid"):
+                self.works((command % options) + " --padding 2v --report report.json")
+                with open("report.json") as file:
+                    reports.append(json.load(file)["surface"])
+            self.assertEqual(*reports)
+
     def test_is_continuous_across_holes(self):
         for options in (OPEN_BOX + " --resolution 20", OPEN_BOX + " --resolution 16",
                         MOEBIUS + " --rule abs=.3 --resolution 24"):

@@ -805,15 +805,16 @@ TEST(Surface, FollowsItsRule) {
   EXPECT_LT(of_both, 0.8 * of_one);
 }
 
-TEST(Surface, OfALatticeThatIsTooFineIsRefused) {
+TEST(Surface, OfALatticeThatIsTooFineOrOutOfRangeIsRefused) {
   const TriangleMesh mesh = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {1, 1, 1}, {1e15, 1e15, 1e15});
   EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
   SurfaceOptions single;
   single.single_precision = true;
   for (const double size : {1e-40, 1e-300, 1e39, 1e300}) {
-    EXPECT_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8, single), LatticeTooFine) << size;
+    EXPECT_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8, single), LatticeOutOfRange) << size;
     EXPECT_NO_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8)) << size;
   }
+  EXPECT_THROW(surface_of(test::box_mesh({0, 0, 0}, {1e-321, 1e-321, 1e-321}), 8), LatticeOutOfRange);
 }
 
 TEST(SurfaceMeasures, TellWhatSeparatesNothing) {

@@ -4,12 +4,14 @@ What holds for all commands, what does not exist yet, what is suggested where a 
 to a terminal.
 """
 
+import csv
 import gzip
 import json
 import os
 import pty
 import re
 import select
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -203,6 +205,50 @@ class Messages(Contract):
         self.works([*WORKING["slice"], "--at", "-.5", "--padding", ".5"])
         # Where 100 % by the formula would be beyond the end: -0.3 + 1 * (0.1 + 0.3) is not 0.1.
         self.works([*WORKING["slice"], "--at", "100%", "--bounds", "-.3,-.3,-.3,.1,.1,.1"])
+
+    def test_slices_are_flat_where_the_box_is(self):
+        for options, flat in (("--size 1", False), ("--size 64 --bounds 0,0,0,100,.5,1", False),
+                              ("--size 8 --bounds 0,0,0,1,0,1", True)):
+            result = run(["slice", CUBE, "-o", "flat.png", *options.split()])
+            self.assertEqual((result.returncode, "flat-box" in result.stderr), (0, flat), result.stderr)
+
+    def test_tolerances_that_count_as_0_are_promises_of_nothing(self):
+        open_box = os.path.join(MESHES, "open_box.obj")
+        for words in (["points", open_box, "points.csv"], ["slice", open_box, "-o", "a.png", "--values", "a.npy"]):
+            for tolerance, status in (("0", 0), ("9e-13", 0), ("1e-12", 2)):
+                result = run([*words, "--tolerance", tolerance, "--strict"])
+                self.assertEqual((result.returncode, "tolerance: " in result.stderr), (status, status == 2), words)
+
+    def test_names_that_promise_another_format_are_refused(self):
+        self.refused(["info", CUBE, "--mark", "marks.stl"], "--mark marks.stl: expected a name that ends in .ply")
+        self.refused(["points", CUBE, "points.csv", "--raw", "f64", "-o", "o.npy"], "o.npy: its extension names a format")
+
+    def test_a_line_feed_is_for_no_rule_of_make(self):
+        shutil.copy(CUBE, "a\nb.obj")
+        words = ["lattice", "a\nb.obj", "-o", "made.npy", "--resolution", "2"]
+        result = run([*words, "--depfile", "made.d"])
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("Make cannot read names with line feeds", result.stderr)
+        self.assertFalse(os.path.exists("made.npy") or os.path.exists("made.d"))
+        self.works(words)
+
+    def test_what_overflows_is_no_number(self):
+        facts = json.loads(self.works(["info", CUBE, "--scale", "1e150", "--json"]).stdout)
+        self.assertEqual((facts["closed"], facts["signed_volume"]), (True, None))
+        rows = list(csv.DictReader(self.works(["info", CUBE, "--scale", "1e150", "--csv"]).stdout.splitlines()))
+        self.assertEqual((rows[0]["closed"], rows[0]["signed_volume"]), ("true", ""))
+
+    def test_surfaces_of_what_no_number_holds_are_a_limit(self):
+        for scale, name in (("1e-320", "a.ply"), ("1e-320", "a.stl"), ("1e-60", "a.stl")):
+            result = run(["surface", CUBE, "-o", name, "--scale", scale, "--resolution", "4"])
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertIn("precision can hold; see --scale", result.stderr)
+        with open("far.obj", "w") as file:
+            file.write("v 10000 0 0\nv 10001 0 0\nv 10000 1 0\nv 10000 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+        words = ["surface", "far.obj", "--resolution", "12", "-o"]
+        self.assertIn("see --resolution and --normalize, or write PLY", run([*words, "far.stl"]).stderr)
+        self.works([*words, "far.stl", "--normalize", "cube"])
+        self.works([*words, "far.ply"])
 
     def test_counts_agree_with_their_nouns(self):
         with open("one.ply", "wb") as file:

@@ -172,7 +172,9 @@ TEST_F(InfoGate, UsageErrorsNameWhatIsExpected) {
   expect_usage_error({"info", cube_, "--json", "--csv"}, "--json: cannot be combined with --csv");
   expect_usage_error({"info", cube_, open_, "--mark", dir_ / "marks.ply"}, "expected one mesh");
   expect_usage_error({"info", cube_, "--no-clobber"}, "expected --mark");
-  expect_usage_error({"info", cube_, "--mark", cube_}, "is input and marked mesh");
+  std::filesystem::create_symlink(cube_, std::string(dir_ / "link.ply"));
+  expect_usage_error({"info", cube_, "--mark", dir_ / "link.ply"}, "is input and marked mesh");
+  expect_usage_error({"info", cube_, "--mark", dir_ / "marks.stl"}, "expected a name that ends in .ply");
   expect_usage_error({"info", cube_, "--mark", "-"}, "is output and marked mesh");
 }
 

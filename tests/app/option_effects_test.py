@@ -169,6 +169,7 @@ TABLE = [
     Row("lattice cubes.obj -o - --resolution 2", "--no-clobber", HARMLESS),
     Row(BATCH, "--no-clobber", HARMLESS),
     Row("info cubes.obj", "--no-clobber", REFUSED),
+    Row("report done -o old.ply", "--no-clobber", CHANGES),
     Row("info open.obj --mark old.ply", "--no-clobber", CHANGES),
     *(Row(words, option, CHANGES)
       for words in (LATTICE, POINTS, SLICE, SURFACE) for option in ("--report out/r.json", "--depfile out/a.d")),

@@ -41,12 +41,22 @@ TEST_F(RawOption, TakesTriplesAndReturnsValues) {
   EXPECT_EQ(raw("", {"f64"}).out, "");
 }
 
-TEST_F(RawOption, ReadsAndWritesFilesOfAnyName) {
+TEST_F(RawOption, ReadsFilesOfAnyNameAndWritesThoseThatPromiseNoOtherFormat) {
   write_text(dir_ / "points.csv", bytes_of<double>({.5, .5, .5}));
-  const CommandResult result =
-      run_raycone({"points", mesh_, dir_ / "points.csv", "--raw", "f64", "-o", dir_ / "out.npy"});
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(read_text(dir_ / "out.npy"), bytes_of<double>({1}));
+  const auto to = [&](const char* name) {
+    return run_raycone({"points", mesh_, dir_ / "points.csv", "--raw", "f64", "-o", dir_ / name});
+  };
+  for (const char* const name : {"out.raw", "out.f64", "out"}) {
+    const CommandResult result = to(name);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(read_text(dir_ / name), bytes_of<double>({1}));
+  }
+  for (const char* const name : {"out.npy", "out.csv", "out.NPZ"}) {
+    const CommandResult result = to(name);
+    EXPECT_EQ(result.status, 1) << name;
+    EXPECT_NE(result.err.find("its extension names a format, but --raw writes bare numbers"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(std::string(dir_ / name)));
+  }
 }
 
 TEST_F(RawOption, AnswersEachPointOfAReaderThatWaits) {

@@ -12,7 +12,6 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kCellsPerPart = 512;
 constexpr double kSamePlace = 16.0;  // square of how many tolerances points on two planes may be apart
 
 // A corner of a loop: a vertex of the surface, and the edge point where it is one.
@@ -286,7 +285,8 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
     throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
 
   ContouredSurface contoured;
-  auto& [mesh, sources] = contoured.surface;
+  TriangleMesh& mesh = contoured.surface.mesh;
+  std::vector<std::int32_t>& sources = contoured.surface.sources;
   const auto for_each_part = [&](const auto& join) {
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
       for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
@@ -314,6 +314,7 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
                          const FacePoints& face_points, const CellCreases& creases, double tolerance,
                          const SurfaceMargins& margins) {
   const std::size_t count = cells.cells().size();
+  constexpr std::size_t kCellsPerPart = 512;
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {

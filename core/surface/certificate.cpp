@@ -164,24 +164,43 @@ std::vector<std::uint32_t> faces_near(const TriangleMesh& mesh, const SurfaceEdi
   return faces;
 }
 
+// The vertices that some faces have, in increasing order. Sets their places there in `number`.
+std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& faces,
+                                       std::vector<std::uint32_t>& number) {
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  parallel_for(faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for (const std::uint32_t corner : mesh.triangles[faces[n]])
+        std::atomic_ref(used[corner]).store(1, std::memory_order_relaxed);
+    }
+  });
+  std::vector<std::uint32_t> vertices;
+  number.resize(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) continue;
+    number[v] = static_cast<std::uint32_t>(vertices.size());
+    vertices.push_back(v);
+  }
+  return vertices;
+}
+
 // The boxes of all faces at a vertex of a changed face meet that one's.
 MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
-  constexpr std::uint32_t kNone = 0xFFFFFFFF;
   MeshPart part;
   part.faces = faces_near(mesh, change, lattice);
-  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone);
-  for (const std::uint32_t face : part.faces) {
-    Triangle t = mesh.triangles[face];
-    for (std::uint32_t& corner : t) {
-      if (number[corner] == kNone) {
-        number[corner] = static_cast<std::uint32_t>(part.vertices.size());
-        part.vertices.push_back(corner);
-        part.mesh.vertices.push_back(mesh.vertices[corner]);
-      }
-      corner = number[corner];
+  std::vector<std::uint32_t> number;
+  part.vertices = vertices_of(mesh, part.faces, number);
+  part.mesh.vertices.resize(part.vertices.size());
+  part.mesh.triangles.resize(part.faces.size());
+  parallel_for(part.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) part.mesh.vertices[n] = mesh.vertices[part.vertices[n]];
+  });
+  parallel_for(part.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Triangle& t = mesh.triangles[part.faces[n]];
+      part.mesh.triangles[n] = {number[t[0]], number[t[1]], number[t[2]]};
     }
-    part.mesh.triangles.push_back(t);
-  }
+  });
   part.whole.assign(part.vertices.size(), 0);
   for (const std::uint32_t face : change.faces) {
     if (is_gone(mesh.triangles[face])) continue;
@@ -191,19 +210,26 @@ MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const La
 }
 
 // Marks those at the position of another one. Returns their number, without the first of each position.
-std::uint64_t mark_equal_vertices(const std::vector<Vec3>& vertices, std::vector<bool>& marked) {
-  std::vector<std::uint32_t> order(vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](std::uint32_t v) {
-    const Vec3& p = vertices[v];
-    return std::tuple(p.x, p.y, p.z);
+std::uint64_t mark_equal_vertices(const std::vector<Vec3>& vertices, std::vector<std::uint8_t>& marked) {
+  constexpr std::size_t kBuckets = 1024;
+  const Buckets<std::uint32_t> buckets(vertices.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
+    for (std::size_t v = begin; v < end; ++v) emit(hash_of(vertices[v]) % kBuckets, static_cast<std::uint32_t>(v));
   });
-  std::uint64_t equal = 0;
-  for (std::size_t n = 1; n < order.size(); ++n) {
-    if (vertices[order[n]] != vertices[order[n - 1]]) continue;
-    marked[order[n - 1]] = marked[order[n]] = true;
-    ++equal;
-  }
+  std::atomic<std::uint64_t> equal = 0;
+  parallel_for(kBuckets, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::span<std::uint32_t> bucket = buckets[n];
+      std::ranges::sort(bucket, {}, [&](std::uint32_t v) {
+        const Vec3& p = vertices[v];
+        return std::tuple(p.x, p.y, p.z);
+      });
+      for (std::size_t i = 1; i < bucket.size(); ++i) {
+        if (vertices[bucket[i]] != vertices[bucket[i - 1]]) continue;
+        marked[bucket[i - 1]] = marked[bucket[i]] = 1;  // nobody else has these
+        ++equal;
+      }
+    }
+  });
   return equal;
 }
 
@@ -260,7 +286,7 @@ SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
 NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
   const MeshPart part = part_near(mesh, change, lattice);
   const Fans fans = fans_of(part.mesh, &part.whole);
-  std::vector<bool> faulty(fans.wrong.begin(), fans.wrong.end());
+  std::vector<std::uint8_t> faulty = fans.wrong;
   NearFaults found;
   found.faults.links = fans.count_of_wrong();
   found.faults.equal_vertices = mark_equal_vertices(part.mesh.vertices, faulty);
@@ -271,12 +297,11 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
     const bool degenerate = is_degenerate(part.mesh, face);
     found.faults.degenerate_faces += degenerate ? 1 : 0;
     if (!degenerate && !meeting[face]) continue;
-    for (const std::uint32_t corner : part.mesh.triangles[face]) faulty[corner] = true;
+    for (const std::uint32_t corner : part.mesh.triangles[face]) faulty[corner] = 1;
   }
   for (std::size_t v = 0; v < faulty.size(); ++v) {
-    if (faulty[v]) found.vertices.push_back(part.vertices[v]);
+    if (faulty[v] != 0) found.vertices.push_back(part.vertices[v]);
   }
-  std::ranges::sort(found.vertices);
   return found;
 }
 

@@ -298,7 +298,9 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
   sources.resize(end.triangles);
   for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
   mesh.vertices.resize(all_vertices);
-  std::ranges::transform(edge_points, mesh.vertices.begin(), &EdgePoint::position);
+  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t last) {
+    for (std::size_t n = begin; n < last; ++n) mesh.vertices[n] = edge_points[n].position;
+  });
   std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
   contoured.tetrahedra.resize(end.apexes);
   for_each_part([&](ContourPart& part, const PartPlace& place) {

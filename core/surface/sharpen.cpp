@@ -4,300 +4,23 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
-#include <tuple>
 #include <utility>
 
 #include "core/machine/threads.h"
-#include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
+#include "core/surface/source_plane.h"
+#include "core/surface/strip_pulls.h"
 
 namespace raycone {
-namespace {
 
-struct Plane {
-  Vec3 point, normal;  // of length 1
-  std::int32_t source;
-
-  [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p - point); }
-};
-
-Plane plane_of(const TriangleMesh& input, std::int32_t source) {
-  const Triangle& t = input.triangles[static_cast<std::size_t>(source)];
-  const Vec3 &a = input.vertices[t[0]], &b = input.vertices[t[1]], &c = input.vertices[t[2]];
-  return {a, unit_normal(a, b, c), source};
-}
-
-bool has(const Triangle& t, std::uint32_t vertex) { return t[0] == vertex || t[1] == vertex || t[2] == vertex; }
-
-}  // namespace
-
-// Pulls strips that hang together. Faces and vertices have their places among those of all strips.
-class StripPulls {
- public:
-  StripPulls(const Sharpener& all, const Sharpener::Part& part, Sharpener::State& state)
-      : all_(all),
-        part_(part),
-        state_(state),
-        gone_(part.faces, 0),
-        faces_(part.vertices),
-        changed_in_(part.vertices, 0) {
-    for (std::uint32_t v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
-      state.into[v] = v;
-      state.places[v] = all.first_.places[v];
-    }
-    for (std::uint32_t face = part.first_face; face < part.first_face + part.faces; ++face) {
-      state.triangles[face] = all.first_.triangles[face];
-      if (all.placed_[face] == Placed::kAcross) across_.push_back(face);
-      for (const std::uint32_t corner : state.triangles[face]) {
-        if (place(corner) != Sharpener::kNoPlace) faces(corner).push_back(face);
-      }
-    }
-  }
-
-  // Returns the number of pulls.
-  std::size_t pull_all() {
-    // What leads to a corner can be pulled there only after what is before it on the edge.
-    constexpr int kPasses = 32;
-    std::size_t pulls = 0;
-    for (pass_ = 1; pass_ <= kPasses; ++pass_) {
-      const std::size_t before = pulls;
-      for (const auto& [square, p, q, u, v] : edges_of_strips()) pulls += pull(last_of(u), last_of(v)) ? 1 : 0;
-      if (pulls == before) break;
-    }
-    for (std::uint32_t v = part_.first_vertex; v < part_.first_vertex + part_.vertices; ++v)
-      state_.into[v] = place(last_of(all_.strip_vertices_[v]));
-    for (std::uint32_t n = 0; n < gone_.size(); ++n) {
-      Triangle& t = state_.triangles[part_.first_face + n];
-      if (gone_[n] != 0) t.fill(t[0]);
-    }
-    return pulls;
-  }
-
- private:
-  using Placed = Sharpener::Placed;
-  using Place = std::array<double, 3>;
-  using Edge = std::tuple<double, Place, Place, std::uint32_t, std::uint32_t>;  // square of the length, ends
-  using Faces = std::vector<std::uint32_t>;
-
-  [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return all_.place_[vertex]; }
-  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const {
-    return place(vertex) == Sharpener::kNoPlace ? all_.vertices_[vertex] : state_.places[place(vertex)];
-  }
-  [[nodiscard]] std::uint32_t last_of(std::uint32_t vertex) const {
-    std::uint32_t at = place(vertex);
-    while (state_.into[at] != at) at = state_.into[at];
-    return all_.strip_vertices_[at];
-  }
-
-  [[nodiscard]] std::vector<Edge> edges_of_strips();
-  [[nodiscard]] int& changed_in(std::uint32_t vertex) { return changed_in_[place(vertex) - part_.first_vertex]; }
-  [[nodiscard]] bool may_have_changed(std::uint32_t vertex) { return changed_in(vertex) >= pass_ - 1; }
-  [[nodiscard]] std::uint8_t& gone(std::uint32_t face) { return gone_[face - part_.first_face]; }
-  bool pull(std::uint32_t u, std::uint32_t v);
-  void join(std::uint32_t u, std::uint32_t v);
-  [[nodiscard]] bool is_link_sound(std::uint32_t u, std::uint32_t v) const;
-  [[nodiscard]] std::optional<Vec3> place_for(std::uint32_t u, std::uint32_t v);
-  [[nodiscard]] bool is_on_mesh(const Vec3& p) const;
-  [[nodiscard]] bool keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const;
-  [[nodiscard]] bool add_plane(std::uint32_t face, std::vector<Plane>& planes) const;
-  [[nodiscard]] std::optional<Vec3> meeting_point(std::span<const Plane> planes, const Vec3& near) const;
-
-  [[nodiscard]] Faces& faces(std::uint32_t vertex) { return faces_[place(vertex) - part_.first_vertex]; }
-  [[nodiscard]] const Faces& faces(std::uint32_t vertex) const { return faces_[place(vertex) - part_.first_vertex]; }
-  [[nodiscard]] bool has(std::uint32_t face, std::uint32_t vertex) const {
-    return raycone::has(state_.triangles[face], vertex);
-  }
-
-  const Sharpener& all_;
-  const Sharpener::Part& part_;
-  Sharpener::State& state_;
-  std::vector<std::uint8_t> gone_;     // of each face
-  std::vector<std::uint32_t> across_;  // faces that lead across, and are not gone
-  std::vector<Faces> faces_;           // of each vertex
-  std::vector<int> changed_in_;        // likewise, the last pass that changed one of its faces
-  int pass_ = 0;
-};
-
-// Shortest first: those that lead across. Of equal ones it is places that decide, not numbers of vertices, so that a
-// larger lattice with the same nodes gives the same surface.
-// Where nothing has changed since they were looked at, they are not looked at again.
-std::vector<StripPulls::Edge> StripPulls::edges_of_strips() {
-  std::erase_if(across_, [&](std::uint32_t face) { return gone(face) != 0; });
-  const auto ordered = [&](std::uint32_t vertex) {
-    const Vec3& p = position(vertex);
-    return Place{p.x, p.y, p.z};
-  };
-  std::vector<Edge> edges;
-  for (const std::uint32_t face : across_) {
-    const Triangle& t = state_.triangles[face];
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::uint32_t u = t[i], v = t[(i + 1) % 3];
-      if (!may_have_changed(u) && !may_have_changed(v)) continue;
-      if (ordered(v) < ordered(u)) std::swap(u, v);
-      const Vec3 step = position(v) - position(u);
-      const double square = dot(step, step), reach = all_.limits_.reach;
-      if (square <= 4 * reach * reach) edges.emplace_back(square, ordered(u), ordered(v), u, v);
-    }
-  }
-  std::ranges::sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
-
-// Pulls v into u, and both to where their planes meet, if that can be done. That depends on the faces around them.
-bool StripPulls::pull(std::uint32_t u, std::uint32_t v) {
-  if (u == v || all_.kept_[place(u)] != 0 || all_.kept_[place(v)] != 0) return false;
-  const auto leads_to_v = [&](std::uint32_t face) { return all_.placed_[face] != Placed::kInPlane && has(face, v); };
-  if (!std::ranges::any_of(faces(u), leads_to_v)) return false;
-  const std::optional<Vec3> target = place_for(u, v);
-  if (!target || !is_link_sound(u, v) || !keeps_fronts(u, v, *target) || !keeps_fronts(v, u, *target)) return false;
-  join(u, v);
-  state_.places[place(u)] = *target;
-  state_.into[place(v)] = place(u);
-  return true;
-}
-
-void StripPulls::join(std::uint32_t u, std::uint32_t v) {
-  for (const std::uint32_t face : faces(v)) {
-    if (has(face, u)) {
-      gone(face) = 1;
-      for (const std::uint32_t corner : state_.triangles[face]) {
-        if (corner != v && place(corner) != Sharpener::kNoPlace) std::erase(faces(corner), face);
-      }
-      continue;
-    }
-    for (std::uint32_t& corner : state_.triangles[face]) corner = corner == v ? u : corner;
-    faces(u).push_back(face);
-  }
-  faces(v).clear();
-  for (const std::uint32_t face : faces(u)) {
-    for (const std::uint32_t corner : state_.triangles[face]) {
-      if (place(corner) != Sharpener::kNoPlace) changed_in(corner) = pass_;
-    }
-  }
-}
-
-// The condition under which a closed 2-manifold stays one: the edge has two faces, and its ends no common neighbours
-// but their third corners (Dey, Edelsbrunner, Guha and Nekhayev 1999).
-bool StripPulls::is_link_sound(std::uint32_t u, std::uint32_t v) const {
-  const auto neighbours = [&](std::uint32_t vertex) {
-    std::vector<std::uint32_t> all;
-    for (const std::uint32_t face : faces(vertex)) {
-      for (const std::uint32_t corner : state_.triangles[face]) {
-        if (corner != vertex) all.push_back(corner);
-      }
-    }
-    std::ranges::sort(all);
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
-  };
-  const std::vector<std::uint32_t> of_u = neighbours(u), of_v = neighbours(v);
-  std::vector<std::uint32_t> common;
-  std::ranges::set_intersection(of_u, of_v, std::back_inserter(common));
-  const auto shared = std::ranges::count_if(faces(u), [&](std::uint32_t face) { return has(face, v); });
-  const std::size_t left = of_u.size() + of_v.size() - 4;  // neighbours of what becomes one vertex
-  return shared == 2 && common.size() == 2 && left >= 3;
-}
-
-// Where the planes around both meet, on the mesh.
-std::optional<Vec3> StripPulls::place_for(std::uint32_t u, std::uint32_t v) {
-  std::vector<Plane> planes;
-  for (const std::uint32_t vertex : {u, v}) {
-    for (const std::uint32_t face : faces(vertex)) {
-      if (all_.sources_[face] == kHole) return std::nullopt;
-      if (all_.placed_[face] == Placed::kInPlane && !add_plane(face, planes)) return std::nullopt;
-    }
-  }
-  const Vec3 &p = position(u), &q = position(v);
-  // A vertex that is on the edge already stays: it may be where the edge bends.
-  for (const Vec3& end : {p, q}) {
-    const auto is_in = [&](const Plane& plane) { return std::abs(plane.height(end)) <= all_.limits_.off; };
-    if (planes.size() >= 2 && std::ranges::all_of(planes, is_in)) return end;
-  }
-  std::optional<Vec3> place = meeting_point(planes, 0.5 * p + 0.5 * q);
-  if (!place) return std::nullopt;
-  if (all_.limits_.single_precision) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const volatile auto single = static_cast<float>((*place)[axis]);  // as vertices of the contour are rounded
-      (*place)[axis] = static_cast<double>(single);
-    }
-  }
-  for (const Vec3& from : {p, q}) {
-    const Vec3 step = *place - from;
-    if (!(dot(step, step) <= all_.limits_.reach * all_.limits_.reach)) return std::nullopt;
-  }
-  return is_on_mesh(*place) ? place : std::nullopt;
-}
-
-bool StripPulls::is_on_mesh(const Vec3& p) const {
-  double distance = 0.0;
-  all_.distances_->evaluate({&p, 1}, {&distance, 1});
-  return distance <= all_.limits_.off;
-}
-
-// Adds a face's plane unless it is there. Planes at less than 15 degrees, where an edge is not sharp, meet nowhere for
-// sure: false.
-bool StripPulls::add_plane(std::uint32_t face, std::vector<Plane>& planes) const {
-  constexpr double kSame = 1 - 1e-10;  // cosine
-  const std::int32_t source = all_.sources_[face];
-  if (std::ranges::find(planes, source, &Plane::source) != planes.end()) return true;
-  const Plane plane = plane_of(all_.input_, source);
-  for (const Plane& other : planes) {
-    const double cosine = std::abs(dot(plane.normal, other.normal));
-    const bool same_place = std::abs(other.height(position(state_.triangles[face][0]))) <= 2 * all_.limits_.off;
-    if (cosine >= kSame && same_place) return true;
-    if (cosine > kSharpCosine) return false;
-  }
-  planes.push_back(plane);
-  return planes.size() <= 3;
-}
-
-// The point of two or three planes that is nearest to `near`.
-std::optional<Vec3> StripPulls::meeting_point(std::span<const Plane> planes, const Vec3& near) const {
-  constexpr double kLeast = 1e-2;  // determinant of normals: below, the planes hardly have a point in common
-  if (planes.size() < 2) return std::nullopt;
-  const Vec3 &a = planes[0].normal, &b = planes[1].normal;
-  const double of_a = -planes[0].height(near), of_b = -planes[1].height(near);
-  if (planes.size() == 2) {
-    const double k = dot(a, b), rest = 1 - k * k;
-    return near + ((of_a - k * of_b) / rest) * a + ((of_b - k * of_a) / rest) * b;
-  }
-  const Vec3& c = planes[2].normal;
-  const double of_c = -planes[2].height(near), determinant = dot(a, cross(b, c));
-  if (!(std::abs(determinant) >= kLeast)) return std::nullopt;
-  return near + (of_a / determinant) * cross(b, c) + (of_b / determinant) * cross(c, a) +
-         (of_c / determinant) * cross(a, b);
-}
-
-// Whether the faces of a vertex that are left have an area, and are not turned over, when it moves.
-bool StripPulls::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const {
-  return std::ranges::all_of(faces(vertex), [&](std::uint32_t face) {
-    if (has(face, other)) return true;
-    std::array<Vec3, 3> before, after;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t corner = state_.triangles[face][i];
-      before[i] = position(corner);
-      after[i] = corner == vertex ? place : before[i];
-    }
-    const Vec3 was = cross(before[1] - before[0], before[2] - before[0]);
-    const Vec3 is = cross(after[1] - after[0], after[2] - after[0]);
-    const bool may_turn = all_.placed_[face] != Placed::kInPlane && part_.may_turn;
-    return may_turn ? dot(is, is) > 0.0 : dot(was, is) > 0.0;
-  });
-}
-
-Sharpener::Sharpener(const SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits)
+Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits)
     : vertices_(surface.mesh.vertices), input_(input), limits_(limits) {
   std::vector<Placed> of_all(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t face = begin; face < end; ++face)
       of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face]);
   });
-  // Whether it is planes that the mesh is made of. Of CAD parts 75 to 99 per cent of the faces are in one, of scans
-  // less than 70; there, most of what is pulled would not pass the check.
-  if (4 * std::ranges::count(of_all, Placed::kInPlane) < 3 * std::ssize(of_all)) return;
   find_strips(surface, of_all);
   if (strip_vertices_.empty()) return;
   now_ = first_;
@@ -307,27 +30,28 @@ Sharpener::Sharpener(const SurfaceMesh& surface, const TriangleMesh& input, cons
 
 // Faces over holes are in no plane, and belong to no strip.
 Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source) const {
-  constexpr double kTurned = 0.992546151641322;  // cosine of 7 degrees
+  constexpr double kTurned = 0.9986295347545738;  // cosine of 3 degrees
   if (source == kHole) return Placed::kInPlane;
-  const Plane plane = plane_of(input_, source);
+  const SourcePlane plane = source_plane(input_, source);
   const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
   const double farthest = std::max({std::abs(plane.height(a)), std::abs(plane.height(b)), std::abs(plane.height(c))});
   if (farthest <= limits_.off) return Placed::kInPlane;
   return std::abs(dot(plane.normal, unit_normal(a, b, c))) < kTurned ? Placed::kAcross : Placed::kOff;
 }
 
-void Sharpener::find_strips(const SurfaceMesh& surface, const std::vector<Placed>& of_all) {
+void Sharpener::find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all) {
   const std::vector<Triangle>& triangles = surface.mesh.triangles;
   place_.assign(vertices_.size(), kNoPlace);
   for (std::size_t face = 0; face < of_all.size(); ++face) {
-    if (of_all[face] != Placed::kAcross) continue;
-    for (const std::uint32_t corner : triangles[face]) {
-      if (place_[corner] != kNoPlace) continue;
-      place_[corner] = static_cast<std::uint32_t>(strip_vertices_.size());
-      strip_vertices_.push_back(corner);
-    }
+    if (of_all[face] == Placed::kAcross) add_to_strips(triangles[face]);
   }
-  find_parts(triangles);
+  extend_strips(triangles, of_all);
+  std::vector<std::uint32_t> part = find_parts(triangles);
+  // Whether it is planes that the mesh is made of. Of CAD parts 75 to 99 per cent of the faces are in one, of scans
+  // less than 70; there, strips are looked at one by one.
+  if (4 * std::ranges::count(of_all, Placed::kInPlane) < 3 * std::ssize(of_all)) drop_parts(triangles, of_all, part);
+  if (strip_vertices_.empty()) return;
+  number_vertices(part, triangles, of_all, surface.mesh.vertices);
   add_faces(surface, of_all);
   for (const std::uint32_t vertex : strip_vertices_) {
     first_.into.push_back(place_[vertex]);
@@ -336,8 +60,34 @@ void Sharpener::find_strips(const SurfaceMesh& surface, const std::vector<Placed
   kept_.assign(strip_vertices_.size(), 0);
 }
 
-// Vertices with a face in common are of one part. They are numbered anew, part by part.
-void Sharpener::find_parts(const std::vector<Triangle>& triangles) {
+void Sharpener::add_to_strips(const Triangle& t) {
+  for (const std::uint32_t corner : t) {
+    if (place_[corner] != kNoPlace) continue;
+    place_[corner] = static_cast<std::uint32_t>(strip_vertices_.size());
+    strip_vertices_.push_back(corner);
+  }
+}
+
+// Gaps are filled as a whole, with faces beside a strip that are hardly turned. Of fine tessellations most faces are
+// such ones; gaps do not reach far there.
+void Sharpener::extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all) {
+  constexpr int kRings = 4;
+  std::vector<std::uint32_t> off;
+  for (std::uint32_t face = 0; face < of_all.size(); ++face) {
+    if (of_all[face] == Placed::kOff) off.push_back(face);
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    const auto is_beside = [&](std::uint32_t face) {
+      return std::ranges::count_if(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; }) >= 2;
+    };
+    const auto beside = std::ranges::partition(off, [&](std::uint32_t face) { return !is_beside(face); });
+    for (const std::uint32_t face : beside) add_to_strips(triangles[face]);
+    off.erase(beside.begin(), off.end());
+  }
+}
+
+// Vertices with a face in common are of one part. Returns the part of each vertex of strips.
+std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> root(strip_vertices_.size());
   std::iota(root.begin(), root.end(), 0U);
   const auto root_of = [&](std::uint32_t v) {
@@ -363,18 +113,69 @@ void Sharpener::find_parts(const std::vector<Triangle>& triangles) {
     part[v] = part[of];
     ++parts_[part[v]].vertices;
   }
-  for (std::size_t n = 1; n < parts_.size(); ++n)
-    parts_[n].first_vertex = parts_[n - 1].first_vertex + parts_[n - 1].vertices;
-  std::vector<std::uint32_t> next;
-  for (const Part& each : parts_) next.push_back(each.first_vertex);
-  const std::vector<std::uint32_t> vertices = std::exchange(strip_vertices_, {});
-  strip_vertices_.resize(vertices.size());
-  part_of_.resize(vertices.size());
+  return part;
+}
+
+// Those where more than one of three faces is in no plane: much of what is pulled there would not pass the check.
+void Sharpener::drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
+                           std::vector<std::uint32_t>& part) {
+  std::vector<std::int64_t> surplus(parts_.size(), 0);  // of faces in planes, which count half as much as others
+  for (std::size_t face = 0; face < of_all.size(); ++face) {
+    const auto corner = std::ranges::find_if(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; });
+    if (corner == triangles[face].end()) continue;
+    surplus[part[place_[*corner]]] += of_all[face] == Placed::kInPlane ? 1 : -2;
+  }
+  std::vector<std::uint32_t> number(parts_.size(), kNoPlace);
+  std::uint32_t left = 0;
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    if (surplus[n] < 0) continue;
+    parts_[left] = parts_[n];
+    number[n] = left++;
+  }
+  parts_.resize(left);
+  const std::vector<std::uint32_t> vertices = std::exchange(strip_vertices_, {}), before = std::exchange(part, {});
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const std::uint32_t place = next[part[v]]++;
-    place_[vertices[v]] = place;
-    strip_vertices_[place] = vertices[v];
-    part_of_[place] = part[v];
+    place_[vertices[v]] = kNoPlace;
+    if (number[before[v]] == kNoPlace) continue;
+    place_[vertices[v]] = static_cast<std::uint32_t>(strip_vertices_.size());
+    strip_vertices_.push_back(vertices[v]);
+    part.push_back(number[before[v]]);
+  }
+}
+
+// Vertices are numbered anew, part by part, with spare ones behind those of each. Most gaps have two faces and more,
+// and one corner of the mesh at most.
+void Sharpener::number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
+                                const std::vector<Placed>& of_all, std::vector<Vec3>& vertices) {
+  for (std::size_t face = 0; face < of_all.size(); ++face) {
+    const std::uint32_t first = place_[triangles[face][0]];
+    if (of_all[face] == Placed::kAcross && first != kNoPlace) ++parts_[part[first]].spares;
+  }
+  for (Part& each : parts_) each.spares = each.spares / 2 + 1;
+  std::vector<std::uint32_t> next;
+  std::uint32_t count = 0;
+  for (Part& each : parts_) {
+    each.first_vertex = count;
+    each.vertices += each.spares;
+    next.push_back(count);
+    count += each.vertices;
+  }
+  const std::vector<std::uint32_t> known = std::exchange(strip_vertices_, {});
+  strip_vertices_.resize(count);
+  part_of_.resize(count);
+  const auto add = [&](std::uint32_t vertex, std::uint32_t to) {
+    const std::uint32_t place = next[to]++;
+    place_[vertex] = place;
+    strip_vertices_[place] = vertex;
+    part_of_[place] = to;
+  };
+  for (std::size_t v = 0; v < known.size(); ++v) add(known[v], part[v]);
+  for (std::uint32_t n = 0; n < parts_.size(); ++n) {
+    for (std::uint32_t spare = 0; spare < parts_[n].spares; ++spare) {
+      place_.push_back(kNoPlace);
+      vertices.push_back(vertices[strip_vertices_[parts_[n].first_vertex]]);
+      add(static_cast<std::uint32_t>(vertices.size() - 1), n);
+    }
   }
 }
 
@@ -386,7 +187,7 @@ std::uint32_t Sharpener::part_of_face(const Triangle& t) const {
   return kNoPlace;
 }
 
-void Sharpener::add_faces(const SurfaceMesh& surface, const std::vector<Placed>& of_all) {
+void Sharpener::add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all) {
   std::vector<std::uint32_t> at_strips;
   for (std::uint32_t face = 0; face < of_all.size(); ++face) {
     const std::uint32_t part = part_of_face(surface.mesh.triangles[face]);
@@ -394,16 +195,37 @@ void Sharpener::add_faces(const SurfaceMesh& surface, const std::vector<Placed>&
     at_strips.push_back(face);
     ++parts_[part].faces;
   }
-  for (std::size_t n = 1; n < parts_.size(); ++n) parts_[n].first_face = parts_[n - 1].first_face + parts_[n - 1].faces;
   std::vector<std::uint32_t> next;
-  for (const Part& each : parts_) next.push_back(each.first_face);
-  faces_.resize(at_strips.size());
-  for (const std::uint32_t face : at_strips) faces_[next[part_of_face(surface.mesh.triangles[face])]++] = face;
-  for (const std::uint32_t face : faces_) {
-    sources_.push_back(surface.sources[face]);
-    placed_.push_back(of_all[face]);
-    first_.triangles.push_back(surface.mesh.triangles[face]);
+  std::uint32_t count = 0;
+  for (Part& each : parts_) {
+    each.first_face = count;
+    each.faces += 2 * each.spares;
+    next.push_back(count);
+    count += each.faces;
   }
+  faces_.resize(count);
+  first_.triangles.assign(count, Triangle{});
+  first_.sources.assign(count, kHole);
+  first_.placed.assign(count, Placed::kInPlane);
+  first_.hopeless.assign(count, 0);
+  for (const std::uint32_t face : at_strips) {
+    const std::uint32_t n = next[part_of_face(surface.mesh.triangles[face])]++;
+    faces_[n] = face;
+    first_.triangles[n] = surface.mesh.triangles[face];
+    first_.sources[n] = surface.sources[face];
+    first_.placed[n] = of_all[face];
+  }
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    for (std::uint32_t spare = 0; spare < 2 * parts_[part].spares; ++spare) {
+      faces_[next[part]++] = static_cast<std::uint32_t>(surface.mesh.triangles.size());
+      surface.mesh.triangles.push_back({});
+      surface.sources.push_back(kHole);
+    }
+  }
+}
+
+void Sharpener::set_sources(std::vector<std::int32_t>& sources) const {
+  for (std::size_t n = 0; n < faces_.size(); ++n) sources[faces_[n]] = now_.sources[n];
 }
 
 std::size_t Sharpener::pulls() const {
@@ -424,50 +246,79 @@ SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all
     named[place_[vertex]] = 1;
     anew[part_of_[place_[vertex]]] = 1;
   }
-  for (std::size_t v = 0; v < kept_.size(); ++v) {
-    if (named[v] != 0 || named[now_.into[v]] != 0 || (all && anew[part_of_[v]] != 0)) kept_[v] = 1;
-  }
+  for (std::size_t v = 0; v < named.size(); ++v) named[v] = std::max(named[v], named[now_.into[v]]);
   std::vector<std::uint32_t> parts;
   for (std::uint32_t part = 0; part < parts_.size(); ++part) {
     if (anew[part] == 0) continue;
     parts_[part].may_turn = false;
     parts.push_back(part);
   }
-  return pull_parts(parts);
+  // Where that changes nothing, more is kept: what has faults may not stay as it is.
+  const State before = now_;
+  std::vector<std::uint32_t> left = parts;
+  for (int kept = 1; !left.empty() && kept <= kKeptFrom + 1; ++kept) {
+    for (const std::uint32_t part : left) keep_in(parts_[part], named, all || kept > kKeptFrom);
+    pull(left);
+    std::erase_if(left, [&](std::uint32_t part) { return has_changed(parts_[part], before); });
+  }
+  return changes_of(parts, before, named);
+}
+
+void Sharpener::keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all) {
+  for (std::uint32_t v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+    if (all) kept_[v] = kKeptFrom;
+    if (named[v] != 0) kept_[v] = static_cast<std::uint8_t>(std::min<int>(kept_[v] + 1, kKeptFrom));
+  }
+}
+
+bool Sharpener::has_changed(const Part& part, const State& before) const {
+  for (std::uint32_t v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+    if (before.places[v] != now_.places[v]) return true;
+  }
+  for (std::uint32_t face = part.first_face; face < part.first_face + part.faces; ++face) {
+    if (before.triangles[face] != now_.triangles[face]) return true;
+  }
+  return false;
 }
 
 SurfaceEdit Sharpener::undo() {
-  std::ranges::fill(kept_, 1);
+  std::ranges::fill(kept_, kKeptFrom);
   return sharpen();
 }
 
 SurfaceEdit Sharpener::pull_parts(const std::vector<std::uint32_t>& parts) {
   const State before = now_;
+  pull(parts);
+  return changes_of(parts, before, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
+}
+
+void Sharpener::pull(const std::vector<std::uint32_t>& parts) {
   parallel_for(parts.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       Part& part = parts_[parts[n]];
       part.pulls = StripPulls(*this, part, now_).pull_all();
     }
   });
-  return changes_of(parts, before);
 }
 
-SurfaceEdit Sharpener::changes_of(const std::vector<std::uint32_t>& parts, const State& before) const {
+// With the faces at `named` vertices, whether they have changed or not.
+SurfaceEdit Sharpener::changes_of(const std::vector<std::uint32_t>& parts, const State& before,
+                                  const std::vector<std::uint8_t>& named) const {
   SurfaceEdit edit;
   const auto has_moved = [&](std::uint32_t corner) {
     const std::uint32_t place = place_[corner];
-    return place != kNoPlace && before.places[place] != now_.places[place];
+    return place != kNoPlace && (before.places[place] != now_.places[place] || named[place] != 0);
   };
   for (const std::uint32_t n : parts) {
     const Part& part = parts_[n];
     for (std::uint32_t v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
-      if (!has_moved(strip_vertices_[v])) continue;
+      if (before.places[v] == now_.places[v]) continue;
       edit.vertices.push_back(strip_vertices_[v]);
       edit.places.push_back({before.places[v], now_.places[v]});
     }
     for (std::uint32_t face = part.first_face; face < part.first_face + part.faces; ++face) {
       const Triangle &was = before.triangles[face], &is = now_.triangles[face];
-      if (was == is && std::ranges::none_of(is, has_moved)) continue;
+      if (was == is && (is_gone(is) || std::ranges::none_of(is, has_moved))) continue;
       edit.faces.push_back(faces_[face]);
       edit.corners.push_back({was, is});
     }

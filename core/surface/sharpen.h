@@ -28,8 +28,9 @@ struct SharpenLimits {
 // same for any number of threads. Needs DefaultFloatingPoint.
 class Sharpener {
  public:
-  // Precondition: sources are triangles of `input`, or kHole. Both meshes must stay, but for what edits change.
-  Sharpener(const SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits);
+  // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
+  // `input`, or kHole. Both meshes must stay, but for what edits change.
+  Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 
@@ -37,11 +38,14 @@ class Sharpener {
   SurfaceEdit sharpen();
   // What changes if vertices are not pulled: those that were pulled into one of `vertices`, and these; and all that
   // hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled anew, and do
-  // not turn over. Numbers of other vertices are ignored. Takes time in proportion to these strips.
+  // not turn over. Numbers of other vertices are ignored. The edit has the faces at `vertices` in any case, so that
+  // faults there are looked for again. Takes time in proportion to these strips.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
   // Back to the surface as it was at first.
   SurfaceEdit undo();
 
+  // Sets those of faces to what they are of now.
+  void set_sources(std::vector<std::int32_t>& sources) const;
   [[nodiscard]] std::size_t pulls() const;
   // Where pulled vertices are now; each once for all that were pulled there.
   template <class Visit>
@@ -54,28 +58,43 @@ class Sharpener {
  private:
   friend class StripPulls;
   static constexpr std::uint32_t kNoPlace = UINT32_MAX;
+  static constexpr std::uint8_t kKeptFrom = 2;  // at faults once, vertices are not pulled; twice, gaps are left, too
   // Where a face is: in the plane of its source, or over a hole; off that plane; or so much turned against it, too,
   // that strips are looked for there. Fine tessellations are off, and hardly turned.
   enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
   struct State {
-    std::vector<Triangle> triangles;  // of the faces at strips; those that are gone have three equal corners
-    std::vector<Vec3> places;         // of the vertices of strips
-    std::vector<std::uint32_t> into;  // likewise, by their places
+    std::vector<Triangle> triangles;     // of the faces at strips; those that are gone have three equal corners
+    std::vector<std::int32_t> sources;   // likewise
+    std::vector<Placed> placed;          // likewise
+    std::vector<std::uint8_t> hopeless;  // of each first face of a gap, whether that could not be filled
+    std::vector<Vec3> places;            // of the vertices of strips
+    std::vector<std::uint32_t> into;     // likewise, by their places
   };
   // Strips that hang together: pulls see nothing of others. Its faces and vertices follow each other.
   struct Part {
     std::uint32_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;
+    std::uint32_t spares = 0;  // its last vertices, and half as many as there are spare faces
     std::size_t pulls = 0;
     bool may_turn = true;
   };
 
   [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source) const;
-  void find_strips(const SurfaceMesh& surface, const std::vector<Placed>& of_all);
-  void find_parts(const std::vector<Triangle>& triangles);
-  void add_faces(const SurfaceMesh& surface, const std::vector<Placed>& of_all);
+  void find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all);
+  void add_to_strips(const Triangle& t);
+  void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);
+  std::vector<std::uint32_t> find_parts(const std::vector<Triangle>& triangles);
+  void drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
+                  std::vector<std::uint32_t>& part);
+  void number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
+                       const std::vector<Placed>& of_all, std::vector<Vec3>& vertices);
+  void add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all);
   [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
   [[nodiscard]] SurfaceEdit pull_parts(const std::vector<std::uint32_t>& parts);
-  [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before) const;
+  void pull(const std::vector<std::uint32_t>& parts);
+  void keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all);
+  [[nodiscard]] bool has_changed(const Part& part, const State& before) const;
+  [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before,
+                                       const std::vector<std::uint8_t>& named) const;
 
   const std::vector<Vec3>& vertices_;  // those of no strip stay where they are
   const TriangleMesh& input_;
@@ -86,9 +105,7 @@ class Sharpener {
   std::vector<std::uint8_t> kept_;      // of each of these
   std::vector<std::uint32_t> part_of_;  // likewise
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> faces_;   // with a vertex of a strip
-  std::vector<std::int32_t> sources_;  // of these
-  std::vector<Placed> placed_;         // likewise
+  std::vector<std::uint32_t> faces_;  // with a vertex of a strip
   State first_, now_;
 };
 

@@ -16,6 +16,7 @@
 #include "core/surface/merge_planes.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/simplify.h"
+#include "core/surface/source_plane.h"
 #include "core/surface/thicken.h"
 #include "core/surface/vertex_places.h"
 
@@ -23,12 +24,7 @@ namespace raycone {
 namespace {
 
 void round_to_float(std::vector<Vec3>& vertices) {
-  // Volatile, since GCC 12.2 leaves some of several numbers out when it vectorizes this (-ftree-slp-vectorize).
-  const auto rounded = [](double x) {
-    const volatile auto single = static_cast<float>(x);
-    return static_cast<double>(single);
-  };
-  for (Vec3& p : vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
+  for (Vec3& p : vertices) p = rounded_to_float(p);
 }
 
 // Without the vertices that no triangle uses.
@@ -176,18 +172,25 @@ class SurfaceMaker {
   // nothing is pulled; where that does not help, nothing at all.
   void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins) {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
-    constexpr int kPartialRounds = 3, kSharpeningRounds = 8;
+    constexpr int kPartialRounds = 6, kSharpeningRounds = 11;
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
+    const std::size_t vertices = surface.mesh.vertices.size(), faces = surface.sources.size();
+    const auto drop_spares = [&] {
+      surface.mesh.vertices.resize(vertices);
+      surface.mesh.triangles.resize(faces);
+      surface.sources.resize(faces);
+    };
     Sharpener sharpener(surface, mesh_, {kOff * margins.inner * most, kReach * least, options_.single_precision});
     SurfaceEdit change = sharpener.sharpen();
-    if (sharpener.pulls() == 0) return;
+    if (sharpener.pulls() == 0) return drop_spares();
     NodeSet misplaced(inside_.lattice());
     for (int round = 0; round < kSharpeningRounds; ++round) {
       change.apply(surface.mesh);
       NearFaults near = faults_near(surface.mesh, change, inside_.lattice());
       misplaced.flip(changed_nodes(surface.mesh, change, inside_.lattice()));
       if (near.faults.none() && misplaced.empty()) {
+        sharpener.set_sources(surface.sources);
         drop_gone_faces(surface);
         is_sharpened_ = true;
         return;
@@ -199,6 +202,7 @@ class SurfaceMaker {
       if (change.faces.empty()) break;  // such faults do not come from pulls
     }
     sharpener.undo().apply(surface.mesh);
+    drop_spares();
   }
 
   static void drop_gone_faces(SurfaceMesh& surface) {

@@ -2,7 +2,7 @@
 
 usage: python3 tests/surfaces/sharp_edges.py RAYCONE [--resolution N] [--rotations R] [MESH.stl...]
 
-A cube, a wedge, a cylinder and the meshes are turned by R random rotations. Points on their sharp edges (15 degrees or
+A cube, a wedge, a cylinder, a fan and the meshes are turned by R random rotations. Points on their sharp edges (15 degrees or
 more) are *resolved* if the tetrahedron of the lattice that holds them has samples of both kinds.
 """
 import argparse
@@ -33,6 +33,22 @@ def cylinder(sides=32):
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.stack([np.cos(angles), np.sin(angles)], 1)
     vertices = np.vstack([np.c_[ring, np.zeros(sides)], np.c_[ring, np.full(sides, 1.7)], [[0, 0, 0], [0, 0, 1.7]]])
+    faces = []
+    for a in range(sides):
+        b = (a + 1) % sides
+        faces += [(a, b, sides + b), (a, sides + b, sides + a), (2 * sides, b, a), (2 * sides + 1, sides + a, sides + b)]
+    return vertices, np.array(faces)
+
+
+def fan():
+    """A prism over arcs of three radii and the steps between them, with a top that is not level: no two corners are
+    alike, some edges are convex, some are not, and arcs meet the top at all angles."""
+    arcs = [(0, 117, 1.0, 13), (122, 236, 0.5, 9), (241, 354, 0.75, 11)]  # degrees, radius, corners
+    polar = np.array([(np.radians(a), r) for first, last, r, n in arcs for a in np.linspace(first, last, n)])
+    outline = polar[:, 1:] * np.stack([np.cos(polar[:, 0]), np.sin(polar[:, 0])], 1)
+    sides = len(outline)
+    top = 0.6 + 0.3 * outline[:, 0] - 0.1 * outline[:, 1]
+    vertices = np.vstack([np.c_[outline, np.zeros(sides)], np.c_[outline, top], [[0, 0, 0], [0, 0, 0.6]]])
     faces = []
     for a in range(sides):
         b = (a + 1) % sides
@@ -147,7 +163,7 @@ def main():
     parser.add_argument("--rotations", type=int, default=3)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        shapes = [("cube", box(1)), ("wedge", wedge()), ("cylinder", cylinder())]
+        shapes = [("cube", box(1)), ("wedge", wedge()), ("cylinder", cylinder()), ("fan", fan())]
         shapes += [(os.path.basename(path), read_stl(path)) for path in arguments.meshes]
         print("| mesh | edges resolved, % | of them kept, % | largest distance, voxels | rms | of all edges kept, % | "
               "largest distance, voxels | rms | of the surface | volume, % | faces |")

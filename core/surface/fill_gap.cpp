@@ -1,0 +1,312 @@
+#include "core/surface/fill_gap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/surface/source_plane.h"
+
+namespace raycone {
+namespace {
+
+struct Point2 {
+  double x, y;
+};
+
+double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Cuts a polygon into triangles of which the worst is as good as can be. Where its border does not meet itself and all
+// triangles show their fronts, they do not overlap.
+class PolygonCutter {
+ public:
+  // `corners` go around counter-clockwise where `front` looks at the viewer.
+  PolygonCutter(const std::vector<Vec3>& corners, const Vec3& front)
+      : size_(corners.size()), best_(size_ * size_, {kWhole, 0}) {
+    const Vec3 across = std::abs(front.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = cross(across, front), v = cross(front, u);
+    for (const Vec3& p : corners) {
+      const Vec3 from_first = p - corners.front();
+      points_.push_back({dot(u, from_first), dot(v, from_first)});
+    }
+  }
+
+  // Numbers of corners; nothing where some triangle would have to be turned over.
+  std::vector<Triangle> triangles() {
+    for (std::size_t sides = 2; sides < size_; ++sides) {
+      for (std::size_t first = 0; first + sides < size_; ++first) cut(first, first + sides);
+    }
+    std::vector<Triangle> found;
+    if (at(0, size_ - 1).quality > 0.0) collect(0, size_ - 1, found);
+    return found;
+  }
+
+ private:
+  static constexpr double kWhole = 1e300;
+  struct Cut {
+    double quality;  // of the worst triangle between two corners and those between them
+    std::size_t corner;
+  };
+
+  [[nodiscard]] Cut& at(std::size_t first, std::size_t last) { return best_[first * size_ + last]; }
+  void cut(std::size_t first, std::size_t last) {
+    Cut best{0.0, 0};
+    for (std::size_t corner = first + 1; corner < last; ++corner) {
+      const double sides = std::min(at(first, corner).quality, at(corner, last).quality);
+      if (!(sides > best.quality)) continue;
+      const double quality = std::min(sides, quality_of(points_[first], points_[corner], points_[last]));
+      if (quality > best.quality) best = {quality, corner};
+    }
+    at(first, last) = best;
+  }
+  void collect(std::size_t first, std::size_t last, std::vector<Triangle>& found) {
+    if (last - first < 2) return;
+    const std::size_t corner = at(first, last).corner;
+    found.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(corner), static_cast<std::uint32_t>(last)});
+    collect(first, corner, found);
+    collect(corner, last, found);
+  }
+
+  // Twice the area by the square of the longest side; 0 for what is turned over.
+  [[nodiscard]] static double quality_of(const Point2& a, const Point2& b, const Point2& c) {
+    const auto square = [](const Point2& p, const Point2& q) {
+      return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+    };
+    const double area = turn(a, b, c), longest = std::max({square(a, b), square(b, c), square(c, a)});
+    return area > 0.0 ? area / longest : 0.0;
+  }
+
+  std::size_t size_;
+  std::vector<Point2> points_;
+  std::vector<Cut> best_;  // of each first and last corner
+};
+
+// Runs of sides in one plane are cut off one by one, each along the lines where the planes before and after it meet it,
+// until one plane is left.
+class GapFiller {
+ public:
+  GapFiller(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits)
+      : limits_(limits), loop_corners_(loop.corners.size()), points_(loop.corners) {
+    const std::size_t count = points_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const SourcePlane plane = source_plane(input, loop.sources[i]);
+      const Vec3 &from = points_[i], &to = points_[(i + 1) % count];
+      const auto is_same = [&](const Label& label) {
+        return is_same_plane(label.plane, plane, from, 2 * limits_.off) &&
+               is_same_plane(label.plane, plane, to, 2 * limits_.off);
+      };
+      auto label = std::ranges::find_if(labels_, is_same);
+      if (label == labels_.end()) label = labels_.insert(label, {plane, 0.0});
+      label->front += dot(label->plane.normal, loop.fronts[i]);
+      sides_.push_back({i, static_cast<std::size_t>(label - labels_.begin()), loop.sources[i]});
+    }
+    for (Label& label : labels_) {
+      if (label.front < 0.0) label.plane.normal = -1.0 * label.plane.normal;
+    }
+  }
+
+  std::optional<GapFill> fill() {
+    std::optional<GapFill> none;
+    const auto has_no_front = [](const Label& label) { return label.front == 0.0; };
+    if (std::ranges::any_of(labels_, has_no_front)) return none;
+    return fill_rest() ? std::optional(std::move(filled_)) : none;
+  }
+
+ private:
+  struct Label {
+    SourcePlane plane;  // which shows its front
+    double front;
+  };
+  struct Side {
+    std::size_t corner;  // where it begins
+    std::size_t label;
+    std::int32_t source;
+  };
+  struct Run {
+    bool has_corner;  // the planes before and after it are not one
+    double square;    // of the distance between its ends
+    std::size_t first, sides;
+    friend auto operator<=>(const Run&, const Run&) = default;
+  };
+  // A line along which a run is cut off.
+  struct Path {
+    std::vector<std::size_t> places;  // on the run, from 0
+    std::size_t turn = 0;             // which of them is the first that lines in the plane after the run begin at
+    bool has_new_corner = false;      // lines turn at a new corner before that one
+  };
+
+  [[nodiscard]] const Side& side(std::size_t i) const { return sides_[i % sides_.size()]; }
+  [[nodiscard]] bool is_in(std::size_t label, const Vec3& p) const {
+    return std::abs(labels_[label].plane.height(p)) <= limits_.off;
+  }
+
+  // Those between planes that are one first, the shortest first.
+  [[nodiscard]] std::vector<Run> find_runs() const {
+    std::vector<Run> runs;
+    const std::size_t count = sides_.size();
+    for (std::size_t first = 0; first < count; ++first) {
+      if (side(first + count - 1).label == side(first).label) continue;
+      std::size_t sides = 1;
+      while (side(first + sides).label == side(first).label) ++sides;
+      const Vec3 step = points_[side(first + sides).corner] - points_[side(first).corner];
+      runs.push_back({side(first + count - 1).label != side(first + sides).label, dot(step, step), first, sides});
+    }
+    std::ranges::sort(runs);
+    return runs;
+  }
+
+  bool fill_rest();
+  bool cut_off(const Run& run);
+  std::optional<Path> path_of(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
+                              std::size_t after);
+  std::optional<Path> path_by_corner(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
+                                     std::size_t after);
+  bool add_polygon(const std::vector<std::size_t>& corners, const Side& like);
+  void add_middle(std::size_t from, std::size_t to) { on_mesh_.push_back(0.5 * points_[from] + 0.5 * points_[to]); }
+
+  const GapLimits& limits_;
+  std::size_t loop_corners_;
+  std::vector<Vec3> points_;  // corners of the loop, then new ones
+  std::vector<Label> labels_;
+  std::vector<Side> sides_;  // of what is left
+  GapFill filled_;
+  std::vector<Vec3> on_mesh_;  // what must be
+  int tries_ = 0;
+};
+
+// What one run is cut off by may not suit the next one: then another one goes first. In the end, each triangle and each
+// line must be on the mesh: a plane may go on where the mesh does not.
+bool GapFiller::fill_rest() {
+  constexpr int kMostTries = 32;
+  const std::vector<Run> runs = find_runs();
+  if (runs.size() <= 1) {
+    std::vector<std::size_t> rest;
+    for (const Side& side : sides_) rest.push_back(side.corner);
+    return add_polygon(rest, sides_.front()) && limits_.are_on_mesh(on_mesh_);
+  }
+  for (const Run& run : runs) {
+    if (++tries_ > kMostTries) return false;
+    const std::vector<Side> sides = sides_;
+    const std::size_t corners = filled_.corners.size(), triangles = filled_.triangles.size(), checks = on_mesh_.size();
+    if (cut_off(run) && fill_rest()) return true;
+    sides_ = sides;
+    filled_.corners.resize(corners);
+    points_.resize(loop_corners_ + corners);
+    filled_.triangles.resize(triangles);
+    filled_.sources.resize(triangles);
+    on_mesh_.resize(checks);
+  }
+  return false;
+}
+
+// Where lines meet in a corner of the run, there is no new one.
+std::optional<GapFiller::Path> GapFiller::path_by_corner(const std::vector<std::size_t>& corners, std::size_t label,
+                                                         std::size_t before, std::size_t after) {
+  const std::size_t last = corners.size() - 1;
+  Path path;
+  std::size_t corner = SIZE_MAX, first_after = last;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Vec3& p = points_[corners[i]];
+    const bool in_before = i == 0 || is_in(before, p), in_after = i == last || is_in(after, p);
+    if (in_before && in_after && corner == SIZE_MAX) corner = i;
+    if (corner == SIZE_MAX && in_after) first_after = std::min(first_after, i);
+  }
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Vec3& p = points_[corners[i]];
+    const bool is_first_part = corner == SIZE_MAX ? i < first_after : i < corner;
+    const bool is_on = i == 0 || i == last || i == corner || is_in(is_first_part ? before : after, p);
+    if (i == (corner == SIZE_MAX ? first_after : corner)) path.turn = path.places.size();
+    if (is_on) path.places.push_back(i);
+  }
+  if (corner != SIZE_MAX) return path;
+  path.has_new_corner = true;
+  if (filled_.corners.size() >= limits_.new_corners) return std::nullopt;
+  const std::array planes{labels_[label].plane, labels_[before].plane, labels_[after].plane};
+  const Vec3 &from = points_[corners.front()], &to = points_[corners.back()];
+  std::optional<Vec3> point = meeting_point(planes, 0.5 * from + 0.5 * to);
+  if (!point) return std::nullopt;
+  if (limits_.single_precision) point = rounded_to_float(*point);
+  for (const Vec3& end : {from, to}) {
+    const Vec3 step = *point - end;
+    if (!(dot(step, step) <= limits_.reach * limits_.reach)) return std::nullopt;
+  }
+  if (!limits_.are_on_mesh({&*point, 1})) return std::nullopt;
+  points_.push_back(*point);
+  return path;
+}
+
+std::optional<GapFiller::Path> GapFiller::path_of(const std::vector<std::size_t>& corners, std::size_t label,
+                                                  std::size_t before, std::size_t after) {
+  if (before != after) return path_by_corner(corners, label, before, after);
+  Path path;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (i == 0 || i + 1 == corners.size() || is_in(before, points_[corners[i]])) path.places.push_back(i);
+  }
+  return path;
+}
+
+// Where this fails, it has added some of what it should.
+bool GapFiller::cut_off(const Run& run) {
+  const Side before = side(run.first + sides_.size() - 1), after = side(run.first + run.sides), here = side(run.first);
+  std::vector<std::size_t> corners;
+  for (std::size_t i = 0; i <= run.sides; ++i) corners.push_back(side(run.first + i).corner);
+  const std::size_t points = points_.size();
+  const std::optional<Path> path = path_of(corners, here.label, before.label, after.label);
+  if (!path) return false;
+
+  std::vector<Side> line;
+  const auto add_to_line = [&](std::size_t corner, const Side& like) {
+    line.push_back({corner, like.label, like.source});
+  };
+  for (std::size_t n = 0; n + 1 < path->places.size(); ++n) {
+    const std::size_t from = path->places[n], to = path->places[n + 1];
+    const bool turns = path->has_new_corner && n + 1 == path->turn;
+    std::vector<std::size_t> polygon(corners.begin() + static_cast<std::ptrdiff_t>(from),
+                                     corners.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+    add_to_line(corners[from], n < path->turn ? before : after);
+    if (turns) {
+      polygon.push_back(points);
+      add_to_line(points, after);
+    }
+    if (polygon.size() < 3) continue;
+    if (turns) {
+      add_middle(corners[from], points);
+      add_middle(points, corners[to]);
+    } else {
+      add_middle(corners[from], corners[to]);
+    }
+    if (!add_polygon(polygon, side(run.first + from))) return false;
+  }
+  std::ranges::rotate(sides_, sides_.begin() + static_cast<std::ptrdiff_t>(run.first));
+  sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(run.sides));
+  sides_.insert(sides_.begin(), line.begin(), line.end());
+  if (path->has_new_corner) filled_.corners.push_back(points_.back());
+  return true;
+}
+
+bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side& like) {
+  std::vector<Vec3> points;
+  for (const std::size_t corner : corners) points.push_back(points_[corner]);
+  if (corners.size() < 3) return true;  // two sides that meet
+  const std::vector<Triangle> triangles = PolygonCutter(points, labels_[like.label].plane.normal).triangles();
+  if (triangles.empty()) return false;
+  for (const auto& [a, b, c] : triangles) {
+    on_mesh_.push_back((1.0 / 3) * points[a] + (1.0 / 3) * points[b] + (1.0 / 3) * points[c]);
+    filled_.triangles.push_back({static_cast<std::uint32_t>(corners[a]), static_cast<std::uint32_t>(corners[b]),
+                                 static_cast<std::uint32_t>(corners[c])});
+    filled_.sources.push_back(like.source);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits) {
+  return GapFiller(loop, input, limits).fill();
+}
+
+}  // namespace raycone

@@ -1,0 +1,41 @@
+// Gaps of a surface filled by planes of the mesh.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// What is around a gap: a simple loop, in the direction in which faces of the gap run along it. Side i leads from
+// corner i to the next one.
+struct GapLoop {
+  std::vector<Vec3> corners;
+  std::vector<std::int32_t> sources;  // of the face behind each side, in whose plane the side is
+  std::vector<Vec3> fronts;           // of these faces: a normal of any length
+};
+
+struct GapFill {
+  std::vector<Triangle> triangles;  // of corners of the loop, and after these the new ones
+  std::vector<std::int32_t> sources;
+  std::vector<Vec3> corners;  // new ones
+};
+
+struct GapLimits {
+  double off = 0.0;    // how far points of one plane are from it at most, world units
+  double reach = 0.0;  // how far new corners may be from the loop, likewise
+  std::size_t new_corners = 0;
+  bool single_precision = false;                           // new corners are rounded to float
+  std::function<bool(std::span<const Vec3>)> are_on_mesh;  // all of them
+};
+
+// The planes behind a loop, continued until they meet: in straight lines between corners of the loop that are in both,
+// and in points of three planes. Nothing where that leads off the mesh, or planes would have to be folded. Whether the
+// triangles meet others, or each other, is not looked at beyond their planes.
+[[nodiscard]] std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits);
+
+}  // namespace raycone

@@ -1,0 +1,32 @@
+// Planes of triangles, and where they meet.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+struct SourcePlane {
+  Vec3 point, normal;  // of length 1; zero where the triangle has no area
+  std::int32_t source;
+
+  [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p - point); }
+};
+
+// Precondition: `source` is a triangle of `input`.
+[[nodiscard]] SourcePlane source_plane(const TriangleMesh& input, std::int32_t source);
+
+// Whether two planes are one within `off`, as far as `near` tells; whichever way they look.
+[[nodiscard]] bool is_same_plane(const SourcePlane& a, const SourcePlane& b, const Vec3& near, double off);
+
+// The point of two or three planes that is nearest to `near`. Nothing for other numbers of planes, nor where they
+// hardly have a point in common. Precondition: of two planes the angle is known to be large enough.
+[[nodiscard]] std::optional<Vec3> meeting_point(std::span<const SourcePlane> planes, const Vec3& near);
+
+// As vertices of surfaces in single precision are rounded.
+[[nodiscard]] Vec3 rounded_to_float(const Vec3& p);
+
+}  // namespace raycone

@@ -20,7 +20,7 @@ std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const Fi
 
 double tolerance_of_evaluation(const FieldOptions& options) {
   if (!(options.tolerance > 0.0) || !options.rule_only()) return options.tolerance;
-  const double rough = thresholds_to_settle(options.rule).empty() ? 1e-3 : 1e-6;
+  const double rough = thresholds_to_settle(options.rule).empty() ? 3e-5 : 1e-6;
   return std::max(options.tolerance, rough);
 }
 

@@ -68,8 +68,8 @@ LatticeSums::LatticeSums(std::size_t rows, std::size_t samples, std::span<double
   on_surface_ = diagnostics_->on_surface.data();
 }
 
-LatticeSums::LatticeSums(std::size_t rows, std::size_t samples)
-    : rows_(rows), samples_(samples), counts_(true), diagnostics_(nullptr) {
+LatticeSums::LatticeSums(std::size_t rows, std::size_t samples, OnSurface on_surface)
+    : rows_(rows), samples_(samples), counts_(true), marks_(on_surface == OnSurface::kCount), diagnostics_(nullptr) {
   if (is_dense(rows, samples)) make_dense();
 }
 

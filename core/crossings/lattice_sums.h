@@ -80,11 +80,12 @@ class LatticeSums {
   // `crossings` receives n of each sample, an integer; empty where nobody asks for it. `diagnostics`, where given, its
   // crossings (which need the other ones), degenerate and on_surface. All must outlive this.
   LatticeSums(std::size_t rows, std::size_t samples, std::span<double> crossings, const Diagnostics* diagnostics);
-  // For who asks for runs().
-  LatticeSums(std::size_t rows, std::size_t samples);
+  // For who asks for runs(), and for who asks for nothing else: finish() returns 0.
+  enum class OnSurface { kCount, kIgnore };
+  LatticeSums(std::size_t rows, std::size_t samples, OnSurface on_surface = OnSurface::kCount);
 
-  // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up; for
-  // runs(), sizeof(double) more.
+  // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up;
+  // for runs(), sizeof(double) more.
   static constexpr double kBytesPerSample = 3.0;
 
   // What one thread has to say.
@@ -93,7 +94,8 @@ class LatticeSums {
     explicit Collector(LatticeSums& sums) : sums_(sums) {}
     void add(std::size_t row, const TriangleCrossing& crossing) {
       if (crossing.crossed > 0 && sums_.counts_) count(row, crossing);
-      if (crossing.ties > 0 || crossing.on_begin < crossing.on_end) sums_.add_degenerate(row, crossing);
+      if (sums_.marks_ && (crossing.ties > 0 || crossing.on_begin < crossing.on_end))
+        sums_.add_degenerate(row, crossing);
       ties_ += crossing.met * static_cast<std::uint64_t>(crossing.ties);
     }
     // To be called when all has been said.
@@ -134,6 +136,7 @@ class LatticeSums {
 
   std::size_t rows_, samples_;
   bool counts_;                        // whether anybody asks for n
+  bool marks_ = true;                  // whether anybody asks what is on the surface or degenerate
   std::vector<double> own_crossings_;  // where runs were asked for and there are too many
   std::span<double> crossings_;
   const Diagnostics* diagnostics_;

@@ -16,14 +16,21 @@ namespace raycone {
 template <class Set>
 class LatticeTile {
  public:
-  enum class Sum { kCheapest, kDirect };
+  enum class Sum { kCheapest, kDirect, kUnsettled };  // the last one: the cheapest, not settled at half-integers
   LatticeTile(const ScaledMesh& mesh, Set set, Sum sum = Sum::kCheapest)
       : mesh_(mesh), set_(std::move(set)), sum_(sum) {}
 
   // `crossings`: of the sample's ray; any where the mesh does not count them. Evaluates all where the tile is full.
   void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings) {
+    knows_caps_ = false;
+    add(index, scaled_query, crossings, 0);
+  }
+
+  // With the crossings of mesh.changes().caps; of all samples, or of none.
+  void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings, std::int64_t cap_crossings) {
     indices_[samples_.count] = index;
     crossings_[samples_.count] = crossings;
+    of_closed_[samples_.count] = crossings - cap_crossings;
     samples_.add(scaled_query);
     if (samples_.count == kTile) evaluate();
   }
@@ -36,7 +43,9 @@ class LatticeTile {
     if (sum_ == Sum::kDirect) {
       mesh_.set_direct_values(samples_, {crossings_.data(), count}, {w.data(), count});
     } else {
-      mesh_.set_values(samples_, {crossings_.data(), count}, {w.data(), count});
+      mesh_.set_values(samples_, {crossings_.data(), count}, {w.data(), count},
+                       sum_ == Sum::kUnsettled ? ScaledMesh::Settling::kLeft : ScaledMesh::Settling::kDone,
+                       {of_closed_.data(), knows_caps_ ? count : 0});
     }
     for (std::size_t i = 0; i < count; ++i) set_(indices_[i], samples_.query(i), w[i]);
     samples_.clear();
@@ -47,7 +56,8 @@ class LatticeTile {
   Set set_;
   Sum sum_;
   std::array<std::size_t, kTile> indices_;
-  std::array<std::int64_t, kTile> crossings_;
+  std::array<std::int64_t, kTile> crossings_, of_closed_;
+  bool knows_caps_ = true;
   SampleTile samples_;
 };
 

@@ -140,7 +140,7 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
                                                : LatticeSums(rows.size(), samples, {}, nullptr);
   collect_crossings(mesh, lattice, block, rows, sums);
   const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, nullptr, diagnostics, true);
-  LatticeSums of_caps(rows.size(), samples);
+  LatticeSums of_caps(rows.size(), samples, LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.blocks().caps, rows, of_caps);
   const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
     const std::span<const double> each = values.subspan(row * samples, samples);

@@ -6,13 +6,15 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/boundary/change_bound.h"
+#include "core/evaluation/lattice_polynomial.h"
 #include "core/evaluation/lattice_tile.h"
 #include "core/evaluation/side_of.h"
+#include "core/far/matrix_kernel.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -20,20 +22,19 @@ namespace {
 
 // In samples: the sides of the blocks that are begun with, blocks so small that no certificate is sought for them, and
 // rows that are worth one.
-constexpr std::array<std::size_t, 3> kSides{kTile, 32, 32};
+constexpr std::array<std::size_t, 3> kSides{96, 48, 48};
 constexpr std::size_t kFew = 4;
 constexpr std::size_t kRow = 32;
 constexpr std::size_t kHopeless = 8 * kFew;  // where certificates failed: parts are as few as that
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 
-// Of interpolation between nodes: the largest blocks, by how much it may be off, turns, and how many steps there are
-// between nodes along the longest side at most. It leaves the more samples undecided the longer steps are, this share
-// of all per turn that it may be off (measured); of shorter ones, nodes are too many.
-constexpr std::size_t kInterpolated = 8192;
+// Of interpolation between nodes: how much it may be off, turns, and what it leaves undecided of a block, relative to
+// how much of the change in the block that is (measured). Nodes and samples that are left are counted alike; this share
+// of the samples takes as long as interpolation of all.
 constexpr double kMostBend = 0.04;
-constexpr std::size_t kMostSteps = 6;
-constexpr double kUndecided = 10.0;
-// Larger blocks than this are divided, unless interpolation leaves so few samples to evaluate, of each.
+constexpr double kUndecided = 1.0;
+constexpr double kInterpolation = 1.0 / 100;
+// Larger blocks than this are divided, unless interpolation takes so little, of each.
 constexpr std::size_t kSmall = 1024;
 constexpr double kWorthIt = 1.0 / 16;
 
@@ -53,51 +54,50 @@ struct Block {
   [[nodiscard]] bool is_cut() const { return !caps.empty() && !edges.empty() && !is_row(); }
 };
 
-// Samples that a grid of nodes consists of: their numbers along each axis, the first and the last of a block included.
-// Interpolation along an axis is linear between two nodes, or quadratic between three, of which every second is shared.
+// Samples of a block that polynomials are put through, one axis after the other.
 struct NodeGrid {
-  std::array<std::vector<std::size_t>, 3> along;
-  std::array<bool, 3> is_quadratic{};
+  std::vector<AxisNodes> along;
   double bend = 0.0;    // turns by which samples are at most off what is interpolated between nodes
   double growth = 1.0;  // of what values at nodes are off by
 
-  [[nodiscard]] std::size_t size() const { return along[0].size() * along[1].size() * along[2].size(); }
-  [[nodiscard]] std::size_t index(const std::array<std::size_t, 3>& node) const {
-    return (node[2] * along[1].size() + node[1]) * along[0].size() + node[0];
-  }
-};
+  [[nodiscard]] std::size_t size(std::size_t axis) const { return along[axis].nodes().size(); }
 
-// Of a sample along one axis: the first of the nodes around it, and how much each of them counts.
-struct PlaceInGrid {
-  std::size_t node;
-  std::array<double, 3> weights;
-
-  // value(node) of the nodes that count.
-  template <class Value>
-  [[nodiscard]] double between(const Value& value) const {
+  // At a sample, by its number along each axis of the block; `values` at nodes.
+  [[nodiscard]] double at(std::span<const double> values, const std::array<std::size_t, 3>& sample) const {
     double sum = 0.0;
-    for (std::size_t n = 0; n < weights.size(); ++n) {
-      if (weights[n] != 0.0) sum += weights[n] * value(node + n);
+    for (std::size_t k = 0, n = 0; k < size(2); ++k) {
+      double layer = 0.0;
+      for (std::size_t j = 0; j < size(1); ++j) {
+        double row = 0.0;
+        for (std::size_t i = 0; i < size(0); ++i) row += along[0].weights(i)[sample[0]] * values[n++];
+        layer += along[1].weights(j)[sample[1]] * row;
+      }
+      sum += along[2].weights(k)[sample[2]] * layer;
     }
     return sum;
   }
 };
 
-// What interpolation along one axis is off by, turns, and how much it makes of what values at nodes are off by.
-struct AxisError {
-  double bend, growth;
-};
-
-// Of a function whose second derivatives are at most `second`, between two nodes of this distance.
-AxisError linear_error(double step, double second) { return {step * step / 8 * second, 1.0}; }
-
-// Of one whose third derivatives are at most `third`, between three nodes of these distances. The error is a sixth of
-// the derivative times (x - a)(x - b)(x - c), which grows with either distance; of equal ones it is known.
-AxisError quadratic_error(double step, double next, double third) {
-  const double longer = std::max(step, next), shorter = std::min(step, next);
-  const double product = 2 / (3 * std::numbers::sqrt3) * longer * longer * longer;
-  return {product / 6 * third, 1 + longer * longer / (2 * (longer + shorter) * shorter)};
+// Neighbours in space have codes that are near to each other (Morton).
+std::uint64_t code_of(const std::array<std::size_t, 3>& sample) {
+  static constexpr auto kSpread = [] {
+    std::array<std::uint32_t, 256> spread{};
+    for (std::uint32_t n = 0; n < spread.size(); ++n) {
+      for (std::uint32_t bit = 0; bit < 8; ++bit) spread[n] |= (n >> bit & 1U) << (3 * bit);
+    }
+    return spread;
+  }();
+  std::uint64_t code = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint64_t low = kSpread[sample[axis] & 255U], high = kSpread[sample[axis] >> 8U & 255U];
+    code |= (low | high << 24U) << axis;
+  }
+  return code;
 }
+
+struct InterpolationScratch {
+  std::vector<double> layer, nodes, values;
+};
 
 // A block in which the rest is smooth: w less the crossings of the closed mesh where no cap comes in or, where no cone
 // does (a row passes through none), less those of the mesh. It is known well enough once it is known at one sample, or
@@ -105,30 +105,12 @@ AxisError quadratic_error(double step, double next, double third) {
 struct Candidate {
   Block block;
   bool closed;
-  double change;  // from the sample in the middle to others at most, turns
-  ChangeBound::Bounds bounds;
-  NodeGrid nodes;
+  double gradient = 0.0;  // its length is at most this, turns per unit
+  double change = 0.0;    // from the sample in the middle to others at most, turns
+  NodeGrid nodes{};
   std::vector<std::array<std::size_t, 3>> samples;  // one in the middle, or the nodes
   std::vector<double> rest;                         // at each of them
 };
-
-bool overlap(const Box& a, const Box& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(a.lower[axis] <= b.upper[axis] && b.lower[axis] <= a.upper[axis])) return false;
-  }
-  return true;
-}
-
-// Of all points from which a ray meets the edge.
-Box cone_of(const DirectedEdge& edge) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::min(edge.from[axis], edge.to[axis]);
-    box.upper[axis] = std::max(edge.from[axis], edge.to[axis]);
-  }
-  box.lower.x = -std::numeric_limits<double>::infinity();
-  return box;
-}
 
 class RuleBlocks {
  public:
@@ -140,13 +122,15 @@ class RuleBlocks {
         crossings_(crossings),
         cap_crossings_(cap_crossings),
         sides_(sides),
-        changes_(mesh.changes().bound) {
+        changes_(mesh.changes().bound),
+        matrices_(matrix_kernel(mesh.options().level)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       blocks_[axis] = (coordinates(axis).size() + kSides[axis] - 1) / kSides[axis];
     }
-    const std::span<const Box> caps = changes_.wide_caps();
-    sort(caps, columns_.caps);
-    for (const DirectedEdge& edge : mesh.boundary().directed_edges()) cones_.push_back(cone_of(edge));
+    sort(changes_.wide_caps(), columns_.caps);
+    for (const DirectedEdge& edge : mesh.boundary().directed_edges()) {
+      cones_.push_back(FlatPiece::cone_of(edge.from, edge.to));
+    }
     sort(cones_, columns_.edges);
   }
 
@@ -161,7 +145,7 @@ class RuleBlocks {
     const Block whole = block(n);
     std::vector<Block> blocks{whole}, undecided;
     if (!by_certificates && n % kFewBlocks != 0) {
-      evaluate_each(whole, blocks);
+      evaluate_rows(whole);
       return whole.size();
     }
     while (!blocks.empty()) {
@@ -184,7 +168,7 @@ class RuleBlocks {
       for (const Candidate& candidate : interpolated) interpolate(candidate, undecided);
       blocks = std::move(parts);
     }
-    evaluate_each(whole, undecided);
+    evaluate_each(undecided);
     tried_ += whole.size();
     for (const Block& b : undecided) in_vain_ += b.size();
     return whole.size();
@@ -213,6 +197,13 @@ class RuleBlocks {
     return crossings_.runs(row).at(sample[0]) - (closed ? cap_crossings_.runs(row).at(sample[0]) : 0.0);
   }
 
+  template <class Tile>
+  void add(Tile& tile, std::size_t index, const std::array<std::size_t, 3>& sample) const {
+    const std::size_t row = row_of(sample[1], sample[2]);
+    tile.add(index, query(sample), static_cast<std::int64_t>(crossings_.runs(row).at(sample[0])),
+             static_cast<std::int64_t>(cap_crossings_.runs(row).at(sample[0])));
+  }
+
   // visit(begin, end of the indices, crossings) for runs of samples whose crossings are the same, as long as it returns
   // true. Returns whether it always did.
   template <class Visit>
@@ -238,18 +229,23 @@ class RuleBlocks {
   }
 
   [[nodiscard]] Block block(std::size_t n) const;
-  void sort(std::span<const Box> boxes, std::vector<std::vector<std::uint32_t>>& columns) const;
+  void sort(std::span<const FlatPiece> pieces, std::vector<std::vector<std::uint32_t>>& columns) const;
   void look_at(Block block, std::vector<Candidate>& candidates, std::vector<Block>& parts,
                std::vector<Block>& undecided) const;
   [[nodiscard]] Candidate candidate_of(Block block, const Box& box) const;
-  void evaluate_each(const Block& whole, std::span<const Block> blocks) const;
+  void evaluate_rows(const Block& block) const;
+  void evaluate_each(std::span<const Block> blocks) const;
   void evaluate(std::span<Candidate> candidates) const;
+  [[nodiscard]] bool decide(const Block& block, bool closed, double rest, double needed) const;
   [[nodiscard]] bool decide(const Candidate& candidate) const;
-  [[nodiscard]] NodeGrid grid_of(const Candidate& candidate, std::size_t steps) const;
-  [[nodiscard]] AxisError choose_order(NodeGrid& grid, std::size_t axis, const ChangeBound::Bounds& bounds) const;
+  [[nodiscard]] std::pair<std::array<std::size_t, 3>, double> middle_of(const Block& block, const Box& box) const;
+  [[nodiscard]] std::optional<NodeGrid> grid_of(const Candidate& candidate) const;
   [[nodiscard]] bool choose_nodes(Candidate& candidate) const;
   void interpolate(const Candidate& candidate, std::vector<Block>& undecided) const;
-  [[nodiscard]] std::vector<PlaceInGrid> places_along(const Block& block, const NodeGrid& grid, std::size_t axis) const;
+  void interpolate(const Candidate& candidate, const Block& part, double needed, InterpolationScratch& scratch,
+                   std::vector<Block>& undecided) const;
+  void set_row(const std::array<std::size_t, 3>& first, std::span<const double> rest, bool closed, double needed,
+               std::vector<Block>& undecided) const;
   void divide(Block block, std::vector<Block>& parts) const;
 
   const ScaledMesh& mesh_;
@@ -259,9 +255,10 @@ class RuleBlocks {
   const LatticeSums& cap_crossings_;
   std::span<std::uint8_t> sides_;
   const ChangeBound& changes_;
+  const MatrixKernel matrices_;
   std::atomic<std::size_t> tried_ = 0, in_vain_ = 0;  // samples
   std::array<std::size_t, 3> blocks_;                 // per axis
-  std::vector<Box> cones_;                            // of the rays that meet an edge, one per edge
+  std::vector<FlatPiece> cones_;                      // of the rays that meet an edge, one per edge
   struct {
     std::vector<std::vector<std::uint32_t>> caps, edges;  // what projects into a column of blocks along x
   } columns_;
@@ -280,7 +277,7 @@ Block RuleBlocks::block(std::size_t n) const {
   return block;
 }
 
-void RuleBlocks::sort(std::span<const Box> boxes, std::vector<std::vector<std::uint32_t>>& columns) const {
+void RuleBlocks::sort(std::span<const FlatPiece> pieces, std::vector<std::vector<std::uint32_t>>& columns) const {
   // The blocks whose boxes may meet [lower, upper].
   const auto range = [&](std::size_t axis, double lower, double upper) {
     const std::vector<double>& all = coordinates(axis);
@@ -290,8 +287,8 @@ void RuleBlocks::sort(std::span<const Box> boxes, std::vector<std::vector<std::u
                       std::min(last, all.size() - 1) / kSides[axis]};
   };
   columns.resize(blocks_[1] * blocks_[2]);
-  for (std::uint32_t number = 0; number < boxes.size(); ++number) {
-    const Box& box = boxes[number];
+  for (std::uint32_t number = 0; number < pieces.size(); ++number) {
+    const Box& box = pieces[number].box();
     const auto [y_first, y_last] = range(1, box.lower.y, box.upper.y);
     const auto [z_first, z_last] = range(2, box.lower.z, box.upper.z);
     for (std::size_t z = z_first; z <= z_last; ++z) {
@@ -308,9 +305,9 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
     return;
   }
   const Box box = box_of(block);
-  std::erase_if(block.caps, [&](std::uint32_t piece) { return !overlap(box, changes_.wide_caps()[piece]); });
+  std::erase_if(block.caps, [&](std::uint32_t piece) { return !changes_.wide_caps()[piece].may_meet(box); });
   if (block.caps.empty()) block.edges.clear();
-  std::erase_if(block.edges, [&](std::uint32_t edge) { return !overlap(box, cones_[edge]); });
+  std::erase_if(block.edges, [&](std::uint32_t edge) { return !cones_[edge].may_meet(box); });
   if (!block.is_cut()) {
     Candidate candidate = candidate_of(std::move(block), box);
     if (candidate.change <= kMostChange) {
@@ -324,19 +321,12 @@ void RuleBlocks::look_at(Block block, std::vector<Candidate>& candidates, std::v
 }
 
 Candidate RuleBlocks::candidate_of(Block block, const Box& box) const {
-  Candidate candidate{std::move(block), false, 0.0, {}, {}, {{}}, {}};
+  Candidate candidate{std::move(block), false, 0.0, 0.0, {}, {{}}, {}};
   candidate.closed = candidate.block.caps.empty();
-  double to_farthest = 0.0;  // its square
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double lower = box.lower[static_cast<int>(axis)], upper = box.upper[static_cast<int>(axis)];
-    std::size_t& middle = candidate.samples.front()[axis];
-    middle = candidate.block.first[axis] + candidate.block.count(axis) / 2;
-    const double x = coordinates(axis)[middle], extent = std::max(x - lower, upper - x);
-    to_farthest += extent * extent;
-  }
-  const double radius = std::sqrt(to_farthest);
-  candidate.bounds = changes_.in(box, kMostChange / radius);
-  candidate.change = radius * candidate.bounds.gradient * (1 + kRounding);
+  const auto [middle, radius] = middle_of(candidate.block, box);
+  candidate.samples.front() = middle;
+  candidate.gradient = changes_.gradient_in(box, kMostChange / radius);
+  candidate.change = radius * candidate.gradient * (1 + kRounding);
   return candidate;
 }
 
@@ -350,22 +340,22 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
     candidate.rest.resize(candidate.samples.size());
     for (std::size_t n = 0; n < candidate.samples.size(); ++n) places.push_back({&candidate, n});
   }
-  LatticeTile tile(mesh_, [&](std::size_t index, const Vec3&, double w) {
+  auto set = [&](std::size_t index, const Vec3&, double w) {
     const auto [candidate, n] = places[index];
     candidate->rest[n] = w - crossings_at(candidate->samples[n], candidate->closed);
-  });
+  };
+  using Tile = LatticeTile<decltype(set)>;
+  Tile tile(mesh_, set, Tile::Sum::kUnsettled);
   for (std::size_t index = 0; index < places.size(); ++index) {
     const std::array<std::size_t, 3>& sample = places[index].candidate->samples[places[index].sample];
-    tile.add(index, query(sample), static_cast<std::int64_t>(crossings_at(sample, false)));
+    add(tile, index, sample);
   }
   tile.evaluate();
 }
 
-// Sets the sides of the candidate's samples if they are certain.
-bool RuleBlocks::decide(const Candidate& candidate) const {
-  const double rest = candidate.rest[0];
-  const double needed = candidate.change + mesh_.doubt() + kRounding * (1 + std::abs(rest));
-  return for_each_run(candidate.block, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
+// Sets the sides of the block's samples if they are certain, the rest being off by at most `needed`.
+bool RuleBlocks::decide(const Block& block, bool closed, double rest, double needed) const {
+  return for_each_run(block, closed, [&](std::size_t begin, std::size_t end, double n) {
     const double w = n + rest;
     if (!is_certain(w, needed)) return false;
     std::fill(sides_.begin() + static_cast<std::ptrdiff_t>(begin), sides_.begin() + static_cast<std::ptrdiff_t>(end),
@@ -374,161 +364,219 @@ bool RuleBlocks::decide(const Candidate& candidate) const {
   });
 }
 
-// So many steps between nodes along the longest side, fewer along others. What is off along one axis is interpolated
-// along the next.
-NodeGrid RuleBlocks::grid_of(const Candidate& candidate, std::size_t steps) const {
-  const Block& block = candidate.block;
-  const Vec3 size = box_of(block).upper - box_of(block).lower;
-  const double longest = std::max({size.x, size.y, size.z});
-  NodeGrid grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t most = block.count(axis) - 1;
-    const double share = longest > 0.0 ? size[static_cast<int>(axis)] / longest : 0.0;
-    const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(steps)));
-    const std::size_t parts = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(most, 1));
-    for (std::size_t n = 0; n <= parts && (n == 0 || most > 0); ++n) {
-      grid.along[axis].push_back(block.first[axis] + n * most / parts);
-    }
-    const AxisError error = choose_order(grid, axis, candidate.bounds);
-    grid.bend = error.bend + error.growth * grid.bend;
-    grid.growth *= error.growth;
-  }
-  grid.bend *= 1 + kRounding;
-  return grid;
+bool RuleBlocks::decide(const Candidate& candidate) const {
+  const double rest = candidate.rest[0];
+  return decide(candidate.block, candidate.closed, rest,
+                candidate.change + mesh_.doubt() + kRounding * (1 + std::abs(rest)));
 }
 
-// Of the order that is less off.
-AxisError RuleBlocks::choose_order(NodeGrid& grid, std::size_t axis, const ChangeBound::Bounds& bounds) const {
-  const std::vector<std::size_t>& nodes = grid.along[axis];
-  const auto step = [&](std::size_t n) { return coordinates(axis)[nodes[n + 1]] - coordinates(axis)[nodes[n]]; };
-  AxisError linear{0.0, 1.0}, quadratic{0.0, 1.0};
-  for (std::size_t n = 0; n + 1 < nodes.size(); ++n) {
-    if (nodes[n + 1] - nodes[n] > 1) linear.bend = std::max(linear.bend, linear_error(step(n), bounds.second).bend);
+// The sample in the middle, and how far others are from it at most.
+std::pair<std::array<std::size_t, 3>, double> RuleBlocks::middle_of(const Block& block, const Box& box) const {
+  std::array<std::size_t, 3> middle;
+  double to_farthest = 0.0;  // its square
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    middle[axis] = block.first[axis] + block.count(axis) / 2;
+    const double x = coordinates(axis)[middle[axis]];
+    const double extent = std::max(x - box.lower[static_cast<int>(axis)], box.upper[static_cast<int>(axis)] - x);
+    to_farthest += extent * extent;
   }
-  if (nodes.size() % 2 == 0 || linear.bend == 0.0) return linear;
-  for (std::size_t n = 0; n + 2 < nodes.size(); n += 2) {
-    const AxisError here = quadratic_error(step(n), step(n + 1), bounds.third);
-    quadratic = {std::max(quadratic.bend, here.bend), std::max(quadratic.growth, here.growth)};
+  return {middle, std::sqrt(to_farthest)};
+}
+
+// The nodes for which they and the samples that are left undecided are fewest together, about. None where there are
+// none that are within kMostBend.
+std::optional<NodeGrid> RuleBlocks::grid_of(const Candidate& candidate) const {
+  const Block& block = candidate.block;
+  const Box box = box_of(block);
+  const ChangeSums derivatives = changes_.derivatives_in(box);
+  const auto samples = static_cast<double>(block.size());
+  // Of an axis, with nodes at Chebyshev's points; samples are next to them.
+  const auto error = [&](std::size_t axis, std::size_t degree) {
+    constexpr double kNextTo = 1.5;
+    if (degree + 1 >= block.count(axis)) return 0.0;
+    const double quarter = (box.upper[static_cast<int>(axis)] - box.lower[static_cast<int>(axis)]) / 4;
+    return 2 * kNextTo * std::pow(quarter, static_cast<double>(degree + 1)) * derivatives[degree];
+  };
+  std::array<std::size_t, 3> degrees{}, best{};
+  double least = std::numeric_limits<double>::infinity();
+  for (double bend = kMostBend; bend > 1e-5; bend /= 2) {
+    double nodes = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      while (degrees[axis] + 1 < derivatives.size() && error(axis, degrees[axis]) > bend / 4) ++degrees[axis];
+      if (error(axis, degrees[axis]) > bend / 4) nodes = std::numeric_limits<double>::infinity();
+      nodes *= static_cast<double>(degrees[axis] + 1);
+    }
+    const double cost = nodes + std::min(kUndecided * bend / candidate.change, 1.0) * samples;
+    if (cost < least) least = cost, best = degrees;
+    if (nodes > least) break;
   }
-  grid.is_quadratic[axis] = quadratic.bend < linear.bend;
-  return grid.is_quadratic[axis] ? quadratic : linear;
+  if (!(least < samples)) return std::nullopt;
+  NodeGrid grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::span<const double> all(coordinates(axis));
+    const AxisNodes& along = grid.along.emplace_back(all.subspan(block.first[axis], block.count(axis)), best[axis]);
+    grid.bend = along.error(derivatives[along.degree()]) + along.growth() * grid.bend;
+    grid.growth *= along.growth();
+  }
+  grid.bend *= 1 + kRounding;
+  if (!(grid.bend <= kMostBend)) return std::nullopt;
+  return grid;
 }
 
 // Makes the nodes that leave fewest samples to evaluate the candidate's samples. Returns whether that is worth it.
 bool RuleBlocks::choose_nodes(Candidate& candidate) const {
-  const std::size_t size = candidate.block.size();
-  if (size > kInterpolated) return false;
-  const auto samples = static_cast<double>(size);
-  double least = samples;
-  for (std::size_t steps = 1; steps <= kMostSteps; ++steps) {
-    NodeGrid grid = grid_of(candidate, steps);
-    const double cost = static_cast<double>(grid.size()) + std::min(kUndecided * grid.bend, 1.0) * samples;
-    if (steps > 1 && !(cost < least)) continue;
-    least = cost;
-    candidate.nodes = std::move(grid);
-  }
-  if (!(candidate.nodes.bend <= kMostBend) || !(least < samples) || (size > kSmall && least > kWorthIt * samples))
-    return false;
-  const auto& [xs, ys, zs] = candidate.nodes.along;
+  std::optional<NodeGrid> grid = grid_of(candidate);
+  if (!grid) return false;
+  const Block& block = candidate.block;
+  const auto samples = static_cast<double>(block.size());
+  const double cost = static_cast<double>(grid->size(0) * grid->size(1) * grid->size(2)) +
+                      (kInterpolation + std::min(kUndecided * grid->bend / candidate.change, 1.0)) * samples;
+  if (!(cost < samples) || (block.size() > kSmall && cost > kWorthIt * samples)) return false;
   candidate.samples.clear();
-  for (const std::size_t k : zs) {
-    for (const std::size_t j : ys) {
-      for (const std::size_t i : xs) candidate.samples.push_back({i, j, k});
+  for (const std::size_t k : grid->along[2].nodes()) {
+    for (const std::size_t j : grid->along[1].nodes()) {
+      for (const std::size_t i : grid->along[0].nodes()) {
+        candidate.samples.push_back({block.first[0] + i, block.first[1] + j, block.first[2] + k});
+      }
     }
   }
+  candidate.nodes = std::move(*grid);
   return true;
 }
 
 // Sets the sides that are certain by interpolation between the nodes. Adds the other samples, in runs.
 void RuleBlocks::interpolate(const Candidate& candidate, std::vector<Block>& undecided) const {
+  constexpr std::array<std::size_t, 3> kPart{24, 12, 12};  // samples
   const Block& block = candidate.block;
-  const NodeGrid& grid = candidate.nodes;
   double largest = 0.0;
   for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
-  const double needed = grid.bend + grid.growth * (mesh_.doubt() + 32 * kRounding * (1 + largest));
-  const std::array<std::vector<PlaceInGrid>, 3> places{places_along(block, grid, 0), places_along(block, grid, 1),
-                                                       places_along(block, grid, 2)};
-  std::vector<double> nodes(grid.along[0].size()), rest(block.count(0));  // along a row
+  const double doubt = mesh_.doubt() + 32 * kRounding * (1 + largest);
+  const double needed = candidate.nodes.bend + candidate.nodes.growth * doubt;
+  InterpolationScratch scratch;
+  Block part;
+  for (std::size_t k = block.first[2]; k < block.last[2]; k = part.last[2]) {
+    for (std::size_t j = block.first[1]; j < block.last[1]; j = part.last[1]) {
+      for (std::size_t i = block.first[0]; i < block.last[0]; i = part.last[0]) {
+        part.first = {i, j, k};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          part.last[axis] = std::min(part.first[axis] + kPart[axis], block.last[axis]);
+        }
+        interpolate(candidate, part, needed, scratch, undecided);
+      }
+    }
+  }
+}
+
+// Of a part of the candidate's block: from the sample in its middle alone, where the part is decided by that.
+void RuleBlocks::interpolate(const Candidate& candidate, const Block& part, double needed,
+                             InterpolationScratch& scratch, std::vector<Block>& undecided) const {
+  const NodeGrid& grid = candidate.nodes;
+  const AxisNodes &x = grid.along[0], &y = grid.along[1], &z = grid.along[2];
+  const auto at = [&](std::size_t axis, std::size_t sample) { return sample - candidate.block.first[axis]; };
+  const auto [middle, radius] = middle_of(part, box_of(part));
+  const double rest = grid.at(candidate.rest, {at(0, middle[0]), at(1, middle[1]), at(2, middle[2])});
+  if (decide(part, candidate.closed, rest, needed + radius * candidate.gradient * (1 + kRounding))) return;
+  const std::size_t nx = grid.size(0), ny = grid.size(1), rows = part.count(1), width = (part.count(0) + 7) / 8 * 8;
+  auto& [layer, nodes, values] = scratch;  // the nodes along x and y of a layer; those along x of its rows; its rows
+  nodes.resize(rows * nx);
+  values.resize(rows * width);
+  for (std::size_t k = part.first[2]; k < part.last[2]; ++k) {
+    layer.assign(ny * nx, 0.0);
+    for (std::size_t n = 0; n < grid.size(2); ++n) {
+      const double weight = z.weights(n)[at(2, k)];
+      for (std::size_t i = 0; i < layer.size(); ++i) layer[i] += weight * candidate.rest[n * layer.size() + i];
+    }
+    std::ranges::fill(nodes, 0.0);
+    for (std::size_t n = 0; n < ny; ++n) {
+      for (std::size_t j = 0; j < rows; ++j) {
+        const double weight = y.weights(n)[at(1, part.first[1]) + j];
+        for (std::size_t i = 0; i < nx; ++i) nodes[j * nx + i] += weight * layer[n * nx + i];
+      }
+    }
+    matrices_.multiply({nodes.data(), nx, 1}, {x.weights(0).data() + at(0, part.first[0]), x.row_size()},
+                       {values.data(), width}, rows, nx, width);
+    for (std::size_t j = 0; j < rows; ++j) {
+      set_row({part.first[0], part.first[1] + j, k}, std::span(values).subspan(j * width, part.count(0)),
+              candidate.closed, needed, undecided);
+    }
+  }
+}
+
+// Of samples of a row, from the first one on; some at a time, where all of them are on the same side.
+void RuleBlocks::set_row(const std::array<std::size_t, 3>& first, std::span<const double> rest, bool closed,
+                         double needed, std::vector<Block>& undecided) const {
+  constexpr std::size_t kTogether = 16;
+  const auto [x, j, k] = first;
+  const std::size_t row = row_of(j, k) * rows_.xs.size();
+  const Block part{{x, j, k}, {x + rest.size(), j + 1, k + 1}};
+  for_each_run(part, closed, [&](std::size_t begin, std::size_t end, double n) {
+    for (std::size_t some = begin - row; some < end - row; some += kTogether) {
+      const std::size_t last = std::min(some + kTogether, end - row);
+      const auto values = rest.subspan(some - x, last - some);
+      double least = values[0], most = values[0];
+      for (const double value : values) least = std::min(least, value), most = std::max(most, value);
+      const double middle = n + (least + most) / 2;
+      if (is_certain(middle, needed + (most - least) / 2 + kRounding * (1 + std::abs(least) + std::abs(most)))) {
+        std::fill_n(sides_.begin() + static_cast<std::ptrdiff_t>(row + some), last - some, holds(side_.rule(), middle));
+        continue;
+      }
+      for (std::size_t i = some; i < last; ++i) {
+        const double w = n + rest[i - x];
+        if (is_certain(w, needed)) {
+          sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
+        } else if (i > begin - row && !undecided.empty() && undecided.back().last == std::array{i, j + 1, k + 1}) {
+          ++undecided.back().last[0];  // of the same run
+        } else {
+          undecided.push_back({{i, j, k}, {i + 1, j + 1, k + 1}});
+        }
+      }
+    }
+    return true;
+  });
+}
+
+// All of its samples. Those that share a ray are cheaper together.
+void RuleBlocks::evaluate_rows(const Block& block) const {
+  RowTiles tiles(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
   for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
     for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
-      const PlaceInGrid &y = places[1][j - block.first[1]], &z = places[2][k - block.first[2]];
-      for (std::size_t n = 0; n < nodes.size(); ++n) {
-        nodes[n] = z.between([&](std::size_t of_z) {
-          return y.between([&](std::size_t of_y) { return candidate.rest[grid.index({n, of_y, of_z})]; });
-        });
-      }
-      for (std::size_t i = 0; i < rest.size(); ++i) {
-        rest[i] = places[0][i].between([&](std::size_t n) { return nodes[n]; });
-      }
-      const std::size_t row = row_of(j, k) * rows_.xs.size();
-      const Block part{{block.first[0], j, k}, {block.last[0], j + 1, k + 1}};
-      for_each_run(part, candidate.closed, [&](std::size_t begin, std::size_t end, double n) {
-        for (std::size_t i = begin - row; i < end - row; ++i) {
-          const double w = n + rest[i - block.first[0]];
-          if (is_certain(w, needed)) {
-            sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
-          } else if (i > begin - row && !undecided.empty() && undecided.back().last == std::array{i, j + 1, k + 1}) {
-            ++undecided.back().last[0];  // of the same run
-          } else {
-            undecided.push_back({{i, j, k}, {i + 1, j + 1, k + 1}});
-          }
-        }
-        return true;
-      });
-    }
-  }
-}
-
-// Of each of the block's samples along an axis.
-std::vector<PlaceInGrid> RuleBlocks::places_along(const Block& block, const NodeGrid& grid, std::size_t axis) const {
-  const std::vector<std::size_t>& nodes = grid.along[axis];
-  const std::vector<double>& all = coordinates(axis);
-  const std::size_t order = grid.is_quadratic[axis] ? 2 : 1;
-  std::vector<PlaceInGrid> places;
-  for (std::size_t i = block.first[axis], node = 0; i < block.last[axis]; ++i) {
-    while (node + order + 1 < nodes.size() && nodes[node + order] <= i) node += order;
-    PlaceInGrid& place = places.emplace_back(PlaceInGrid{node, {1.0, 0.0, 0.0}});
-    if (nodes.size() == 1) continue;
-    for (std::size_t n = 0; n <= order; ++n) {  // Lagrange
-      place.weights[n] = 1.0;
-      const double x = all[nodes[node + n]];
-      for (std::size_t other = 0; other <= order; ++other) {
-        const double from = all[nodes[node + other]];
-        if (other != n) place.weights[n] *= (all[i] - from) / (x - from);
-      }
-    }
-  }
-  return places;
-}
-
-// Row by row: samples that share a ray are cheaper together.
-void RuleBlocks::evaluate_each(const Block& whole, std::span<const Block> blocks) const {
-  std::vector<std::vector<SampleRange>> rows(whole.count(1) * whole.count(2));
-  for (const Block& block : blocks) {
-    for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
-      for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
-        rows[(k - whole.first[2]) * whole.count(1) + j - whole.first[1]].push_back(
-            {static_cast<std::uint32_t>(block.first[0]), static_cast<std::uint32_t>(block.last[0])});
-      }
-    }
-  }
-  RowTiles tiles(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    const std::size_t j = whole.first[1] + n % whole.count(1), k = whole.first[2] + n / whole.count(1);
-    const std::size_t row = row_of(j, k);
-    std::size_t samples = 0;
-    for (const SampleRange& range : rows[n]) samples += range.size();
-    tiles.begin_row(samples);
-    for (const SampleRange& range : rows[n]) {
-      crossings_.runs(row).for_each(range.begin, range.end, [&](std::size_t begin, std::size_t end, double crossed) {
-        for (std::size_t i = begin; i < end; ++i) {
-          tiles.add(row * rows_.xs.size() + i, query({i, j, k}), static_cast<std::int64_t>(crossed));
-        }
-        return true;
-      });
+      const std::size_t row = row_of(j, k);
+      tiles.begin_row(block.count(0));
+      crossings_.runs(row).for_each(
+          block.first[0], block.last[0], [&](std::size_t begin, std::size_t end, double crossed) {
+            for (std::size_t i = begin; i < end; ++i) {
+              tiles.add(row * rows_.xs.size() + i, query({i, j, k}), static_cast<std::int64_t>(crossed));
+            }
+            return true;
+          });
     }
   }
   tiles.finish();
+}
+
+// Neighbours in space together: the far field then takes much the same way for them.
+void RuleBlocks::evaluate_each(std::span<const Block> blocks) const {
+  struct Place {
+    std::uint64_t code;
+    std::array<std::size_t, 3> sample;
+  };
+  std::vector<Place> places;
+  for (const Block& block : blocks) {
+    for (std::size_t k = block.first[2]; k < block.last[2]; ++k) {
+      for (std::size_t j = block.first[1]; j < block.last[1]; ++j) {
+        for (std::size_t i = block.first[0]; i < block.last[0]; ++i) {
+          places.push_back({code_of({i, j, k}), {i, j, k}});
+        }
+      }
+    }
+  }
+  std::ranges::sort(places, {}, &Place::code);
+  LatticeTile tile(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
+  for (const Place& place : places) {
+    const auto& [i, j, k] = place.sample;
+    add(tile, row_of(j, k) * rows_.xs.size() + i, place.sample);
+  }
+  tile.evaluate();
 }
 
 // Into rows at last where caps and cones come in, else along all of its longer sides.

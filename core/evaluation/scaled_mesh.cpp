@@ -92,7 +92,7 @@ const Changes& ScaledMesh::changes() const {
   std::call_once(changes_built_, [this] {
     const Box box = bounding_box(mesh_);
     const Vec3 size = box.upper - box.lower;
-    changes_.emplace(make_caps(boundary_, kNarrow * std::max({size.x, size.y, size.z})));
+    changes_.emplace(make_caps(boundary_, kNarrow * std::max({size.x, size.y, size.z})), options_.level);
   });
   return *changes_;
 }
@@ -164,7 +164,7 @@ TriangleCrossing ScaledMesh::crossing(std::uint32_t triangle, const Row& row) co
 }
 
 void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
-                            Settling settling) const {
+                            Settling settling, std::span<const std::int64_t> of_closed) const {
   if (!term_) {
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
@@ -173,7 +173,11 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     set_direct_values(samples, crossings, values, settling);
     return;
   }
-  far_->winding_numbers(samples, crossings, values);
+  if (of_closed.empty() || !far_->counts_crossings()) {
+    far_->winding_numbers(samples, crossings, values);
+  } else {
+    far_->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, in another order
+  }
   if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values);
 }
 

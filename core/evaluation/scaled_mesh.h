@@ -36,7 +36,7 @@ struct Changes {
   Caps caps;
   ChangeBound bound;
 
-  explicit Changes(Caps all) : caps(std::move(all)), bound(caps) {}
+  Changes(Caps all, SimdLevel level) : caps(std::move(all)), bound(caps, level) {}
 };
 
 // What blocks of lattices are evaluated with.
@@ -116,9 +116,9 @@ class ScaledMesh {
 
   // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
   // thresholds, is on the right side of it or is it, whatever the tolerance; with kLeft it need not be. At least one
-  // sample.
+  // sample. `of_closed`, where who calls knows them: crossings less those of changes().caps.
   void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
-                  Settling settling = Settling::kDone) const;
+                  Settling settling = Settling::kDone, std::span<const std::int64_t> of_closed = {}) const;
   // The same by the direct sum.
   void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                          Settling settling = Settling::kDone) const;

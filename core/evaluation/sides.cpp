@@ -84,7 +84,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
     set_sides_of_runs(rows, rule, crossings, sides, done);
     return tally;
   }
-  LatticeSums of_caps(rows.size(), rows.xs.size());
+  LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);
   scan_triangles(mesh.changes().caps.mesh, rows, std::nullopt, of_caps);
   of_caps.arrange();
   finish_all(rows, of_caps);

@@ -68,13 +68,20 @@ std::int64_t FarField::cap_crossings(const Vec3& q) const {
 
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                                std::span<double> w) const {
+  std::array<std::int64_t, kTile> whole{};
+  for (std::size_t i = 0; sources_ == FarSources::kCaps && i < samples.count; ++i) {
+    whole[i] = crossings[i] - cap_crossings(samples.query(i));
+  }
+  winding_numbers_of_closed(samples, whole, w);
+}
+
+void FarField::winding_numbers_of_closed(SampleTile& samples, std::span<const std::int64_t> whole,
+                                         std::span<double> w) const {
   samples.fill_up();
   FarTile result;
   kernel_.sum(*tree_, samples, result);
   for (std::size_t i = 0; i < samples.count; ++i) {
-    std::int64_t whole = result.near.turns(i);
-    if (sources_ == FarSources::kCaps) whole += crossings[i] - cap_crossings(samples.query(i));
-    w[i] = static_cast<double>(whole) + (result.near.argument[i] + result.far[i]);
+    w[i] = static_cast<double>(whole[i] + result.near.turns(i)) + (result.near.argument[i] + result.far[i]);
   }
   near_terms_.fetch_add(result.near_terms, std::memory_order_relaxed);
   far_terms_.fetch_add(result.far_terms, std::memory_order_relaxed);

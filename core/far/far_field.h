@@ -35,6 +35,8 @@ class FarField final : public BoundaryTerm {
   [[nodiscard]] bool counts_crossings() const override { return sources_ == FarSources::kCaps; }
   void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                        std::span<double> w) const override;
+  // The same, `whole` being the crossings of the mesh less those of the caps; of sources that are caps.
+  void winding_numbers_of_closed(SampleTile& samples, std::span<const std::int64_t> whole, std::span<double> w) const;
   [[nodiscard]] double doubt() const override { return doubt_; }
   // That of one with so many sources at most.
   [[nodiscard]] static double doubt(double tolerance, double sources);

@@ -11,7 +11,7 @@
 namespace raycone::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // By definition: over the corners of triangles.
@@ -40,7 +40,7 @@ TEST(Scale, IsThatOfTheVerticesThatTrianglesUse) {
   for (int i = 0; i < 2000; ++i) {
     std::vector<Vec3> corners(3);
     for (Vec3& p : corners) p = {number(), number(), number()};
-    for (const double far : {0.0, 5e-324, 1.0, 1.7e308, -1.7e308, kInfinity, -kInfinity, kNan, number()}) {
+    for (const double far : {0.0, 5e-324, 1.0, 1.7e308, -1.7e308, kInfinite, -kInfinite, kNan, number()}) {
       const TriangleMesh mesh = with_unused(corners, {far, number(), far});
       ASSERT_EQ(largest_exponent(mesh), exponent_by_definition(mesh)) << "mesh " << i << ", unused " << far;
       const TriangleMesh alone{corners, {{0, 1, 2}}};

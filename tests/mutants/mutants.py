@@ -338,8 +338,8 @@ MUTANTS = [
 
     # --- Rules on lattices ---
     Mutant("blocks_do_not_change", "a block is decided only if the bound of the change allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.change + mesh_.doubt()",
-         "const double needed = 0 * candidate.change + mesh_.doubt()")]),
+        ("core/evaluation/rule_blocks.cpp", "candidate.change + mesh_.doubt()",
+         "0 * candidate.change + mesh_.doubt()")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
         ("core/evaluation/rule_blocks.cpp", "return visit(index + from, index + to, n - caps);",
          "return visit(index + from, index + to, n - 0 * caps);")]),
@@ -350,10 +350,15 @@ MUTANTS = [
         ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_)",
          "if (std::abs(w - threshold) <= -doubt_)")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
-        ("core/boundary/change_bound.cpp", "sum += of_length;", "sum += 0.3 * of_length;")]),
+        ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",
+         "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), hn::Mul(hn::Set(d, 3.0), square));")]),
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
-        ("core/boundary/change_bound.cpp", "if (source.area == 0.0) return;",
-         "if (source.area <= 1.0) return;")]),
+        ("core/boundary/change_kernel.cpp", "hn::IfThenElseZero(taken, hn::Add(of_length, of_area))",
+         "hn::IfThenElseZero(taken, hn::Add(of_length, hn::Mul(hn::Zero(d), of_area)))")]),
+    Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [
+        ("core/boundary/flat_piece.cpp", "> reach + kPlaneError", "> 0.5 * reach + kPlaneError")]),
+    Mutant("planes_are_exact", "normals and differences round", [
+        ("core/boundary/flat_piece.cpp", "constexpr double kPlaneError = 0x1p-44;", "constexpr double kPlaneError = 0.0;")]),
 
     # --- Self-intersections ---
     Mutant("neighbours_intersect", "what is shared does not count", [
@@ -524,14 +529,17 @@ MUTANTS = [
         ("core/far/source_tree.cpp", "  node.radius *= 1 + kRounding;", "  node.radius *= 0.99;")]),
     Mutant("area_too_small", "a node has the area of its triangles", [
         ("core/far/source_tree.cpp", "  node.area *= 1 + kSumRounding;", "  node.area *= 0.99;")]),
-    Mutant("bends_less", "second derivatives of a piece are at most 2 L / (4 pi d^3)", [
-        ("core/boundary/change_bound.cpp", "second += 2 * of_length / distance;",
-         "second += 0.2 * of_length / distance;")]),
+    Mutant("bends_less", "derivatives of a piece are at most k! L / (4 pi d^(k+1))", [
+        ("core/boundary/change_kernel.cpp", "of_length = hn::Mul(of_length, inverse);",
+         "of_length = hn::Mul(hn::Set(d, 0.1), hn::Mul(of_length, inverse));")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = grid.bend + grid.growth",
-         "const double needed = 0 * grid.bend + grid.growth")]),
-    Mutant("interpolation_between_wrong_nodes", "a sample is interpolated between the nodes around it", [
-        ("core/evaluation/rule_blocks.cpp", "node + order + 1 < nodes.size()", "node + order + 8 < nodes.size()")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.nodes.bend + ", "const double needed = ")]),
+    Mutant("polynomials_are_closer", "a polynomial is off by the product of the distances from its nodes", [
+        ("core/evaluation/lattice_polynomial.cpp", "product_ * derivative", "product_ / 8 * derivative")]),
+    Mutant("parts_do_not_change", "a part of an interpolated block is decided only if the change in it allows it", [
+        ("core/evaluation/rule_blocks.cpp", "needed + radius * candidate.gradient", "needed + 0 * radius * candidate.gradient")]),
+    Mutant("interpolation_with_wrong_weights", "a sample has the weights of its place in the block", [
+        ("core/evaluation/rule_blocks.cpp", "x.weights(0).data() + at(0, part.first[0])", "x.weights(0).data()")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

@@ -86,7 +86,9 @@ TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
   }
   double reach = 0.0, extent = 1.0, largest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double lower = std::min({a[axis], b[axis], c[axis]}), upper = std::max({a[axis], b[axis], c[axis]});
+    // Not of lists, whose loops branch.
+    const double lower = std::min(std::min(a[axis], b[axis]), c[axis]);
+    const double upper = std::max(std::max(a[axis], b[axis]), c[axis]);
     reach += bound[axis] * (upper - lower);
     extent += upper - lower;
     if (axis == 0) largest = std::max(std::abs(lower), std::abs(upper));

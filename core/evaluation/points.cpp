@@ -1,5 +1,7 @@
 #include "core/evaluation/points.h"
 
+#include <xmmintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -7,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/evaluation/point_tile.h"
 #include "core/machine/buckets.h"
 #include "core/machine/threads.h"
 
@@ -122,73 +125,133 @@ class CoherentOrder {
   Buckets<SortedPoint> buckets_;
 };
 
-// What all triangles say about one point.
-struct PointCrossings {
-  std::int64_t n = 0;  // the sum of the signs of the ray's crossings
-  std::int64_t ties = 0;
-  bool on_surface = false;
+// ---- Closed meshes ---------------------------------------------------------------------------------------------
 
-  void add(const TriangleCrossing& crossing) {
-    if (crossing.crossed > 0) n += crossing.sigma;
-    if (crossing.met > 0) ties += crossing.ties;
-    on_surface = on_surface || crossing.on_begin < crossing.on_end;
-  }
-};
-
-// Points that are evaluated together, and where their values belong.
-class PointTile {
+// Points of a closed mesh whose rays may meet it, in an order in which neighbours share triangles.
+class MeetingRays {
  public:
-  explicit PointTile(ScaledMesh::Settling settling) : settling_(settling) {}
-
-  [[nodiscard]] bool full() const { return samples_.count == kTile; }
-
-  void add(std::size_t index, const Vec3& scaled_point) {
-    indices_[samples_.count] = index;
-    samples_.add(scaled_point);
+  // Of the points [begin, end).
+  MeetingRays(const ScaledMesh& mesh, std::span<const Vec3> points, std::size_t begin, std::size_t end)
+      : buckets_(end - begin), indices_(end - begin) {
+    for (std::size_t first = begin; first < end; first += kTile) {
+      add(mesh, points.subspan(first, std::min(kTile, end - first)), static_cast<std::uint32_t>(first));
+    }
+    std::partial_sum(next_.begin(), next_.end(), next_.begin());
+    ordered_.resize(count_);
+    for (std::size_t i = 0; i < count_; ++i) ordered_[next_[buckets_[i]]++] = indices_[i];
   }
 
-  // Evaluates the points, if any, and forgets them.
-  Tally evaluate(const ScaledMesh& mesh, std::span<double> values, const Diagnostics* diagnostics) {
-    Tally tally;
-    if (samples_.count == 0) return tally;
-    std::array<std::int64_t, kTile> n;
-    std::array<double, kTile> w;
-    for (std::size_t i = 0; i < samples_.count; ++i) {
-      const PointCrossings crossings = crossings_at(mesh, samples_.query(i));
-      n[i] = crossings.n;
-      tally += {static_cast<std::uint64_t>(crossings.ties), crossings.on_surface ? 1U : 0U};
-      if (!diagnostics) continue;
-      diagnostics->crossings[indices_[i]] = crossings.n;
-      diagnostics->degenerate[indices_[i]] = crossings.ties;
-      diagnostics->on_surface[indices_[i]] = crossings.on_surface ? 1 : 0;
-    }
-    mesh.set_values(samples_, {n.data(), samples_.count}, {w.data(), samples_.count}, settling_);
-    for (std::size_t i = 0; i < samples_.count; ++i) {
-      values[indices_[i]] = w[i];
-      if (diagnostics) diagnostics->error_bound[indices_[i]] = mesh.error_bound(samples_.query(i), w[i], n[i]);
-    }
-    samples_.clear();
-    return tally;
-  }
+  [[nodiscard]] std::span<const std::uint32_t> ordered() const { return ordered_; }
+
+  // Those that scaling would change. They are not among the ordered ones.
+  [[nodiscard]] std::span<const std::uint32_t> others() const { return others_; }
 
  private:
-  PointCrossings crossings_at(const ScaledMesh& mesh, const Vec3& q) {
-    PointCrossings result;
-    const auto decide = [&](std::uint32_t triangle) { result.add(mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}})); };
-    if (mesh.options().ray_engine == RayEngine::kScan) {
-      result.n += mesh.grid().crossings(q, decide);
-    } else {
-      mesh.rays().find_candidates(q, candidates_);
-      for (const std::uint32_t triangle : candidates_) decide(triangle);
+  // At most kTile, of which the first one has that index.
+  void add(const ScaledMesh& mesh, std::span<const Vec3> points, std::uint32_t first) {
+    std::array<Vec3, kTile> queries;
+    std::array<ProjectedGrid::Place, kTile> places;
+    for (std::size_t i = 0; i < points.size(); ++i) queries[i] = mesh.to_scale(points[i]);
+    mesh.grid().find_places({queries.data(), points.size()}, {places.data(), points.size()});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::uint32_t index = first + static_cast<std::uint32_t>(i);
+      const bool is_other = !mesh.can_take(points[i]);
+      if (is_other) others_.push_back(index);
+      const std::uint32_t is_next = places[i].may_meet && !is_other ? 1 : 0;
+      const auto bucket = static_cast<std::uint8_t>(places[i].morton_code / kCodesPerBucket);
+      buckets_[count_] = bucket;
+      indices_[count_] = index;
+      next_[bucket + std::size_t{1}] += is_next;
+      count_ += is_next;
     }
-    return result;
   }
 
-  ScaledMesh::Settling settling_;
-  std::array<std::size_t, kTile> indices_;
-  SampleTile samples_;
-  std::vector<std::uint32_t> candidates_;
+  static constexpr std::size_t kBuckets = 256, kCodesPerBucket = ProjectedGrid::kMortonCodes / kBuckets;
+  std::size_t count_ = 0;
+  std::vector<std::uint8_t> buckets_;
+  std::vector<std::uint32_t> indices_, ordered_, others_;
+  std::array<std::uint32_t, kBuckets + 1> next_{};
 };
+
+void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
+  const std::size_t count = end - begin;
+  std::ranges::fill(values.subspan(begin, count), 0.0);
+  if (!diagnostics) return;
+  std::ranges::fill(diagnostics->crossings.subspan(begin, count), 0);
+  std::ranges::fill(diagnostics->degenerate.subspan(begin, count), 0);
+  std::ranges::fill(diagnostics->on_surface.subspan(begin, count), std::uint8_t{0});
+  std::ranges::fill(diagnostics->error_bound.subspan(begin, count), 0.0);
+}
+
+Tally evaluate_in_order(const ScaledMesh& mesh, std::span<const Vec3> points, std::span<const std::uint32_t> order,
+                        PointTile& tile) {
+  constexpr std::size_t kAhead = 24;  // points that are fetched meanwhile
+  Tally tally;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const Vec3& later = points[order[std::min(n + kAhead, order.size() - 1)]];
+    _mm_prefetch(reinterpret_cast<const char*>(&later), _MM_HINT_T0);
+    tile.add(order[n], mesh.to_scale(points[order[n]]));
+    if (tile.full()) tally += tile.evaluate(mesh);
+  }
+  return tally += tile.evaluate(mesh);
+}
+
+// Adds up what threads have counted: integers, so that their order does not matter.
+class SharedTally {
+ public:
+  void add(const Tally& tally) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    total_ += tally;
+  }
+  [[nodiscard]] const Tally& total() const { return total_; }
+
+ private:
+  std::mutex mutex_;
+  Tally total_;
+};
+
+// How many points one thread puts in order together: many, so that neighbours are near, but some for each thread.
+std::size_t points_of_a_part(std::size_t points) {
+  constexpr std::size_t kLeast = 4096, kMost = std::size_t{1} << 16, kPartsPerThread = 8;
+  return std::clamp(points / (kPartsPerThread * static_cast<std::size_t>(thread_count())), kLeast, kMost);
+}
+
+// Of less than 2^32 points. Many rays meet nothing: their values are 0. The others are put in order, some at a time,
+// each thread for itself.
+Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
+                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
+  const ScaledMesh& scaled = meshes.scaled();
+  // What the points need is built before the loops over them, within which threads would wait for one another.
+  scaled.prepare_points();
+  const std::size_t size = points_of_a_part(points.size());
+  std::vector<std::vector<std::uint32_t>> others((points.size() + size - 1) / size);
+  SharedTally tally;
+  parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
+    PointTile tile(values, diagnostics, settling);
+    for (std::size_t part = first; part < last; ++part) {
+      const std::size_t begin = part * size, end = std::min(begin + size, points.size());
+      set_to_zero(begin, end, values, diagnostics);
+      const MeetingRays rays(scaled, points, begin, end);
+      tally.add(evaluate_in_order(scaled, points, rays.ordered(), tile));
+      others[part].assign(rays.others().begin(), rays.others().end());
+      if (done) done->fetch_add(end - begin - others[part].size(), std::memory_order_relaxed);
+    }
+  });
+  const bool all_taken = std::ranges::all_of(others, [](const auto& part) { return part.empty(); });
+  if (all_taken) return tally.total();
+  const ScaledMesh& unscaled = meshes.unscaled();
+  unscaled.prepare_points();
+  parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
+    PointTile tile(values, diagnostics, settling);
+    for (std::size_t part = first; part < last; ++part) {
+      tally.add(evaluate_in_order(unscaled, points, others[part], tile));
+      if (done) done->fetch_add(others[part].size(), std::memory_order_relaxed);
+    }
+  });
+  return tally.total();
+}
+
+// ---- All meshes ------------------------------------------------------------------------------------------------
 
 // Some of the points, at most as many as CoherentOrder takes.
 Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
@@ -198,27 +261,25 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
   scaled.prepare_points();
   const CoherentOrder order(scaled, points);
   if (!order.all_taken()) meshes.unscaled().prepare_points();
-  std::mutex mutex;
-  Tally total;
+  SharedTally total;
   parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
-    PointTile tile(settling);
+    PointTile tile(values, diagnostics, settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
       for (const CoherentOrder::SortedPoint& p : sorted) {
         const bool exact = order.all_taken() || scaled.can_take(p.point);
-        if (!exact) tally += tile.evaluate(scaled, values, diagnostics);
+        if (!exact) tally += tile.evaluate(scaled);
         const ScaledMesh& mesh = meshes.of_query(exact);
         tile.add(p.index, mesh.to_scale(p.point));
-        if (!exact || tile.full()) tally += tile.evaluate(mesh, values, diagnostics);
+        if (!exact || tile.full()) tally += tile.evaluate(mesh);
       }
       if (done) done->fetch_add(sorted.size(), std::memory_order_relaxed);
     }
-    tally += tile.evaluate(scaled, values, diagnostics);
-    const std::lock_guard<std::mutex> lock(mutex);
-    total += tally;  // integers: their order does not matter
+    tally += tile.evaluate(scaled);
+    total.add(tally);
   });
-  return total;
+  return total.total();
 }
 
 }  // namespace
@@ -226,12 +287,16 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
 Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
                       std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
   Tally total;
-  const std::size_t batch = CoherentOrder::batch(meshes.scaled());
+  const ScaledMesh& scaled = meshes.scaled();
+  const bool closed = scaled.is_closed() && scaled.options().ray_engine == RayEngine::kScan;
+  constexpr std::size_t kIndexable = std::size_t{1} << 31;
+  const std::size_t batch = closed ? kIndexable : CoherentOrder::batch(scaled);
   for (std::size_t begin = 0; begin < points.size(); begin += batch) {
     const std::size_t count = std::min(batch, points.size() - begin);
     const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
-    total += evaluate_batch(meshes, points.subspan(begin, count), values.subspan(begin, count), done,
-                            diagnostics ? &of_batch : nullptr, settling);
+    total +=
+        (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), values.subspan(begin, count),
+                                                    done, diagnostics ? &of_batch : nullptr, settling);
   }
   return total;
 }

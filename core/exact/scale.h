@@ -1,6 +1,7 @@
 // Scaling by a power of two, which commutes with every rounding.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "core/data/triangle_mesh.h"
@@ -12,6 +13,8 @@ class PowerOfTwo {
  public:
   explicit PowerOfTwo(int exponent);
   [[nodiscard]] int exponent() const { return exponent_; }
+  // Their product, of which a double is 2^exponent only if that is one, too.
+  [[nodiscard]] std::array<double, 2> factors() const { return {half_, other_half_}; }
   // Whether the product loses nothing that a predicate could see: scaled down, it may not become subnormal, even where
   // it would keep its bits; so that on an axis of a lattice few intervals answer alike. Not about overflow.
   [[nodiscard]] bool keeps(double value) const { return std::abs(value) >= least_ || value == 0.0; }

@@ -1,9 +1,9 @@
 #include "core/far/far_field.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/boundary/caps.h"
 #include "core/boundary/solid_angles.h"
@@ -54,23 +54,28 @@ double FarField::cost_in(const Box& box, double tolerance) const {
   return sum / static_cast<double>(kTile);
 }
 
-std::int64_t FarField::cap_crossings(const Vec3& q) const {
-  if (!cap_grid_) return 0;
-  std::int64_t doubtful = 0;
-  const int sure = cap_grid_->crossings(q, [&](std::uint32_t triangle) {
+FarField::Crossings FarField::cap_crossings(const SampleTile& samples) const {
+  Crossings n{};
+  if (!cap_grid_) return n;
+  std::array<Vec3, kTile> queries;
+  for (std::size_t i = 0; i < samples.count; ++i) queries[i] = samples.query(i);
+  std::vector<ProjectedGrid::Doubtful> doubtful;
+  cap_grid_->crossings({queries.data(), samples.count}, {n.data(), samples.count}, doubtful);
+  for (const auto& [i, triangle] : doubtful) {
     const Triangle& t = caps_.triangles[triangle];
-    const Vec3 &a = caps_.vertices[t[0]], &b = caps_.vertices[t[1]], &c = caps_.vertices[t[2]];
+    const Vec3 &a = caps_.vertices[t[0]], &b = caps_.vertices[t[1]], &c = caps_.vertices[t[2]], &q = queries[i];
     const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}}, nullptr);
-    if (crossing.crossed > 0) doubtful += crossing.sigma;
-  });
-  return sure + doubtful;
+    if (crossing.crossed > 0) n[i] += crossing.sigma;
+  }
+  return n;
 }
 
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                                std::span<double> w) const {
   std::array<std::int64_t, kTile> whole{};
-  for (std::size_t i = 0; sources_ == FarSources::kCaps && i < samples.count; ++i) {
-    whole[i] = crossings[i] - cap_crossings(samples.query(i));
+  if (sources_ == FarSources::kCaps) {
+    const Crossings of_caps = cap_crossings(samples);
+    for (std::size_t i = 0; i < samples.count; ++i) whole[i] = crossings[i] - of_caps[i];
   }
   winding_numbers_of_closed(samples, whole, w);
 }

@@ -5,11 +5,13 @@
 // is left is a sum over triangles. Those that are far from a sample act together, as multipoles (source_tree.h).
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <optional>
 
 #include "core/boundary/boundary_term.h"
+#include "core/boundary/sample_tile.h"
 #include "core/crossings/projected_grid.h"
 #include "core/data/triangle_mesh.h"
 #include "core/far/far_kernel.h"
@@ -54,7 +56,8 @@ class FarField final : public BoundaryTerm {
   [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
 
  private:
-  [[nodiscard]] std::int64_t cap_crossings(const Vec3& q) const;
+  using Crossings = std::array<std::int64_t, kTile>;
+  [[nodiscard]] Crossings cap_crossings(const SampleTile& samples) const;
   [[nodiscard]] double cost_in(const Box& box, double tolerance) const;
 
   const Boundary& boundary_;

@@ -47,6 +47,8 @@ class Buckets {
   [[nodiscard]] std::span<Item> operator[](std::size_t bucket) const {
     return {items_.get() + begin_[bucket], begin_[bucket + 1] - begin_[bucket]};
   }
+  // Of all buckets, one after the other.
+  [[nodiscard]] std::span<Item> all() const { return {items_.get(), begin_.back()}; }
 
  private:
   static constexpr std::size_t kChunk = std::size_t{1} << 16;  // inputs at least

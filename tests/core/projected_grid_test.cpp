@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,25 +41,42 @@ Found by_all_triangles(const TriangleMesh& mesh, const Vec3& q) {
 }
 
 struct Totals {
-  std::size_t crossed = 0, ties = 0, on_surface = 0, decided = 0;
+  std::size_t crossed = 0, ties = 0, on_surface = 0, decided = 0, met = 0;
 };
+
+// What the grid finds, all queries at once.
+std::vector<Found> by_grid(const ProjectedGrid& grid, const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  std::vector<std::int64_t> n(queries.size(), 99);
+  std::vector<ProjectedGrid::Doubtful> doubtful;
+  grid.crossings(queries, n, doubtful);
+  std::vector<Found> found(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) found[i].n = static_cast<int>(n[i]);
+  for (const auto& [i, triangle] : doubtful) found[i].add(mesh, triangle, queries[i]);
+  return found;
+}
 
 Totals check(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const DefaultFloatingPoint guard;
   const ProjectedGrid grid(mesh);
+  const std::vector<Found> all_found = by_grid(grid, mesh, queries);
+  std::vector<ProjectedGrid::Place> places(queries.size());
+  grid.find_places(queries, places);
   Totals totals;
-  for (const Vec3& q : queries) {
-    Found found;
-    found.n += grid.crossings(q, [&](std::uint32_t triangle) { found.add(mesh, triangle, q); });
-    const Found expected = by_all_triangles(mesh, q);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Vec3& q = queries[i];
+    const Found &found = all_found[i], expected = by_all_triangles(mesh, q);
     const bool same = found.n == expected.n && found.ties == expected.ties && found.on_surface == expected.on_surface;
     EXPECT_TRUE(same) << found.n << " for " << expected.n << ", ties " << found.ties << " for " << expected.ties
                       << " at " << q.x << ' ' << q.y << ' ' << q.z;
     if (!same) return totals;
+    const bool any = expected.n != 0 || expected.ties != 0 || expected.on_surface;
+    EXPECT_TRUE(places[i].may_meet || !any) << "not met at " << q.x << ' ' << q.y << ' ' << q.z;
+    EXPECT_EQ(places[i].morton_code, grid.morton_code(q));
     totals.crossed += expected.n != 0 ? 1 : 0;
     totals.ties += static_cast<std::size_t>(expected.ties);
     totals.on_surface += expected.on_surface ? 1 : 0;
     totals.decided += found.decided;
+    totals.met += places[i].may_meet ? 1 : 0;
   }
   return totals;
 }
@@ -143,6 +161,16 @@ TEST(ProjectedGrid, FindsWhatAllTrianglesSayAtAnyMagnitude) {
   }
 }
 
+// Differences of coordinates overflow: nothing is certain then, not even that a NaN has a sign.
+TEST(ProjectedGrid, FindsWhatAllTrianglesSayOfTheLargestBox) {
+  constexpr double l = std::numeric_limits<double>::max();
+  std::vector<Vec3> queries;
+  for (const double y : {-l, -1.0, 0.0, 1.0, l / 3, l / 2, l}) {
+    for (const double z : {-l, -1.0, 0.0, 1.0, l / 3, l / 2, l}) queries.push_back({0.0, y, z});
+  }
+  EXPECT_GT(check(test::box_mesh({-l, -l, -l}, {l, l, l}), queries).crossed, 30U);
+}
+
 TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
   test::Random random(4);
   const TriangleMesh mesh = test::sphere(60);
@@ -151,6 +179,42 @@ TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
   const Totals totals = check(mesh, queries);
   EXPECT_GT(totals.crossed, 800U);
   EXPECT_LT(totals.decided, queries.size() / 50);
+}
+
+// Next to a cell whose triangles reach far are others whose triangles do not: rays that start just before one of them.
+TEST(ProjectedGrid, MissesNoRayAmongScatteredTriangles) {
+  test::Random random(6);
+  TriangleMesh mesh;
+  std::vector<Vec3> queries;
+  const Box box{{0, 0, 0}, {1, 1, 1}}, small{{-0.004, -0.004, -0.004}, {0.004, 0.004, 0.004}};
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const Vec3 at = test::uniform_point(random, box);
+    Vec3 sum{0, 0, 0};
+    for (int corner = 0; corner < 3; ++corner) {
+      mesh.vertices.push_back(at + test::uniform_point(random, small));
+      sum = sum + mesh.vertices.back();
+    }
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    queries.push_back((1.0 / 3.0) * sum - Vec3{1e-6, 0, 0});
+  }
+  EXPECT_GT(check(mesh, queries).crossed, queries.size() / 2);
+}
+
+// Beside and behind a ball, and a small one beside it.
+TEST(ProjectedGrid, KnowsMostRaysThatMeetNothing) {
+  test::Random random(5);
+  const TriangleMesh small = test::moved(test::sphere(20), {0.05, 0.02, 0.02}, {0.9, 0.9, 0.9});
+  const TriangleMesh mesh = test::joined(test::sphere(60), small);
+  std::vector<Vec3> queries(4000);
+  for (Vec3& q : queries) q = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
+  std::size_t ahead = 0;
+  for (const Vec3& q : queries) {
+    const double across = q.y * q.y + q.z * q.z;
+    ahead += across < 1.0 && q.x < std::sqrt(1.0 - across) ? 1 : 0;
+  }
+  const Totals totals = check(mesh, queries);
+  EXPECT_GT(totals.met, ahead);
+  EXPECT_LT(totals.met, ahead + queries.size() / 20);
 }
 
 // At most so many kB of memory were resident at a time.

@@ -66,11 +66,13 @@ MUTANTS = [
     Mutant("grid_error_too_small", "single precision decides for points only beyond its error", [
         ("core/crossings/projected_grid.cpp", "6.01 * v *", "0.06 * v *"), ("core/crossings/projected_grid.cpp", "3.01 * v *", "0.03 * v *")]),
     Mutant("grid_without_lines", "a triangle is listed where the lines of its edges tie, too", [
-        ("core/crossings/projected_grid.cpp", "    if (intersection(slab, edge.z).empty()) continue;\n",
-         "    if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
+        ("core/crossings/projected_grid_builder.cpp", "      if (intersection(slab, edge.z).empty()) continue;\n",
+         "      if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
     Mutant("grid_cuts_too_early", "rays from behind a triangle alone miss it", [
-        ("core/crossings/projected_grid.cpp", "rounded_up(result_.local({upper, 0, 0}).x)",
-         "static_cast<float>(result_.local({upper, 0, 0}).x - 0x1p-30)")]),
+        ("core/crossings/projected_grid_builder.cpp", "rounded_up(largest(a.x, b.x, c.x))",
+         "static_cast<float>(largest(a.x, b.x, c.x) - 0x1p-30)")]),
+    Mutant("grid_misses_rays", "rays that meet nothing are told by all cells that they may be in", [
+        ("core/crossings/projected_grid_builder.cpp", "at(code + 1 + kMargin)", "at(code)")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [

@@ -1,0 +1,68 @@
+#include "core/evaluation/point_tile.h"
+
+#include <algorithm>
+
+namespace raycone {
+
+Tally PointTile::evaluate(const ScaledMesh& mesh) {
+  Tally tally;
+  if (count_ == 0) return tally;
+  find_crossings(mesh);
+  for (std::size_t i = 0; i < count_; ++i) {
+    tally += {static_cast<std::uint64_t>(degenerate_[i].ties), degenerate_[i].on_surface ? 1U : 0U};
+  }
+  set_values(mesh);
+  if (diagnostics_) set_diagnostics(mesh);
+  count_ = 0;
+  return tally;
+}
+
+// First what is certain, then what predicates decide.
+void PointTile::find_crossings(const ScaledMesh& mesh) {
+  std::fill_n(degenerate_.begin(), count_, Degenerate{});
+  doubtful_.clear();
+  if (mesh.options().ray_engine == RayEngine::kScan) {
+    mesh.grid().crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
+  } else {
+    find_candidates(mesh);
+  }
+  for (const auto& [i, triangle] : doubtful_) {
+    const Vec3& q = queries_[i];
+    const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
+    if (crossing.crossed > 0) n_[i] += crossing.sigma;
+    if (crossing.met > 0) degenerate_[i].ties += crossing.ties;
+    if (crossing.on_begin < crossing.on_end) degenerate_[i].on_surface = true;
+  }
+}
+
+// Embree's, none of which is certain.
+void PointTile::find_candidates(const ScaledMesh& mesh) {
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    n_[i] = 0;
+    mesh.rays().find_candidates(queries_[i], candidates_);
+    for (const std::uint32_t triangle : candidates_) doubtful_.push_back({i, triangle});
+  }
+}
+
+void PointTile::set_values(const ScaledMesh& mesh) {
+  if (mesh.is_closed()) {
+    std::transform(n_.begin(), n_.begin() + count_, w_.begin(), [](std::int64_t n) { return static_cast<double>(n); });
+  } else {
+    samples_.clear();
+    for (std::size_t i = 0; i < count_; ++i) samples_.add(queries_[i]);
+    mesh.set_values(samples_, {n_.data(), count_}, {w_.data(), count_}, settling_);
+  }
+  for (std::size_t i = 0; i < count_; ++i) values_[indices_[i]] = w_[i];
+}
+
+void PointTile::set_diagnostics(const ScaledMesh& mesh) const {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::size_t index = indices_[i];
+    diagnostics_->crossings[index] = n_[i];
+    diagnostics_->degenerate[index] = degenerate_[i].ties;
+    diagnostics_->on_surface[index] = degenerate_[i].on_surface ? 1 : 0;
+    diagnostics_->error_bound[index] = mesh.error_bound(queries_[i], w_[i], n_[i]);
+  }
+}
+
+}  // namespace raycone

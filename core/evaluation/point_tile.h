@@ -1,0 +1,61 @@
+// Points that are evaluated together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/boundary/sample_tile.h"
+#include "core/crossings/projected_grid.h"
+#include "core/data/diagnostics.h"
+#include "core/evaluation/scaled_mesh.h"
+
+namespace raycone {
+
+// With the places of their values. Needs DefaultFloatingPoint; not thread-safe.
+class PointTile {
+ public:
+  // Sets what has the index of a point in `values`, and in the diagnostics where given.
+  PointTile(std::span<double> values, const Diagnostics* diagnostics, ScaledMesh::Settling settling)
+      : values_(values), diagnostics_(diagnostics), settling_(settling) {}
+
+  [[nodiscard]] bool full() const { return count_ == kTile; }
+
+  // Precondition: not full.
+  void add(std::size_t index, const Vec3& scaled_point) {
+    indices_[count_] = index;
+    queries_[count_++] = scaled_point;
+  }
+
+  // Evaluates the points, if any, and forgets them.
+  Tally evaluate(const ScaledMesh& mesh);
+
+ private:
+  // What exact predicates said about a point.
+  struct Degenerate {
+    std::int64_t ties = 0;
+    bool on_surface = false;
+  };
+
+  void find_crossings(const ScaledMesh& mesh);
+  void find_candidates(const ScaledMesh& mesh);
+  void set_values(const ScaledMesh& mesh);
+  void set_diagnostics(const ScaledMesh& mesh) const;
+
+  std::span<double> values_;
+  const Diagnostics* diagnostics_;
+  ScaledMesh::Settling settling_;
+  std::size_t count_ = 0;
+  std::array<std::size_t, kTile> indices_;
+  std::array<Vec3, kTile> queries_;
+  std::array<std::int64_t, kTile> n_;  // the sums of the signs of the rays' crossings
+  std::array<Degenerate, kTile> degenerate_;
+  std::array<double, kTile> w_;
+  SampleTile samples_;
+  std::vector<std::uint32_t> candidates_;
+  std::vector<ProjectedGrid::Doubtful> doubtful_;
+};
+
+}  // namespace raycone

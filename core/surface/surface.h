@@ -55,8 +55,8 @@ class LatticeOutOfRange : public std::runtime_error {
 // self-intersections; all of that has been checked, exactly, on the vertices returned. They lie on the mesh (where the
 // source is a triangle) or where the winding number passes a threshold of the rule (kHole), at most by the margin, or
 // plane_tolerance(), off. With `simplify` no point of the surface is farther than that from the surface without, nor
-// the other way round. A face has a source whose plane it is in, within the last; one that cuts an edge off, the
-// nearest to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
+// the other way round. A face has a source whose plane it is in, within the last; one that cuts an edge off has
+// one near to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
 // `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // LatticeOutOfRange, std::length_error for more than 2^31 - 1 faces.
 [[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,

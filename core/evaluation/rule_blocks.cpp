@@ -506,7 +506,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, const Block& part, doub
 void RuleBlocks::set_row(const std::array<std::size_t, 3>& first, std::span<const double> rest, bool closed,
                          double needed, std::vector<Block>& undecided) const {
   constexpr std::size_t kTogether = 16;
-  const auto [x, j, k] = first;
+  const std::size_t x = first[0], j = first[1], k = first[2];
   const std::size_t row = row_of(j, k) * rows_.xs.size();
   const Block part{{x, j, k}, {x + rest.size(), j + 1, k + 1}};
   for_each_run(part, closed, [&](std::size_t begin, std::size_t end, double n) {

@@ -101,7 +101,7 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
 }
 
 std::vector<BatchMesh> all_meshes_of(const BatchCommand& command) {
-  const std::vector<BatchMesh> all = find_meshes(command.search);
+  std::vector<BatchMesh> all = find_meshes(command.search);
   if (all.empty()) warn(command, std::string("no meshes found") + (command.prune ? ", no rows removed" : ""));
   for (const BatchMesh& mesh : all) {
     if (!command.writes || !is_results_file(mesh.output)) continue;

@@ -57,16 +57,17 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
                          is_single_precision(command.format)};
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
-  auto [surface, surface_report, warnings] = timed(report.seconds.evaluate, [&] {
+  MadeSurface made = timed(report.seconds.evaluate, [&] {
     return make_surface(report.mesh, mesh, evaluator, lattice, options, limits.memory(), done);
   });
-  report.surface = surface_report;
-  for (const Warning& warning : warnings) run.warn(warning);
-  for (std::int32_t& source : surface.sources) {
+  report.surface = made.report;
+  for (const Warning& warning : made.warnings) run.warn(warning);
+  for (std::int32_t& source : made.surface.sources) {
     if (source != kHole) source = static_cast<std::int32_t>(run.place_of(static_cast<std::uint32_t>(source)));
   }
   run.set_stage("writing");
-  timed(report.seconds.write, [&] { write_surface(run.output, command.format, surface.mesh, surface.sources); });
+  timed(report.seconds.write,
+        [&] { write_surface(run.output, command.format, made.surface.mesh, made.surface.sources); });
   return run.finish();
 }
 

@@ -289,8 +289,9 @@ void ProjectedGridBuilder::add_grid(const Grid& grid, std::span<const Entry> ent
   part.cells.resize(first + all.size());
   const double width = 1.0 / grid.columns_per_unit, height = 1.0 / grid.rows_per_unit;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double y = grid.lower_y + static_cast<double>(i % grid.columns) * width;
-    const double z = grid.lower_z + static_cast<double>(i / grid.columns) * height;
+    const std::size_t column = i % grid.columns, row = i / grid.columns;
+    const double y = grid.lower_y + static_cast<double>(column) * width;
+    const double z = grid.lower_z + static_cast<double>(row) * height;
     const Cell cell = finished({{y, y + width}, {z, z + height}}, lists[i], depth, part);
     part.cells[first + i] = cell;
   }

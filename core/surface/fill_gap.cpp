@@ -281,7 +281,7 @@ bool GapFiller::cut_off(const Run& run) {
     }
     if (!add_polygon(polygon, side(run.first + from))) return false;
   }
-  std::ranges::rotate(sides_, sides_.begin() + static_cast<std::ptrdiff_t>(run.first));
+  std::rotate(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(run.first), sides_.end());
   sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(run.sides));
   sides_.insert(sides_.begin(), line.begin(), line.end());
   if (path->has_new_corner) filled_.corners.push_back(points_.back());

@@ -20,8 +20,7 @@ std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const Fi
 
 double tolerance_of_evaluation(const FieldOptions& options) {
   if (!(options.tolerance > 0.0) || !options.rule_only()) return options.tolerance;
-  const double rough = thresholds_to_settle(options.rule).empty() ? 3e-5 : 1e-6;
-  return std::max(options.tolerance, rough);
+  return thresholds_to_settle(options.rule).empty() ? 3e-5 : 1e-6;
 }
 
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,
@@ -44,6 +43,20 @@ void FieldEvaluator::prepare_points() const {
   if (solid_) solid_->prepare_points();
 }
 
+namespace {
+
+// A bound of the value that is replaced holds for the new one with the difference.
+void set_settled(FieldSamples& samples, std::size_t n, double settled) {
+  double& value = samples.winding_numbers()[n];
+  if (samples.diagnostics() && settled != value) {
+    double& bound = samples.diagnostics()->error_bound[n];
+    bound = std::nextafter(bound + std::abs(settled - value), std::numeric_limits<double>::infinity());
+  }
+  value = settled;
+}
+
+}  // namespace
+
 template <class Point>
 void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
   const double doubt = winding_number_.doubt();
@@ -51,16 +64,17 @@ void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
   const std::span<double> values = samples.winding_numbers();
   constexpr std::size_t kGrain = std::size_t{1} << 10;
   parallel_for(values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      for (const double threshold : thresholds_) {
+    std::vector<std::size_t> doubtful;
+    std::vector<Vec3> points;
+    std::vector<double> settled;
+    for (const double threshold : thresholds_) {
+      doubtful.clear(), points.clear(), settled.clear();
+      for (std::size_t n = begin; n < end; ++n) {
         if (std::abs(values[n] - threshold) > doubt) continue;
-        const double settled = winding_number_.settle(point(n), values[n], threshold);
-        if (samples.diagnostics() && settled != values[n]) {
-          double& bound = samples.diagnostics()->error_bound[n];
-          bound = std::nextafter(bound + std::abs(settled - values[n]), std::numeric_limits<double>::infinity());
-        }
-        values[n] = settled;
+        doubtful.push_back(n), points.push_back(point(n)), settled.push_back(values[n]);
       }
+      winding_number_.settle(points, threshold, settled);
+      for (std::size_t i = 0; i < doubtful.size(); ++i) set_settled(samples, doubtful[i], settled[i]);
     }
   });
 }

@@ -99,6 +99,9 @@ class ScaledMesh {
     return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
   }
 
+  // Likewise of set_direct_values(). 0: the mesh is closed.
+  [[nodiscard]] double doubt_of_direct_values() const { return term_ ? term_->doubt() : 0.0; }
+
   // Triangles that a far field sums, at most.
   [[nodiscard]] double most_sources() const;
 

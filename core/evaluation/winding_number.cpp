@@ -9,6 +9,7 @@
 #include "core/evaluation/points.h"
 #include "core/evaluation/rows.h"
 #include "core/evaluation/scaled_mesh.h"
+#include "core/evaluation/settler.h"
 #include "core/evaluation/sides.h"
 #include "core/machine/floating_point.h"
 
@@ -71,12 +72,23 @@ WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const
 
 Terms WindingNumberEvaluator::terms() const { return implementation_->terms(); }
 
-double WindingNumberEvaluator::settle(const Vec3& point, double value, double critical) const {
-  const ScaledMeshes& meshes = *implementation_;
-  if (meshes.scaled().is_closed()) return value;
+void WindingNumberEvaluator::settle(std::span<const Vec3> points, double critical, std::span<double> values) const {
+  assert(values.size() == points.size());
+  const ScaledMesh& scaled = implementation_->scaled();
+  if (scaled.is_closed()) return;
   const DefaultFloatingPoint guard;
-  const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(point));
-  return mesh.boundary().settle(mesh.to_scale(point), value, critical);
+  Settler settler(scaled, critical, values);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (scaled.can_take(points[i])) {
+      settler.add(i, scaled.to_scale(points[i]));
+      continue;
+    }
+    const ScaledMesh& unscaled = implementation_->unscaled();
+    Settler of_one(unscaled, critical, values);
+    of_one.add(i, unscaled.to_scale(points[i]));
+    of_one.evaluate();
+  }
+  settler.evaluate();
 }
 
 void WindingNumberEvaluator::prepare_points() const {

@@ -132,12 +132,12 @@ class WindingNumberEvaluator {
   // Values are right about half-integers. A value is exactly 0.5, 1.5, -0.5 ... where w cannot be told from it
   // (kIndistinguishable). Else it is on the same side of it as w.
   //
-  // settle() makes a value right about another number, too. It returns `value`, which was evaluated at `point`, moved
-  // to the side of `critical` on which w is; or `critical` itself where w cannot be told from it. It takes a
-  // millisecond or more per thousand exterior edges. It need not be called where value and critical differ by more than
-  // doubt() turns; doubt() is 0 for closed meshes. Thread-safe.
+  // settle() makes values right about another number, too. values[i], which was evaluated at points[i], is moved to the
+  // side of `critical` on which w is; it is `critical` itself where w cannot be told from it. A value takes a
+  // millisecond or more per thousand exterior edges where the direct sum cannot tell, else as long as that sum. None
+  // need be given that differs from critical by more than doubt() turns; doubt() is 0 for closed meshes. Thread-safe.
   [[nodiscard]] double doubt() const;
-  [[nodiscard]] double settle(const Vec3& point, double value, double critical) const;
+  void settle(std::span<const Vec3> points, double critical, std::span<double> values) const;
 
   // Of all values that have been evaluated so far. Not while an evaluation runs.
   [[nodiscard]] Terms terms() const;

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "core/data/rule.h"
@@ -255,10 +256,15 @@ TEST(HalfIntegers, AreLookedForWithinABoundThatHolds) {
   }
 }
 
+double settled(const WindingNumberEvaluator& evaluator, const Vec3& q, double value, double critical) {
+  evaluator.settle({&q, 1}, critical, {&value, 1});
+  return value;
+}
+
 TEST(HalfIntegers, AreNotLookedForInClosedMeshes) {
   const WindingNumberEvaluator evaluator(test::sphere(4));
   EXPECT_EQ(evaluator.doubt(), 0.0);
-  EXPECT_EQ(evaluator.settle({0, 0, 0}, 1.0, 1.0), 1.0);
+  EXPECT_EQ(settled(evaluator, {0, 0, 0}, 1.0, 1.0), 1.0);
 }
 
 // Another threshold than those: w is 1/4 on the edge that two missing sides of a box share, and 3/4 opposite of it.
@@ -277,11 +283,35 @@ TEST(HalfIntegers, AreNotTheOnlyNumbersThatCanBeSettled) {
       const Vec3 q = symmetry({1, y, 1});
       std::vector<double> w(1);
       evaluator.evaluate(std::vector<Vec3>{q}, w);
-      EXPECT_EQ(evaluator.settle(q, w[0], 0.25), 0.25);
+      EXPECT_EQ(settled(evaluator, q, w[0], 0.25), 0.25);
       const Vec3 inside = symmetry({1 - 1e-9, y, 1});
       evaluator.evaluate(std::vector<Vec3>{inside}, w);
-      EXPECT_GT(evaluator.settle(inside, 0.25, 0.25), 0.25);
-      EXPECT_EQ(evaluator.settle(inside, w[0], 0.25), w[0]);
+      EXPECT_GT(settled(evaluator, inside, 0.25, 0.25), 0.25);
+      EXPECT_EQ(settled(evaluator, inside, w[0], 0.25), w[0]);
+    }
+  }
+}
+
+// Whatever values are off by: so that rules do not depend on the tolerance.
+TEST(HalfIntegers, OtherNumbersAreSettledWhereValuesAreFarOff) {
+  TriangleMesh mesh = test::sphere(4);
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 20);
+  const WindingNumberEvaluator evaluator(mesh);
+  Random random(3);
+  std::vector<Vec3> queries(500);
+  std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
+  for (Vec3& q : queries) q = {coordinate(random), coordinate(random), coordinate(random)};
+  std::vector<double> truth(queries.size());
+  evaluator.evaluate(queries, truth);
+  for (const double error : {-0.1, -1e-4, 1e-4, 0.1}) {
+    for (const double critical : {-0.02, 0.01, 0.3, 0.95}) {
+      std::vector<double> values;
+      for (const double w : truth) values.push_back(w + error);
+      evaluator.settle(queries, critical, values);
+      for (std::size_t n = 0; n < truth.size(); ++n) {
+        ASSERT_EQ(values[n] > critical, truth[n] > critical) << truth[n] << " " << critical << " " << error;
+        ASSERT_LE(std::abs(values[n] - truth[n]), std::abs(error) + evaluator.doubt());
+      }
     }
   }
 }

@@ -54,7 +54,8 @@ bool holds_at(const WindingNumberEvaluator& evaluator, const Rule& rule, const L
               double w) {
   for (const double threshold : thresholds_to_settle(rule)) {
     if (std::abs(w - threshold) <= evaluator.doubt()) {
-      w = evaluator.settle(lattice.position(whole(lattice).index_of(n)), w, threshold);
+      const Vec3 q = lattice.position(whole(lattice).index_of(n));
+      evaluator.settle({&q, 1}, threshold, {&w, 1});
     }
   }
   return holds(rule, w);
@@ -67,14 +68,17 @@ std::int64_t certified(const TriangleMesh& mesh, const Lattice& lattice) {
   std::vector<double> truth(size);
   std::vector<std::uint8_t> sides(size);
   evaluator.evaluate(lattice, whole(lattice), truth);
-  const std::uint64_t before = evaluator.terms().near, edges = std::max<std::uint64_t>(evaluator.exterior_edges(), 1);
+  const std::uint64_t edges = std::max<std::uint64_t>(evaluator.exterior_edges(), 1);
+  std::uint64_t terms = 0;
   for (const Rule& rule : kRules) {
+    const std::uint64_t before = evaluator.terms().near;
     evaluator.evaluate_sides(rule, lattice, whole(lattice), sides);
+    terms += evaluator.terms().near - before;
     for (std::size_t n = 0; n < size; ++n) {
       if ((sides[n] != 0) != holds_at(evaluator, rule, lattice, n, truth[n])) return -1;
     }
   }
-  const auto evaluated = static_cast<std::int64_t>((evaluator.terms().near - before) / edges);
+  const auto evaluated = static_cast<std::int64_t>(terms / edges);
   return static_cast<std::int64_t>(kRules.size() * size) - evaluated;
 }
 

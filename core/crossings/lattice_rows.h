@@ -1,12 +1,15 @@
 // The rows of a block of a lattice.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
 
 #include "core/crossings/row.h"
+#include "core/data/box.h"
 #include "core/data/lattice.h"
+#include "core/data/sample_box.h"
 #include "core/data/vec3.h"
 
 namespace raycone {
@@ -20,6 +23,16 @@ struct LatticeRows {
   [[nodiscard]] std::size_t size() const { return ys.size() * zs.size(); }
   [[nodiscard]] Row row(std::size_t number) const {
     return {ys[number % ys.size()], zs[number / ys.size()], xs, samples_per_unit.x};
+  }
+  [[nodiscard]] const std::vector<double>& along(std::size_t axis) const {
+    return axis == 0 ? xs : axis == 1 ? ys : zs;
+  }
+  [[nodiscard]] Vec3 query(const std::array<std::size_t, 3>& sample) const {
+    return {xs[sample[0]], ys[sample[1]], zs[sample[2]]};
+  }
+  // What the samples, at least one, span.
+  [[nodiscard]] Box box_of(const SampleBox& samples) const {
+    return {query(samples.begin), query({samples.end[0] - 1, samples.end[1] - 1, samples.end[2] - 1})};
   }
 };
 

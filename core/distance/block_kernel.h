@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "core/crossings/lattice_rows.h"
+#include "core/data/sample_box.h"
 #include "core/distance/distance_tree.h"
 
 namespace raycone {
-
-// Samples [begin, end) of each axis.
-struct SampleBox {
-  std::array<std::size_t, 3> begin, end;
-
-  [[nodiscard]] std::size_t side(std::size_t axis) const { return end[axis] - begin[axis]; }
-};
 
 // The largest side of a block that a kernel takes.
 inline constexpr std::size_t kBlockSide = 8;

@@ -45,8 +45,7 @@ class Descent {
 
   // `distance`: of `from`, or infinity.
   void fill(const SampleBox& block, const Vec3& from, double distance) {
-    const Box box{{rows_.xs[block.begin[0]], rows_.ys[block.begin[1]], rows_.zs[block.begin[2]]},
-                  {rows_.xs[block.end[0] - 1], rows_.ys[block.end[1] - 1], rows_.zs[block.end[2] - 1]}};
+    const Box box = rows_.box_of(block);
     const Vec3 center = 0.5 * (box.lower + box.upper);
     const double radius = std::max(norm(center - box.lower), norm(box.upper - center));
     const double reach = std::min(band_ + radius, distance + norm(center - from)) * kSlack;

@@ -20,7 +20,8 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, TrianglePack::kWidth>;
+constexpr std::size_t kWidth = TrianglePack::kWidth;
+using Doubles = hn::CappedTag<double, kWidth>;
 using Lanes = hn::Vec<Doubles>;
 using LaneMask = hn::Mask<Doubles>;
 constexpr Doubles d;

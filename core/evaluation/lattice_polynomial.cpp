@@ -13,7 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastProduct = 0x1p-900;  // less has lost bits
 
 // The samples next to Chebyshev's points, each once.
-std::vector<std::size_t> choose_nodes(std::size_t samples, std::size_t count) {
+std::vector<std::size_t> chebyshev_nodes(std::size_t samples, std::size_t count) {
   std::vector<std::size_t> nodes;
   const double half = static_cast<double>(samples - 1) / 2;
   for (std::size_t n = 0; n < count; ++n) {
@@ -28,7 +28,7 @@ std::vector<std::size_t> choose_nodes(std::size_t samples, std::size_t count) {
 }  // namespace
 
 AxisNodes::AxisNodes(std::span<const double> coordinates, std::size_t degree)
-    : nodes_(choose_nodes(coordinates.size(), std::min(degree + 1, coordinates.size()))),
+    : nodes_(chebyshev_nodes(coordinates.size(), std::min(degree + 1, coordinates.size()))),
       row_size_((coordinates.size() + 7) / 8 * 8) {
   weights_.assign(nodes_.size() * row_size_, 0.0);
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -52,5 +52,64 @@ AxisNodes::AxisNodes(std::span<const double> coordinates, std::size_t degree)
 }
 
 double AxisNodes::error(double derivative) const { return product_ > 0.0 ? product_ * derivative : 0.0; }
+
+NodeGrid::NodeGrid(const LatticeRows& rows, const SampleBox& box, const std::array<std::size_t, 3>& degrees,
+                   std::span<const double> derivatives)
+    : begin_(box.begin) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::span<const double> all(rows.along(axis));
+    const AxisNodes& along = along_.emplace_back(all.subspan(box.begin[axis], box.side(axis)), degrees[axis]);
+    bend_ = along.error(derivatives[along.degree()]) + along.growth() * bend_;
+    growth_ *= along.growth();
+  }
+  bend_ *= 1 + kSumsRound;
+}
+
+std::vector<std::array<std::size_t, 3>> NodeGrid::nodes() const {
+  std::vector<std::array<std::size_t, 3>> samples;
+  samples.reserve(size());
+  for (const std::size_t k : along_[2].nodes()) {
+    for (const std::size_t j : along_[1].nodes()) {
+      for (const std::size_t i : along_[0].nodes()) samples.push_back({begin_[0] + i, begin_[1] + j, begin_[2] + k});
+    }
+  }
+  return samples;
+}
+
+double NodeGrid::at(std::span<const double> values, const std::array<std::size_t, 3>& sample) const {
+  double sum = 0.0;
+  for (std::size_t k = 0, n = 0; k < size(2); ++k) {
+    double layer = 0.0;
+    for (std::size_t j = 0; j < size(1); ++j) {
+      double row = 0.0;
+      for (std::size_t i = 0; i < size(0); ++i) row += along_[0].weights(i)[sample[0] - begin_[0]] * values[n++];
+      layer += along_[1].weights(j)[sample[1] - begin_[1]] * row;
+    }
+    sum += along_[2].weights(k)[sample[2] - begin_[2]] * layer;
+  }
+  return sum;
+}
+
+void NodeGrid::interpolate(std::span<const double> values, const SampleBox& part, std::size_t z,
+                           const MatrixKernel& matrices, LayerValues& out) const {
+  const AxisNodes &x = along_[0], &y = along_[1];
+  const std::size_t nx = size(0), ny = size(1), rows = part.side(1);
+  out.layer.assign(ny * nx, 0.0);
+  for (std::size_t n = 0; n < size(2); ++n) {
+    const double weight = along_[2].weights(n)[z - begin_[2]];
+    for (std::size_t i = 0; i < out.layer.size(); ++i) out.layer[i] += weight * values[n * out.layer.size() + i];
+  }
+  out.nodes.assign(rows * nx, 0.0);
+  for (std::size_t n = 0; n < ny; ++n) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      const double weight = y.weights(n)[part.begin[1] - begin_[1] + j];
+      for (std::size_t i = 0; i < nx; ++i) out.nodes[j * nx + i] += weight * out.layer[n * nx + i];
+    }
+  }
+  out.width = (part.side(0) + 7) / 8 * 8;
+  out.values.resize(rows * out.width);
+  matrices.multiply({out.nodes.data(), nx, 1}, {x.weights(0).data() + (part.begin[0] - begin_[0]), x.row_size()},
+                    {out.values.data(), out.width}, rows, nx, out.width);
+}
 
 }  // namespace raycone

@@ -75,5 +75,63 @@ TEST(AxisNodes, BoundWhatUnderflows) {
   EXPECT_GT(AxisNodes(tiny, 5).error(1e280), 0.0);
 }
 
+// ---- Grids of nodes ----------------------------------------------------------------------------------------------
+
+LatticeRows rows_of(std::size_t nx, std::size_t ny, std::size_t nz) {
+  return {coordinates(nx, 0.01), coordinates(ny, 0.013), coordinates(nz, 0.02), {}};
+}
+
+// 1 / |p - pole|: derivatives of order k along any direction are at most k! / |p - pole|^(k+1).
+TEST(NodeGrid, IsOffByNoMoreThanItsBend) {
+  const LatticeRows rows = rows_of(40, 21, 9);
+  const SampleBox box{{3, 2, 1}, {37, 20, 9}}, part{{11, 5, 2}, {30, 17, 9}};
+  const Box space = rows.box_of(box);
+  const Vec3 pole = space.upper + Vec3{0.2, 0.3, 0.1};
+  const auto value = [&](const std::array<std::size_t, 3>& sample) { return 1 / norm(rows.query(sample) - pole); };
+  std::vector<double> derivatives;
+  for (int k = 1; k <= 8; ++k) derivatives.push_back(std::pow(1 / norm(space.upper - pole), k + 1));
+  for (const std::array<std::size_t, 3>& degrees :
+       {std::array<std::size_t, 3>{0, 0, 0}, {1, 2, 3}, {4, 3, 2}, {7, 7, 7}, {5, 0, 6}}) {
+    const NodeGrid grid(rows, box, degrees, derivatives);
+    ASSERT_EQ(grid.size(), (degrees[0] + 1) * (degrees[1] + 1) * (degrees[2] + 1));
+    std::vector<double> values;
+    for (const std::array<std::size_t, 3>& node : grid.nodes()) values.push_back(value(node));
+    ASSERT_EQ(values.size(), grid.size());
+    double off = 0.0;
+    LayerValues layer;
+    for (std::size_t k = part.begin[2]; k < part.end[2]; ++k) {
+      grid.interpolate(values, part, k, matrix_kernel(SimdLevel::kBest), layer);
+      for (std::size_t j = part.begin[1]; j < part.end[1]; ++j) {
+        for (std::size_t i = part.begin[0]; i < part.end[0]; ++i) {
+          const double here = layer.values[(j - part.begin[1]) * layer.width + i - part.begin[0]];
+          off = std::max(off, std::abs(here - value({i, j, k})));
+          EXPECT_NEAR(here, grid.at(values, {i, j, k}), 1e-12);
+        }
+      }
+    }
+    EXPECT_LE(off, grid.bend());
+    EXPECT_GT(off, grid.bend() / 1000);
+  }
+}
+
+// Values at nodes that are off by 1, with the signs of a sample's weights.
+TEST(NodeGrid, GrowsErrorsByNoMoreThanItSays) {
+  const LatticeRows rows = rows_of(30, 20, 10);
+  const SampleBox box{{0, 0, 0}, {30, 20, 10}};
+  const NodeGrid grid(rows, box, {5, 4, 3}, std::vector<double>(8, 1.0));
+  double largest = 0.0;
+  for (const std::array<std::size_t, 3>& sample : {std::array<std::size_t, 3>{0, 0, 0}, {1, 1, 1}, {14, 9, 5}}) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < grid.size(); ++n) {
+      std::vector<double> one(grid.size());
+      one[n] = 1.0;
+      sum += std::abs(grid.at(one, sample));
+    }
+    largest = std::max(largest, sum);
+  }
+  EXPECT_LE(largest, grid.growth());
+  EXPECT_GT(largest, grid.growth() / 8);
+}
+
 }  // namespace
 }  // namespace raycone

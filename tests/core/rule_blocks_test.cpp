@@ -2,21 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <numbers>
 #include <vector>
 
-#include "core/boundary/caps.h"
-#include "core/boundary/change_bound.h"
-#include "core/boundary/flat_piece.h"
-#include "core/evaluation/gradient.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
-#include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 #ifdef RAYCONE_SHARED_MESHES  // tests/mutants builds no readers
 #include "io/mesh/read_mesh.h"
@@ -176,139 +169,6 @@ TEST(RuleBlocks, HoldOnRealOpenMeshes) {
   if (meshes == 0) GTEST_SKIP() << "no shared meshes";
 }
 #endif
-
-// ---- What it rests on ------------------------------------------------------------------------------------------
-
-TEST(Caps, HaveTheBoundaryOfTheMesh) {
-  test::Random random(5);
-  for (int i = 0; i < 30; ++i) {
-    const TriangleMesh mesh = weld(i % 2 ? test::lattice_soup(random, 40, 3) : test::soup(random, 20), {});
-    for (const double width : {0.0, 0.3, 100.0}) {
-      const Caps caps = make_caps(Boundary(mesh), width);
-      EXPECT_TRUE(exterior_edges(weld(test::joined(mesh, test::reversed(caps.mesh)), {})).empty());
-      const auto narrow = static_cast<std::ptrdiff_t>(caps.narrow);
-      TriangleMesh wide = caps.mesh;
-      wide.triangles.erase(wide.triangles.begin(), wide.triangles.begin() + narrow);
-      // Edges that are there and back have vanished from the boundary of the caps.
-      EXPECT_LE(exterior_edges(weld(wide, {})).size(), caps.wide_loops.size());
-    }
-  }
-}
-
-TEST(Caps, OfAStripTakeLittleMoreThanItsArea) {
-  // A ribbon along a helix, of width 0.02: the loop is 2 * 400 edges long.
-  TriangleMesh ribbon;
-  for (int i = 0; i < 400; ++i) {
-    const double angle = 0.05 * i;
-    for (const double z : {0.0, 0.02}) ribbon.vertices.push_back({std::cos(angle), std::sin(angle), 0.01 * i + z});
-    const auto v = static_cast<std::uint32_t>(2 * i);
-    if (i > 0) ribbon.triangles.insert(ribbon.triangles.end(), {{v - 2, v, v - 1}, {v - 1, v, v + 1}});
-  }
-  const auto area = [](const TriangleMesh& mesh) {
-    double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-      const Vec3& a = mesh.vertices[t[0]];
-      const Vec3 n = cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
-      sum += std::sqrt(dot(n, n)) / 2;
-    }
-    return sum;
-  };
-  EXPECT_LT(area(make_caps(Boundary(ribbon), 0.1).mesh), 1.1 * area(ribbon));
-}
-
-// Between places of a box the winding number changes by integers, and by what the bound says. So do its differences of
-// any order: their coefficients are integers.
-TEST(ChangeBound, HoldsBetweenAllPlaces) {
-  test::Random random(6);
-  std::array<int, kChangeOrders> tried{};
-  std::array<double, kChangeOrders> largest{};  // part of the bound that was reached
-  for (int i = 0; i < 60; ++i) {
-    const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
-    const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
-    for (int j = 0; j < 20; ++j) {
-      const Vec3 a = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
-      const double size = std::pow(10.0, test::uniform(random, -3, 0));
-      const Vec3 b = a + size * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
-      const ChangeSums most = bound.derivatives_in({a, b});
-      EXPECT_EQ(bound.gradient_in({a, b}, 1e-30), std::numeric_limits<double>::infinity());
-      if (most[0] < 1e6) {
-        EXPECT_NEAR(bound.gradient_in({a, b}, 1e6), most[0], 1e-5 * most[0]);
-      }
-      const auto beside_integers = [](double w) { return std::abs(w - std::nearbyint(w)); };
-      double factorial = 1.0;
-      for (std::size_t order = 1; order <= kChangeOrders; ++order) {
-        factorial *= static_cast<double>(order);
-        const Vec3 step = (1.0 / static_cast<double>(order)) * (b - a);
-        const double allowed = factorial * most[order - 1] * std::pow(norm(step), static_cast<double>(order));
-        if (!(allowed > 1e-6 && allowed < 0.5)) continue;  // not rounding alone
-        double difference = 0.0, binomial = 1.0;
-        for (std::size_t n = 0; n <= order; ++n) {
-          difference += binomial * test::direct_winding_number(mesh, a + static_cast<double>(n) * step);
-          binomial *= -static_cast<double>(order - n) / static_cast<double>(n + 1);
-        }
-        EXPECT_LE(beside_integers(difference), allowed) << "order " << order;
-        largest[order - 1] = std::max(largest[order - 1], beside_integers(difference) / allowed);
-        ++tried[order - 1];
-      }
-    }
-  }
-  for (std::size_t order = 1; order <= kChangeOrders; ++order) {
-    EXPECT_GT(tried[order - 1], 50) << "order " << order;
-    EXPECT_GT(largest[order - 1], 0.02) << "the bound of order " << order << " is far off";
-  }
-}
-
-TEST(ChangeBound, IsTheSameForAllSimdLevels) {
-  test::Random random(8);
-  const Caps caps = make_caps(Boundary(weld(test::soup(random, 40), {})), 0.05);
-  const ChangeBound best(caps);
-  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    const ChangeBound bound(caps, level);
-    for (int i = 0; i < 200; ++i) {
-      const Vec3 a = test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}});
-      const Box box{a, a + 0.01 * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}})};
-      EXPECT_EQ(bound.gradient_in(box, 1e9), best.gradient_in(box, 1e9));
-      EXPECT_EQ(bound.derivatives_in(box), best.derivatives_in(box));
-    }
-  }
-}
-
-// Points of pieces, in small boxes around them and in boxes that they are on the faces of.
-TEST(FlatPiece, MeetsTheBoxesThatItsPointsAreIn) {
-  test::Random random(9);
-  const Box unit{{0, 0, 0}, {1, 1, 1}};
-  int missed = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const double scale = std::pow(2.0, std::floor(test::uniform(random, -30, 1)));
-    const Vec3 shift = i % 3 ? test::uniform_point(random, unit) : Vec3{};
-    const auto corner = [&] {  // some in one plane along the axes
-      Vec3 p = scale * test::uniform_point(random, unit);
-      if (i % 5 == 0) p.z = 0.0;
-      return shift + p;
-    };
-    const Vec3 a = corner(), b = corner(), c = i % 7 ? corner() : 0.5 * (a + b);
-    const FlatPiece piece = FlatPiece::of_triangle(a, b, c, box_of(a, b, c));
-    const FlatPiece cone = FlatPiece::cone_of(a, b);
-    for (int j = 0; j < 20; ++j) {
-      const double u = test::uniform(random, 0, 1), v = (1 - u) * test::uniform(random, 0, 1);
-      Vec3 on_triangle = (1 - u - v) * a + u * b + v * c, on_cone = (1 - u) * a + u * b;
-      on_cone.x -= scale * v;
-      // Up to rounding, these are of the pieces: a box is that much larger.
-      const double error = 4 * 0x1p-52 * (scale + 1);
-      const Vec3 sides = scale * std::pow(10.0, test::uniform(random, -6, 0)) * test::uniform_point(random, unit);
-      const double share = j % 4 == 0 ? 0.0 : j % 4 == 1 ? 1.0 : test::uniform(random, 0, 1);
-      const auto box_around = [&](const Vec3& p) {
-        const Vec3 e{error, error, error};
-        return Box{p - share * sides - e, p + (1 - share) * sides + e};
-      };
-      EXPECT_TRUE(piece.may_meet(box_around(on_triangle)));
-      EXPECT_TRUE(cone.may_meet(box_around(on_cone)));
-      const Vec3 elsewhere = shift + scale * test::uniform_point(random, unit);
-      missed += !piece.may_meet(Box{elsewhere, elsewhere + 0.01 * sides});
-    }
-  }
-  EXPECT_GT(missed, 40'000);
-}
 
 // Two halves that touch in vertices of their own: edges there and back, which no cap fills.
 TEST(RuleBlocks, OfMeshesWithSeams) {

@@ -302,10 +302,10 @@ MUTANTS = [
         ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + norm(center - from))",
          "std::min(band_, distance + norm(center - from))")]),
     Mutant("half_spaces_without_bend", "closest points seen from elsewhere are farther than by their direction", [
-        ("core/distance/block_kernel.cpp", "nearest.distance + bend(nearest.distance, middle.radius) +",
+        ("core/distance/near_triangles-inl.h", "nearest.distance + bend(nearest.distance, middle.radius) +",
          "nearest.distance +")]),
     Mutant("half_spaces_without_turn", "directions to triangles differ", [
-        ("core/distance/block_kernel.cpp", "hn::Add(within, gained)", "within")]),
+        ("core/distance/near_triangles-inl.h", "hn::Add(within, gained)", "within")]),
     Mutant("lanes_without_care", "lanes that are not sure are evaluated again", [
         ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, settled)) take_care(pack, slot, n, settled, group);",
          "")]),
@@ -343,7 +343,7 @@ MUTANTS = [
         ("core/evaluation/rule_blocks.cpp", "candidate.change + mesh_.doubt()",
          "0 * candidate.change + mesh_.doubt()")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
-        ("core/evaluation/rule_blocks.cpp", "return visit(index + from, index + to, n - caps);",
+        ("core/evaluation/side_samples.cpp", "return visit(index + from, index + to, n - caps);",
          "return visit(index + from, index + to, n - 0 * caps);")]),
     Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
         ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
@@ -535,13 +535,14 @@ MUTANTS = [
         ("core/boundary/change_kernel.cpp", "of_length = hn::Mul(of_length, inverse);",
          "of_length = hn::Mul(hn::Set(d, 0.1), hn::Mul(of_length, inverse));")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.nodes.bend + ", "const double needed = ")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.nodes->bend() + ", "const double needed = ")]),
     Mutant("polynomials_are_closer", "a polynomial is off by the product of the distances from its nodes", [
         ("core/evaluation/lattice_polynomial.cpp", "product_ * derivative", "product_ / 8 * derivative")]),
     Mutant("parts_do_not_change", "a part of an interpolated block is decided only if the change in it allows it", [
-        ("core/evaluation/rule_blocks.cpp", "needed + radius * candidate.gradient", "needed + 0 * radius * candidate.gradient")]),
+        ("core/evaluation/rule_blocks.cpp", "const double change = radius * candidate.gradient", "const double change = 0 * radius * candidate.gradient")]),
     Mutant("interpolation_with_wrong_weights", "a sample has the weights of its place in the block", [
-        ("core/evaluation/rule_blocks.cpp", "x.weights(0).data() + at(0, part.first[0])", "x.weights(0).data()")]),
+        ("core/evaluation/lattice_polynomial.cpp", "x.weights(0).data() + (part.begin[0] - begin_[0])",
+         "x.weights(0).data()")]),
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [

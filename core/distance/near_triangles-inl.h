@@ -1,0 +1,225 @@
+// Which triangles may be nearest to some samples, by boxes and half-spaces (docs/method.md, "The nearest triangle").
+// Included once per SIMD level.
+#if defined(RAYCONE_CORE_NEAR_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYCONE_CORE_NEAR_TRIANGLES_INL_H_
+#undef RAYCONE_CORE_NEAR_TRIANGLES_INL_H_
+#else
+#define RAYCONE_CORE_NEAR_TRIANGLES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/distance/block_kernel.h"
+#include "core/distance/to_front-inl.h"
+#include "core/distance/triangle_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raycone {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; beyond_error() adds those of distances
+constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
+
+// Whatever is compressed into a list may write this far beyond its end.
+void make_room(NearTriangles& list, std::size_t count) {
+  list.count = 0;
+  if (list.places.size() >= count + kWidth) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (auto* const column : {&list.lower[axis], &list.upper[axis], &list.away[axis]}) column->resize(count + kWidth);
+  }
+  list.distances.resize(count + kWidth);
+  list.places.resize(count + kWidth);
+}
+
+// Triangles beyond the last one, for the last lanes: they are too far away to be near anything.
+void close(NearTriangles& list) {
+  constexpr double kFarAway = 1e300;
+  for (std::size_t n = list.count; n < list.count + kWidth; ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) list.lower[axis][n] = list.upper[axis][n] = kFarAway;
+    list.places[n] = 0;
+    list.distances[n] = 0.0;
+  }
+}
+
+struct BoxLanes {
+  VectorLanes lower, upper;
+};
+
+HWY_INLINE BoxLanes boxes_of(const NearTriangles& list, std::size_t n) {
+  return {{hn::LoadU(d, &list.lower[0][n]), hn::LoadU(d, &list.lower[1][n]), hn::LoadU(d, &list.lower[2][n])},
+          {hn::LoadU(d, &list.upper[0][n]), hn::LoadU(d, &list.upper[1][n]), hn::LoadU(d, &list.upper[2][n])}};
+}
+HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
+  return {{hn::Load(d, &pack.lower[0][i]), hn::Load(d, &pack.lower[1][i]), hn::Load(d, &pack.lower[2][i])},
+          {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
+}
+
+// Where triangles are from the middle of some samples. Where directions are not sure, they are 0, and so are the
+// distances. Others grow along `away`, of length 1.
+struct Bearings {
+  Lanes distances;
+  VectorLanes away;
+};
+
+HWY_INLINE Bearings bearings_of(const NearTriangles& list, std::size_t n) {
+  return {hn::LoadU(d, &list.distances[n]),
+          {hn::LoadU(d, &list.away[0][n]), hn::LoadU(d, &list.away[1][n]), hn::LoadU(d, &list.away[2][n])}};
+}
+template <class Triangles>
+HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangles) {
+  const Squares some = squared(triangles, p);
+  const Lanes distances = hn::Sqrt(some.values);
+  const LaneMask sure = hn::Ge(some.values, triangles(triangles.pack().direction_from));
+  const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
+  return {
+      hn::IfThenElseZero(sure, distances),
+      {hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.x)), hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.y)),
+       hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))}};
+}
+
+HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
+                       LaneMask wanted) {
+  const std::size_t at = list.count;
+  const ToFront front(wanted);
+  front.store(d, bearings.distances, &list.distances[at]);
+  front.store(d, bearings.away.x, &list.away[0][at]);
+  front.store(d, bearings.away.y, &list.away[1][at]);
+  front.store(d, bearings.away.z, &list.away[2][at]);
+  front.store(d, boxes.lower.x, &list.lower[0][at]);
+  front.store(d, boxes.lower.y, &list.lower[1][at]);
+  front.store(d, boxes.lower.z, &list.lower[2][at]);
+  front.store(d, boxes.upper.x, &list.upper[0][at]);
+  front.store(d, boxes.upper.y, &list.upper[1][at]);
+  front.store(d, boxes.upper.z, &list.upper[2][at]);
+  front.store(Places(), places, &list.places[at]);
+  list.count += front.count();
+}
+
+// The samples of a box from its middle.
+struct Middle {
+  VectorLanes lower, upper;  // of the box that the samples span
+  Vec3 center;
+  double radius;
+  Vec3 extent;  // from there along each axis
+
+  Middle(const LatticeRows& rows, const SampleBox& box) {
+    const auto [first, last] = rows.box_of(box);
+    lower = in_all_lanes(first);
+    upper = in_all_lanes(last);
+    center = 0.5 * (first + last);
+    const Vec3 from_first = center - first, to_last = last - center;
+    extent = {std::max(from_first.x, to_last.x), std::max(from_first.y, to_last.y), std::max(from_first.z, to_last.z)};
+    radius = std::sqrt(raycone::dot(extent, extent));
+  }
+};
+
+double square_of_reach(double reach) { return beyond_error(reach * kSlack * (reach * kSlack)); }
+
+// The triangles of packs that are near the block; their bearings from its middle where these are wanted.
+void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, NearTriangles& near) {
+  const VectorLanes center = in_all_lanes(middle.center);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  Bearings bearings{hn::Zero(d), in_all_lanes({})};
+  make_room(near, task.packs.size() * kWidth);
+  for (const std::uint32_t number : task.packs) {
+    const TrianglePack& pack = task.tree.packs()[number];
+    for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+      const BoxLanes boxes = boxes_of(pack, i);
+      const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
+      if (hn::AllFalse(d, wanted)) continue;
+      if (with_bearings) bearings = bearings_from(center, PackedTriangles(pack, i));
+      const Places integers;
+      append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
+    }
+  }
+  close(near);
+}
+
+// Puts copies of the triangles side by side, so that many looks at them take no gathering. Places are then those in
+// `packs`.
+void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<TrianglePack>& packs) {
+  const std::size_t count = (near.count + kWidth - 1) / kWidth;
+  if (packs.size() < count) packs.resize(count);
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const auto place = static_cast<std::size_t>(near.places[n]);
+    packs[n / kWidth].copy(n % kWidth, tree.packs()[place / kStride], place % kStride);
+    near.places[n] = static_cast<std::int64_t>(n / kWidth * kStride + n % kWidth);
+  }
+}
+
+// `near`: all of `packs`, in their order.
+void take_bearings(const Vec3& p, const std::vector<TrianglePack>& packs, NearTriangles& near) {
+  const VectorLanes ps = in_all_lanes(p);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const Bearings bearings = bearings_from(ps, PackedTriangles(packs[n / kWidth], n % kWidth));
+    hn::StoreU(bearings.distances, d, &near.distances[n]);
+    hn::StoreU(bearings.away.x, d, &near.away[0][n]);
+    hn::StoreU(bearings.away.y, d, &near.away[1][n]);
+    hn::StoreU(bearings.away.z, d, &near.away[2][n]);
+  }
+}
+
+struct Bearing {
+  double distance;
+  Vec3 away;
+};
+
+// That of the nearest triangle of which anything is known; else an infinite distance.
+Bearing nearest_of(const NearTriangles& near) {
+  Bearing nearest{kNowhere, {}};
+  for (std::size_t n = 0; n < near.count; ++n) {
+    const double distance = near.distances[n];
+    if (distance > 0.0 && distance < nearest.distance) {
+      nearest = {distance, {near.away[0][n], near.away[1][n], near.away[2][n]}};
+    }
+  }
+  return nearest;
+}
+
+// How much farther than by its direction a triangle at this distance gets within the radius at most.
+double bend(double distance, double radius) {
+  return distance > radius / 2 ? radius * radius / (2 * distance) : 2 * (radius - distance);
+}
+
+// More than distances within `radius` of the middle, of about `distance`, are off by, and more than directions are off
+// whose distance is sure.
+double slack_of(double distance, double radius) { return 1e-5 * radius + 1e-8 * distance + 1e-14; }
+
+// Of triangles whose bearings are taken from the middle of some samples, those that may be nearest to one of these.
+void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles& near, NearTriangles& fewer) {
+  const Bearing nearest = nearest_of(near);
+  const Lanes within =
+      hn::Set(d, nearest.distance + bend(nearest.distance, middle.radius) + slack_of(nearest.distance, middle.radius));
+  const VectorLanes away = in_all_lanes(nearest.away);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  const Places integers;
+  make_room(fewer, near.count);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(near, n);
+    const Bearings bearings = bearings_of(near, n);
+    const VectorLanes turn = minus(away, bearings.away);
+    const Lanes gained = dot({hn::Abs(turn.x), hn::Abs(turn.y), hn::Abs(turn.z)}, in_all_lanes(middle.extent));
+    const LaneMask wanted =
+        hn::And(hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box),
+                hn::Le(bearings.distances, hn::Add(within, gained)));
+    if (hn::AllFalse(d, wanted)) continue;
+    append(fewer, boxes, bearings, hn::LoadU(integers, &near.places[n]), wanted);
+  }
+  close(fewer);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace raycone
+HWY_AFTER_NAMESPACE();
+
+#endif

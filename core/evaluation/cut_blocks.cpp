@@ -1,0 +1,85 @@
+#include "core/evaluation/cut_blocks.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace raycone {
+namespace {
+
+// In samples: the sides of the largest blocks, and rows that are worth halving no more.
+constexpr std::array<std::size_t, 3> kSides{96, 48, 48};
+constexpr std::size_t kRow = 32;
+
+}  // namespace
+
+CutBlocks::CutBlocks(const LatticeRows& rows, std::span<const FlatPiece> caps, std::vector<FlatPiece> cones)
+    : rows_(rows), caps_(caps), cones_(std::move(cones)) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    counts_[axis] = (rows_.along(axis).size() + kSides[axis] - 1) / kSides[axis];
+  }
+  columns_of_caps_ = by_column(caps_);
+  columns_of_cones_ = by_column(cones_);
+}
+
+// [column]: what may project into it.
+CutBlocks::Columns CutBlocks::by_column(std::span<const FlatPiece> pieces) const {
+  // The blocks whose boxes may meet [lower, upper].
+  const auto range = [&](std::size_t axis, double lower, double upper) {
+    const std::vector<double>& all = rows_.along(axis);
+    const auto first = static_cast<std::size_t>(std::ranges::lower_bound(all, lower) - all.begin());
+    const auto last = static_cast<std::size_t>(std::ranges::upper_bound(all, upper) - all.begin());
+    return std::array{(std::max<std::size_t>(first, 1) - 1) / kSides[axis],
+                      std::min(last, all.size() - 1) / kSides[axis]};
+  };
+  Columns columns(counts_[1] * counts_[2]);
+  for (std::uint32_t number = 0; number < pieces.size(); ++number) {
+    const Box& box = pieces[number].box();
+    const auto [y_first, y_last] = range(1, box.lower.y, box.upper.y);
+    const auto [z_first, z_last] = range(2, box.lower.z, box.upper.z);
+    for (std::size_t z = z_first; z <= z_last; ++z) {
+      for (std::size_t y = y_first; y <= y_last; ++y) columns[z * counts_[1] + y].push_back(number);
+    }
+  }
+  return columns;
+}
+
+CutBlock CutBlocks::operator[](std::size_t n) const {
+  const std::array<std::size_t, 3> number{n % counts_[0], n / counts_[0] % counts_[1], n / counts_[0] / counts_[1]};
+  CutBlock block{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    block.samples.begin[axis] = number[axis] * kSides[axis];
+    block.samples.end[axis] = std::min(block.samples.begin[axis] + kSides[axis], rows_.along(axis).size());
+  }
+  const std::size_t column = number[2] * counts_[1] + number[1];
+  block.caps = columns_of_caps_[column];
+  if (!block.caps.empty()) block.cones = columns_of_cones_[column];
+  return block;
+}
+
+void CutBlocks::forget_others(CutBlock& block, const Box& box) const {
+  std::erase_if(block.caps, [&](std::uint32_t piece) { return !caps_[piece].may_meet(box); });
+  if (block.caps.empty()) block.cones.clear();
+  std::erase_if(block.cones, [&](std::uint32_t cone) { return !cones_[cone].may_meet(box); });
+}
+
+void CutBlocks::divide(CutBlock block, std::vector<CutBlock>& parts) const {
+  const Box box = rows_.box_of(block.samples);
+  const Vec3 size = box.upper - box.lower;
+  const bool across = block.is_cut() && block.samples.side(0) <= kRow;
+  const double longest = std::max({across ? 0.0 : size.x, size.y, size.z});
+  std::vector<CutBlock> pieces{std::move(block)};
+  for (std::size_t axis = across ? 1 : 0; axis < 3; ++axis) {
+    if (pieces.front().samples.side(axis) < 2 || size[static_cast<int>(axis)] < longest / 2) continue;
+    const std::size_t count = pieces.size();
+    for (std::size_t n = 0; n < count; ++n) {
+      CutBlock upper = pieces[n];
+      const std::size_t half = upper.samples.begin[axis] + upper.samples.side(axis) / 2;
+      pieces[n].samples.end[axis] = upper.samples.begin[axis] = half;
+      pieces.push_back(std::move(upper));
+    }
+  }
+  std::ranges::move(pieces, std::back_inserter(parts));
+}
+
+}  // namespace raycone

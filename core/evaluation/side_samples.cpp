@@ -1,0 +1,126 @@
+#include "core/evaluation/side_samples.h"
+
+namespace raycone {
+namespace {
+
+// Neighbours in space have codes that are near to each other (Morton).
+std::uint64_t code_of(const SideSamples::Index& sample) {
+  static constexpr auto kSpread = [] {
+    std::array<std::uint32_t, 256> spread{};
+    for (std::uint32_t n = 0; n < spread.size(); ++n) {
+      for (std::uint32_t bit = 0; bit < 8; ++bit) spread[n] |= (n >> bit & 1U) << (3 * bit);
+    }
+    return spread;
+  }();
+  std::uint64_t code = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint64_t low = kSpread[sample[axis] & 255U], high = kSpread[sample[axis] >> 8U & 255U];
+    code |= (low | high << 24U) << axis;
+  }
+  return code;
+}
+
+}  // namespace
+
+template <class Visit>
+bool SideSamples::for_each_run(const SampleBox& box, Crossings which, const Visit& visit) const {
+  for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
+    for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
+      const std::size_t row = row_of(j, k), index = row * rows_.xs.size();
+      const bool all =
+          crossings_.runs(row).for_each(box.begin[0], box.end[0], [&](std::size_t begin, std::size_t end, double n) {
+            if (which == Crossings::kMesh) return visit(index + begin, index + end, n);
+            return cap_crossings_.runs(row).for_each(begin, end, [&](std::size_t from, std::size_t to, double caps) {
+              return visit(index + from, index + to, n - caps);
+            });
+          });
+      if (!all) return false;
+    }
+  }
+  return true;
+}
+
+bool SideSamples::decide(const SampleBox& box, Crossings which, double rest, double needed) const {
+  return for_each_run(box, which, [&](std::size_t begin, std::size_t end, double n) {
+    const double w = n + rest;
+    if (!is_certain(w, needed)) return false;
+    std::fill(place(begin), place(end), holds(side_.rule(), w) ? 1 : 0);
+    return true;
+  });
+}
+
+// Some samples at a time, where all of them are on the same side.
+void SideSamples::decide_row(const Index& first, Crossings which, std::span<const double> rest, double needed,
+                             std::vector<SampleBox>& undecided) const {
+  constexpr std::size_t kTogether = 16;
+  const std::size_t x = first[0], j = first[1], k = first[2];
+  const std::size_t row = row_of(j, k) * rows_.xs.size();
+  const SampleBox part{first, {x + rest.size(), j + 1, k + 1}};
+  for_each_run(part, which, [&](std::size_t begin, std::size_t end, double n) {
+    for (std::size_t some = begin - row; some < end - row; some += kTogether) {
+      const std::size_t last = std::min(some + kTogether, end - row);
+      const auto values = rest.subspan(some - x, last - some);
+      double least = values[0], most = values[0];
+      for (const double value : values) least = std::min(least, value), most = std::max(most, value);
+      const double middle = n + (least + most) / 2;
+      if (is_certain(middle, needed + (most - least) / 2 + kTurnsRound * (1 + std::abs(least) + std::abs(most)))) {
+        std::fill(place(row + some), place(row + last), holds(side_.rule(), middle) ? 1 : 0);
+        continue;
+      }
+      for (std::size_t i = some; i < last; ++i) {
+        const double w = n + rest[i - x];
+        if (is_certain(w, needed)) {
+          sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
+        } else if (i > begin - row && !undecided.empty() && undecided.back().end == Index{i, j + 1, k + 1}) {
+          ++undecided.back().end[0];  // of the same run
+        } else {
+          undecided.push_back({{i, j, k}, {i + 1, j + 1, k + 1}});
+        }
+      }
+    }
+    return true;
+  });
+}
+
+// Samples that share a ray are cheaper together.
+void SideSamples::evaluate_rows(const SampleBox& box) const {
+  RowTiles tiles(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
+  for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
+    for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
+      const std::size_t row = row_of(j, k);
+      tiles.begin_row(box.side(0));
+      crossings_.runs(row).for_each(box.begin[0], box.end[0], [&](std::size_t begin, std::size_t end, double crossed) {
+        for (std::size_t i = begin; i < end; ++i) {
+          tiles.add(row * rows_.xs.size() + i, rows_.query({i, j, k}), static_cast<std::int64_t>(crossed));
+        }
+        return true;
+      });
+    }
+  }
+  tiles.finish();
+}
+
+// The far field takes much the same way for neighbours.
+void SideSamples::evaluate_each(std::span<const SampleBox> boxes) const {
+  struct Place {
+    std::uint64_t code;
+    Index sample;
+  };
+  std::vector<Place> places;
+  for (const SampleBox& box : boxes) {
+    for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
+      for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
+        for (std::size_t i = box.begin[0]; i < box.end[0]; ++i) places.push_back({code_of({i, j, k}), {i, j, k}});
+      }
+    }
+  }
+  std::ranges::sort(places, {}, &Place::code);
+  LatticeTile tile(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
+  for (const Place& place : places) {
+    const auto& [i, j, k] = place.sample;
+    add(tile, row_of(j, k) * rows_.xs.size() + i, place.sample);
+  }
+  tile.evaluate();
+}
+
+}  // namespace raycone

@@ -1,0 +1,75 @@
+#include "core/boundary/change_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/mesh/weld.h"
+#include "tests/support/direct_winding_number.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+// Between places of a box the winding number changes by integers, and by what the bound says. So do its differences of
+// any order: their coefficients are integers.
+TEST(ChangeBound, HoldsBetweenAllPlaces) {
+  test::Random random(6);
+  std::array<int, kChangeOrders> tried{};
+  std::array<double, kChangeOrders> largest{};  // part of the bound that was reached
+  for (int i = 0; i < 60; ++i) {
+    const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
+    const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
+    for (int j = 0; j < 20; ++j) {
+      const Vec3 a = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
+      const double size = std::pow(10.0, test::uniform(random, -3, 0));
+      const Vec3 b = a + size * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
+      const ChangeSums most = bound.derivatives_in({a, b});
+      EXPECT_EQ(bound.gradient_in({a, b}, 1e-30), std::numeric_limits<double>::infinity());
+      if (most[0] < 1e6) {
+        EXPECT_NEAR(bound.gradient_in({a, b}, 1e6), most[0], 1e-5 * most[0]);
+      }
+      const auto beside_integers = [](double w) { return std::abs(w - std::nearbyint(w)); };
+      double factorial = 1.0;
+      for (std::size_t order = 1; order <= kChangeOrders; ++order) {
+        factorial *= static_cast<double>(order);
+        const Vec3 step = (1.0 / static_cast<double>(order)) * (b - a);
+        const double allowed = factorial * most[order - 1] * std::pow(norm(step), static_cast<double>(order));
+        if (!(allowed > 1e-6 && allowed < 0.5)) continue;  // not rounding alone
+        double difference = 0.0, binomial = 1.0;
+        for (std::size_t n = 0; n <= order; ++n) {
+          difference += binomial * test::direct_winding_number(mesh, a + static_cast<double>(n) * step);
+          binomial *= -static_cast<double>(order - n) / static_cast<double>(n + 1);
+        }
+        EXPECT_LE(beside_integers(difference), allowed) << "order " << order;
+        largest[order - 1] = std::max(largest[order - 1], beside_integers(difference) / allowed);
+        ++tried[order - 1];
+      }
+    }
+  }
+  for (std::size_t order = 1; order <= kChangeOrders; ++order) {
+    EXPECT_GT(tried[order - 1], 50) << "order " << order;
+    EXPECT_GT(largest[order - 1], 0.02) << "the bound of order " << order << " is far off";
+  }
+}
+
+TEST(ChangeBound, IsTheSameForAllSimdLevels) {
+  test::Random random(8);
+  const Caps caps = make_caps(Boundary(weld(test::soup(random, 40), {})), 0.05);
+  const ChangeBound best(caps);
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    const ChangeBound bound(caps, level);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 a = test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}});
+      const Box box{a, a + 0.01 * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}})};
+      EXPECT_EQ(bound.gradient_in(box, 1e9), best.gradient_in(box, 1e9));
+      EXPECT_EQ(bound.derivatives_in(box), best.derivatives_in(box));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raycone

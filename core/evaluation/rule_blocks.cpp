@@ -155,19 +155,23 @@ Candidate RuleBlocks::candidate_of(CutBlock block, const Box& box) const {
   return {std::move(block), which, gradient, radius * gradient * (1 + kTurnsRound), {middle}};
 }
 
-// Sets their rests, those of all together.
+// Sets their rests, those of neighbours in space together: they take much the same way through the far field.
 void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
   struct Place {
+    std::uint64_t code;
     Candidate* candidate;
     std::size_t sample;
   };
   std::vector<Place> places;
   for (Candidate& candidate : candidates) {
     candidate.rest.resize(candidate.samples.size());
-    for (std::size_t n = 0; n < candidate.samples.size(); ++n) places.push_back({&candidate, n});
+    for (std::size_t n = 0; n < candidate.samples.size(); ++n) {
+      places.push_back({SideSamples::code_of(candidate.samples[n]), &candidate, n});
+    }
   }
+  std::ranges::sort(places, {}, &Place::code);
   auto set = [&](std::size_t index, const Vec3&, double w) {
-    const auto [candidate, n] = places[index];
+    const auto [code, candidate, n] = places[index];
     candidate->rest[n] = w - samples_.crossings_at(candidate->samples[n], candidate->which);
   };
   using Tile = LatticeTile<decltype(set)>;

@@ -1,10 +1,8 @@
 #include "core/evaluation/side_samples.h"
 
 namespace raycone {
-namespace {
 
-// Neighbours in space have codes that are near to each other (Morton).
-std::uint64_t code_of(const SideSamples::Index& sample) {
+std::uint64_t SideSamples::code_of(const Index& sample) {
   static constexpr auto kSpread = [] {
     std::array<std::uint32_t, 256> spread{};
     for (std::uint32_t n = 0; n < spread.size(); ++n) {
@@ -19,8 +17,6 @@ std::uint64_t code_of(const SideSamples::Index& sample) {
   }
   return code;
 }
-
-}  // namespace
 
 template <class Visit>
 bool SideSamples::for_each_run(const SampleBox& box, Crossings which, const Visit& visit) const {

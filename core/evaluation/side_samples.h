@@ -62,6 +62,9 @@ class SideSamples {
              static_cast<std::int64_t>(cap_crossings_.runs(row).at(sample[0])));
   }
 
+  // Neighbours in space have codes that are near to each other (Morton). Of indices below 2^16; others repeat.
+  [[nodiscard]] static std::uint64_t code_of(const Index& sample);
+
   // Sets the sides of all samples of the box if they are certain, the rest of each being `rest`, or off from it by at
   // most `needed`. Returns whether they are.
   bool decide(const SampleBox& box, Crossings which, double rest, double needed) const;

@@ -184,8 +184,12 @@ void find_triangles(const BlockTask& task, BlockScratch& scratch) {
   const Middle middle(task.rows, task.block);
   // Half-spaces tell nothing of triangles that are nearer than the block is large.
   const bool is_far = task.reach > 2 * middle.radius;
-  find_near(task, middle, is_far, is_far ? scratch.all : scratch.of_block);
-  if (is_far) keep_near(task, middle, scratch.all, scratch.of_block);
+  find_near(task, middle, is_far, scratch.of_block);
+  if (is_far) {
+    keep_nearest(middle, scratch.of_block);
+  } else {
+    close(scratch.of_block);
+  }
   pack_together(task.tree, scratch.of_block, scratch.packed);
 }
 
@@ -195,9 +199,9 @@ void fill_block(const BlockTask& task, BlockScratch& scratch) {
   if (scratch.of_block.count == 0) return;
   for_each_part(task.block, kPartSide, [&](const SampleBox& part) {
     const Middle of_part(task.rows, part);
-    take_bearings(of_part.center, scratch.packed, scratch.of_block);
-    keep_near(task, of_part, scratch.of_block, scratch.of_part);
+    find_in_reach(task, of_part, scratch.packed, scratch.of_block, scratch.of_part);
     if (scratch.of_part.count == 0) return;
+    keep_nearest(of_part, scratch.of_part);
     for_each_part(part, kGroupSide, [&](const SampleBox& box) { fill_group(task, box, of_part, scratch); });
   });
 }

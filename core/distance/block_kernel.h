@@ -33,9 +33,9 @@ struct NearTriangles {
 // What a task keeps from block to block.
 struct BlockScratch {
   std::vector<std::uint32_t> packs;
-  NearTriangles all, of_block, of_part;  // places: in the tree's packs, of the others in `packed`
-  std::vector<TrianglePack> packed;      // those of the block
-  std::vector<double> bounds;            // below the squares of those of the part, at all samples of a group
+  NearTriangles of_block, of_part;   // places: in `packed`
+  std::vector<TrianglePack> packed;  // those of the block
+  std::vector<double> bounds;        // below the squares of those of the part, at all samples of a group
   std::array<double, kBlockSide * kBlockSide * kBlockSide> squares;  // by index_in_block()
 };
 

@@ -43,20 +43,26 @@ class Descent {
         visitor_(visitor),
         fill_block_(block_kernel(tree.simd())) {}
 
-  // `distance`: of `from`, or infinity.
+  // `distance`: of `from`, or infinity where it is not known.
   void fill(const SampleBox& block, const Vec3& from, double distance) {
     const Box box = rows_.box_of(block);
     const Vec3 center = 0.5 * (box.lower + box.upper);
     const double radius = std::max(norm(center - box.lower), norm(box.upper - center));
+    // Where the band is narrow, no distance from the middle says more than the band does: boxes serve better.
+    const bool is_narrow = band_ <= radius;
     const double reach = std::min(band_ + radius, distance + norm(center - from)) * kSlack;
-    const double square = tree_.squared_distance(center, reach * reach);
-    if (square == kNowhere) return visitor_.beyond(block);
+    const double square = is_narrow ? kNowhere : tree_.squared_distance(center, reach * reach);
+    if (square == kNowhere && !is_narrow) return visitor_.beyond(block);
     const double here = std::sqrt(square);
+    const double block_reach = std::min(band_, here + radius) * kSlack;
     const std::size_t axis = longest_axis(block);
     const std::size_t blocks = ends_[axis].count(block.begin[axis], block.end[axis]);
+    if (blocks == 1 || is_narrow) {
+      const std::size_t most = blocks == 1 ? std::numeric_limits<std::size_t>::max() : 1;
+      tree_.find_packs(box, beyond_error(block_reach * block_reach), most, scratch_.packs);
+      if (scratch_.packs.empty()) return visitor_.beyond(block);
+    }
     if (blocks == 1) {
-      const double block_reach = std::min(band_, here + radius) * kSlack;
-      tree_.find_packs(box, beyond_error(block_reach * block_reach), scratch_.packs);
       fill_block_({tree_, rows_, block, block_reach, scratch_.packs}, scratch_);
       return visitor_.block(block, scratch_.squares);
     }

@@ -40,9 +40,10 @@ class DistanceTree {
     return search_(*this, p, limit);
   }
 
-  // Sets `found` to the packs whose boxes' squared distance from `box` is below `limit`. Thread-safe.
-  void find_packs(const Box& box, double limit, std::vector<std::uint32_t>& found) const {
-    find_packs_(*this, box, limit, found);
+  // Sets `found` to the packs whose boxes' squared distance from `box` is below `limit`, or to any `most` of them.
+  // Thread-safe.
+  void find_packs(const Box& box, double limit, std::size_t most, std::vector<std::uint32_t>& found) const {
+    find_packs_(*this, box, limit, most, found);
   }
 
   [[nodiscard]] std::span<const TrianglePack> packs() const { return {packs_.get(), pack_count_}; }
@@ -56,7 +57,8 @@ class DistanceTree {
   std::vector<Level> levels_;
   SimdLevel simd_;
   double (*search_)(const DistanceTree& tree, const Vec3& p, double limit);
-  void (*find_packs_)(const DistanceTree& tree, const Box& box, double limit, std::vector<std::uint32_t>& found);
+  void (*find_packs_)(const DistanceTree& tree, const Box& box, double limit, std::size_t most,
+                      std::vector<std::uint32_t>& found);
 };
 
 }  // namespace raycone

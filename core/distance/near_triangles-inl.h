@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/distance/block_kernel.h"
@@ -141,7 +142,6 @@ void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, 
       append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
     }
   }
-  close(near);
 }
 
 // Puts copies of the triangles side by side, so that many looks at them take no gathering. Places are then those in
@@ -156,15 +156,20 @@ void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<Tr
   }
 }
 
-// `near`: all of `packs`, in their order.
-void take_bearings(const Vec3& p, const std::vector<TrianglePack>& packs, NearTriangles& near) {
-  const VectorLanes ps = in_all_lanes(p);
-  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const Bearings bearings = bearings_from(ps, PackedTriangles(packs[n / kWidth], n % kWidth));
-    hn::StoreU(bearings.distances, d, &near.distances[n]);
-    hn::StoreU(bearings.away.x, d, &near.away[0][n]);
-    hn::StoreU(bearings.away.y, d, &near.away[1][n]);
-    hn::StoreU(bearings.away.z, d, &near.away[2][n]);
+// Of `all`, which are those of `packs` in their order, the ones within reach of the samples, with bearings from the
+// middle. Neighbours in packs are neighbours in space: mostly all of some lanes are out of reach.
+void find_in_reach(const BlockTask& task, const Middle& middle, const std::vector<TrianglePack>& packs,
+                   const NearTriangles& all, NearTriangles& found) {
+  const VectorLanes center = in_all_lanes(middle.center);
+  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
+  const Places integers;
+  make_room(found, all.count);
+  for (std::size_t n = 0; n < all.count; n += hn::Lanes(d)) {
+    const BoxLanes boxes = boxes_of(all, n);
+    const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
+    if (hn::AllFalse(d, wanted)) continue;
+    const Bearings bearings = bearings_from(center, PackedTriangles(packs[n / kWidth], n % kWidth));
+    append(found, boxes, bearings, hn::LoadU(integers, &all.places[n]), wanted);
   }
 }
 
@@ -175,14 +180,20 @@ struct Bearing {
 
 // That of the nearest triangle of which anything is known; else an infinite distance.
 Bearing nearest_of(const NearTriangles& near) {
-  Bearing nearest{kNowhere, {}};
-  for (std::size_t n = 0; n < near.count; ++n) {
-    const double distance = near.distances[n];
-    if (distance > 0.0 && distance < nearest.distance) {
-      nearest = {distance, {near.away[0][n], near.away[1][n], near.away[2][n]}};
-    }
+  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
+  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
+    const Lanes distances = hn::LoadU(d, &near.distances[n]);
+    const LaneMask known = hn::And(hn::FirstN(d, near.count - n), hn::Gt(distances, hn::Zero(d)));
+    const LaneMask nearer = hn::And(known, hn::Lt(distances, least));
+    least = hn::IfThenElse(nearer, distances, least);
+    number = hn::IfThenElse(nearer, hn::Iota(d, static_cast<double>(n)), number);
   }
-  return nearest;
+  const double distance = hn::GetLane(hn::MinOfLanes(d, least));
+  if (distance == kNowhere) return {kNowhere, {}};
+  const LaneMask is_least = hn::Eq(least, hn::Set(d, distance));
+  const auto n =
+      static_cast<std::size_t>(hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere)))));
+  return {distance, {near.away[0][n], near.away[1][n], near.away[2][n]}};
 }
 
 // How much farther than by its direction a triangle at this distance gets within the radius at most.
@@ -194,27 +205,24 @@ double bend(double distance, double radius) {
 // whose distance is sure.
 double slack_of(double distance, double radius) { return 1e-5 * radius + 1e-8 * distance + 1e-14; }
 
-// Of triangles whose bearings are taken from the middle of some samples, those that may be nearest to one of these.
-void keep_near(const BlockTask& task, const Middle& middle, const NearTriangles& near, NearTriangles& fewer) {
+// Of triangles with bearings from the middle of some samples, those stay that may be nearest to one of these.
+void keep_nearest(const Middle& middle, NearTriangles& near) {
   const Bearing nearest = nearest_of(near);
   const Lanes within =
       hn::Set(d, nearest.distance + bend(nearest.distance, middle.radius) + slack_of(nearest.distance, middle.radius));
   const VectorLanes away = in_all_lanes(nearest.away);
-  const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
   const Places integers;
-  make_room(fewer, near.count);
-  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const BoxLanes boxes = boxes_of(near, n);
+  const std::size_t count = std::exchange(near.count, 0);
+  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
     const Bearings bearings = bearings_of(near, n);
     const VectorLanes turn = minus(away, bearings.away);
     const Lanes gained = dot({hn::Abs(turn.x), hn::Abs(turn.y), hn::Abs(turn.z)}, in_all_lanes(middle.extent));
-    const LaneMask wanted =
-        hn::And(hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box),
-                hn::Le(bearings.distances, hn::Add(within, gained)));
+    const LaneMask wanted = hn::And(hn::FirstN(d, count - n), hn::Le(bearings.distances, hn::Add(within, gained)));
     if (hn::AllFalse(d, wanted)) continue;
-    append(fewer, boxes, bearings, hn::LoadU(integers, &near.places[n]), wanted);
+    append(near, boxes_of(near, n), bearings, hn::LoadU(integers, &near.places[n]),
+           wanted);  // behind none that is left
   }
-  close(fewer);
+  close(near);
 }
 
 }  // namespace

@@ -91,7 +91,8 @@ double search_nearest(const DistanceTree& tree, const Vec3& p, double limit) {
   return least;
 }
 
-void search_packs(const DistanceTree& tree, const Box& box, double limit, std::vector<std::uint32_t>& found) {
+void search_packs(const DistanceTree& tree, const Box& box, double limit, std::size_t most,
+                  std::vector<std::uint32_t>& found) {
   struct Candidate {
     std::uint32_t level, index;
   };
@@ -101,7 +102,7 @@ void search_packs(const DistanceTree& tree, const Box& box, double limit, std::v
   const VectorLanes from = in_all_lanes(box.lower), to = in_all_lanes(box.upper);
   alignas(64) Bounds bounds;
   found.clear();
-  while (waiting > 0) {
+  while (waiting > 0 && found.size() < most) {
     const Candidate here = stack[--waiting];
     if (here.level == 0) {
       found.push_back(here.index);

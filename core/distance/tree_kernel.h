@@ -1,6 +1,7 @@
 // Searches of a DistanceTree in SIMD lanes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace raycone {
 // DistanceTree::squared_distance().
 using NearestSearch = double (*)(const DistanceTree& tree, const Vec3& p, double limit);
 // DistanceTree::find_packs().
-using PackSearch = void (*)(const DistanceTree& tree, const Box& box, double limit, std::vector<std::uint32_t>& found);
+using PackSearch = void (*)(const DistanceTree& tree, const Box& box, double limit, std::size_t most,
+                            std::vector<std::uint32_t>& found);
 
 // Those of the level, of the best one where the level is not available. Results are the same for every level.
 [[nodiscard]] NearestSearch nearest_search(SimdLevel level);

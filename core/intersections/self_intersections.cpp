@@ -145,6 +145,32 @@ class PairTree {
     }
   }
 
+  // The same for those triangles of a run for which `of` is not 0, and all others whose boxes meet them; of two such
+  // triangles the first one's run has the pair.
+  template <class Visit>
+  void for_each_pair_of(const std::vector<std::uint8_t>& of, std::size_t run, std::vector<std::size_t>& runs,
+                        const Visit& visit) const {
+    const auto is_asked = [&](std::size_t place) { return of[triangles_[place]] != 0; };
+    const std::size_t end = std::min((run + 1) * kWidth, triangles_.size());
+    Node asked;
+    for (std::size_t place = run * kWidth; place < end; ++place) {
+      if (is_asked(place)) asked.set(place % kWidth, box_at(place));
+    }
+    runs.clear();
+    find_runs(levels_.size() - 1, 0, 0, asked.box(), runs);
+    for (std::size_t place = run * kWidth; place < end && !runs.empty(); ++place) {
+      if (!is_asked(place)) continue;
+      const NumberBox box = box_at(place);
+      for (const std::size_t other_run : runs) {
+        for (unsigned meeting = levels_.front()[other_run].meeting(box); meeting != 0; meeting &= meeting - 1) {
+          const std::size_t other = other_run * kWidth + static_cast<std::size_t>(std::countr_zero(meeting));
+          if (other == place || (other < place && is_asked(other))) continue;
+          if (!visit(place, other)) return;
+        }
+      }
+    }
+  }
+
  private:
   struct alignas(64) Node {
     std::array<std::array<float, kWidth>, 3> lower, upper;  // by axis; empty boxes meet nothing
@@ -274,7 +300,7 @@ std::optional<TrianglePair> pair_at(const PairTree& tree, const Places& places) 
 }  // namespace
 
 SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order,
-                                     const std::vector<std::uint8_t>* graphs) {
+                                     const std::vector<std::uint8_t>* graphs, const std::vector<std::uint8_t>* of) {
   const PairTree tree(mesh, order);
   std::vector<char> marked(tree.size(), 0);  // several threads may mark one
   const auto mark = [&](std::size_t place) {
@@ -288,14 +314,19 @@ SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order
     Places found_first;
     PairMeeting meet(tree, graphs);
     std::vector<std::size_t> runs;
+    const auto visit = [&](std::size_t place, std::size_t other) {
+      if (!meet(place, other)) return true;
+      if (found++ == 0) found_first = {place, other};
+      mark(place);
+      mark(other);
+      return true;
+    };
     for (std::size_t run = begin; run < end; ++run) {
-      tree.for_each_pair(run, runs, [&](std::size_t place, std::size_t other) {
-        if (!meet(place, other)) return true;
-        if (found++ == 0) found_first = {place, other};
-        mark(place);
-        mark(other);
-        return true;
-      });
+      if (of) {
+        tree.for_each_pair_of(*of, run, runs, visit);
+      } else {
+        tree.for_each_pair(run, runs, visit);
+      }
     }
     if (found == 0) return;
     pairs += found;

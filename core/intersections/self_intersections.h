@@ -29,10 +29,12 @@ enum class SearchOrder {
 // of threads, and but for `first` for any order of triangles. Takes n log n time where few boxes of triangles meet, and
 // a time in proportion to the pairs of boxes that meet, which may be n^2 / 2; memory in proportion to n. Uses the
 // threads that ThreadLimit allows. `graphs`: of each vertex whether it is known that its triangles meet in nothing but
-// what they share, as is_surely_graph() (vertex_graph.h) tells; pairs at such vertices are not looked at. Precondition:
-// the vertices that triangles use are finite, at most kMaxTriangles triangles.
+// what they share, as is_surely_graph() (vertex_graph.h) tells; pairs at such vertices are not looked at. `of`: not 0
+// for triangles of which pairs are looked for, with any others. Precondition: the vertices that triangles use are
+// finite, at most kMaxTriangles triangles.
 [[nodiscard]] SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order = SearchOrder::kRuns,
-                                                   const std::vector<std::uint8_t>* graphs = nullptr);
+                                                   const std::vector<std::uint8_t>* graphs = nullptr,
+                                                   const std::vector<std::uint8_t>* of = nullptr);
 
 // The `first` of these pairs alone. The search ends with it.
 [[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -37,7 +36,7 @@ class CellSet {
   [[nodiscard]] std::int64_t cell_at(const Vec3& p, int axis) const {
     const Lattice& lattice = cells_.lattice();
     const auto a = static_cast<std::size_t>(axis);
-    const double index = std::floor((p[axis] - lattice.origin[axis]) / lattice.spacing[axis]);
+    const double index = (p[axis] - lattice.origin[axis]) / lattice.spacing[axis];
     const auto first = static_cast<double>(lattice.index_min[a]), last = static_cast<double>(lattice.counts[a] - 1);
     return static_cast<std::int64_t>(std::clamp(index - first, 0.0, last));
   }

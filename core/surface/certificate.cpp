@@ -143,11 +143,12 @@ std::uint64_t equal_vertices(const TriangleMesh& mesh) {
 struct MeshPart {
   TriangleMesh mesh;
   std::vector<std::uint32_t> faces, vertices;  // their numbers in the whole
+  std::vector<std::uint8_t> changed;           // of each face, whether it has
   std::vector<std::uint8_t> whole;             // of each vertex, whether the part has all of its faces
 };
 
-// All changed faces, and those whose boxes may meet one's.
-std::vector<std::uint32_t> faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
+// Gives the part all changed faces, and those whose boxes may meet one's.
+void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice, MeshPart& part) {
   CellSet cells(lattice);
   for (const std::uint32_t face : change.faces) {
     if (!is_gone(mesh.triangles[face])) cells.insert(box_of_triangle(mesh, face));
@@ -157,11 +158,15 @@ std::vector<std::uint32_t> faces_near(const TriangleMesh& mesh, const SurfaceEdi
     for (auto face = static_cast<std::uint32_t>(begin); face < end; ++face)
       is_near[face] = !is_gone(mesh.triangles[face]) && cells.meets(box_of_triangle(mesh, face)) ? 1 : 0;
   });
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t face = 0; face < is_near.size(); ++face) {
-    if (is_near[face] != 0) faces.push_back(face);
+  constexpr std::uint8_t kChanged = 2;
+  for (const std::uint32_t face : change.faces) {
+    if (is_near[face] != 0) is_near[face] = kChanged;
   }
-  return faces;
+  for (std::uint32_t face = 0; face < is_near.size(); ++face) {
+    if (is_near[face] == 0) continue;
+    part.faces.push_back(face);
+    part.changed.push_back(is_near[face] == kChanged ? 1 : 0);
+  }
 }
 
 // The vertices that some faces have, in increasing order. Sets their places there in `number`.
@@ -187,7 +192,7 @@ std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const std::vect
 // The boxes of all faces at a vertex of a changed face meet that one's.
 MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
   MeshPart part;
-  part.faces = faces_near(mesh, change, lattice);
+  add_faces_near(mesh, change, lattice, part);
   std::vector<std::uint32_t> number;
   part.vertices = vertices_of(mesh, part.faces, number);
   part.mesh.vertices.resize(part.vertices.size());
@@ -290,11 +295,11 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
   NearFaults found;
   found.faults.links = fans.count_of_wrong();
   found.faults.equal_vertices = mark_equal_vertices(part.mesh.vertices, faulty);
-  found.faults.intersections = self_intersections(part.mesh, SearchOrder::kCurve, &fans.graphs);
+  found.faults.intersections = self_intersections(part.mesh, SearchOrder::kCurve, &fans.graphs, &part.changed);
   found.faults.intersections.first.reset();  // numbers of the part
   const std::vector<bool> meeting = std::exchange(found.faults.intersections.of_triangle, {});
   for (std::size_t face = 0; face < part.faces.size(); ++face) {
-    const bool degenerate = is_degenerate(part.mesh, face);
+    const bool degenerate = part.changed[face] != 0 && is_degenerate(part.mesh, face);
     found.faults.degenerate_faces += degenerate ? 1 : 0;
     if (!degenerate && !meeting[face]) continue;
     for (const std::uint32_t corner : part.mesh.triangles[face]) faulty[corner] = 1;

@@ -45,7 +45,7 @@ struct NearFaults {
 };
 
 // The faults that faults_of() finds in a mesh since it was changed, in time and memory of what is near the change:
-// each that a changed face has part in, and some others nearby. `mesh`: after the change; within the lattice, or not
+// each that a changed face has part in, and equal vertices nearby. `mesh`: after the change; within the lattice, or not
 // far from it; without the faces that are gone, and the vertices that no face has. But for nodes: these are
 // changed_nodes().
 [[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);

@@ -10,6 +10,7 @@
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_roots.h"
+#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 namespace {
@@ -22,29 +23,6 @@ struct OpenEdge {
   MixedEdge edge;
   std::vector<SegmentHit> hits;  // one for each place
   std::size_t first_probe = 0;
-};
-
-// The normals of triangles, of which the next edges often need the same.
-class TriangleNormals {
- public:
-  explicit TriangleNormals(const TriangleMesh& mesh) : mesh_(mesh) {}
-
-  [[nodiscard]] const Vec3& of(std::uint32_t triangle) {
-    Known& known = known_[triangle % known_.size()];
-    if (known.triangle != triangle) {
-      const Triangle& t = mesh_.triangles[triangle];
-      known = {triangle, unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]])};
-    }
-    return known.normal;
-  }
-
- private:
-  struct Known {
-    std::uint32_t triangle = 0xFFFFFFFF;
-    Vec3 normal;
-  };
-  const TriangleMesh& mesh_;
-  std::array<Known, 64> known_;
 };
 
 class EdgePointFinder {

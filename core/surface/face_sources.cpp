@@ -12,6 +12,7 @@
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/nearest_triangle.h"
+#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 namespace {
@@ -31,24 +32,34 @@ Corners corners_of(const TriangleMesh& mesh, std::size_t face) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-// Fronts may look either way: rules take faces from their backs, too.
-bool may_be_of(const Corners& face, const Corners& source, double off) {
-  const Vec3 normal = source.normal();
-  if (!(std::abs(dot(normal, face.normal())) >= kSharpCosine)) return false;
+// Whether the face is at 15 degrees or less to a plane with this normal, of length 1. Fronts may look either way: rules
+// take faces from their backs, too. A few roundings decide nothing by themselves: then the exact normal is asked.
+bool is_along(const Corners& face, const Vec3& normal) {
+  constexpr double kDoubt = 1e-9, kNeedle = 1e-10, kLeast = 1e-200, kMost = 1e200;
+  const Vec3 u = face.b - face.a, v = face.c - face.a, across = cross(u, v);
+  const double size = dot(across, across), cosine = dot(normal, across);
+  const double excess = cosine * cosine - kSharpCosine * kSharpCosine * size;
+  const bool is_sure = size > kNeedle * dot(u, u) * dot(v, v) && std::abs(excess) > kDoubt * size;
+  if (is_sure && size > kLeast && size < kMost) return excess > 0.0;
+  return std::abs(dot(normal, face.normal())) >= kSharpCosine;
+}
+
+bool may_be_of(const Corners& face, const Vec3& point_of_source, const Vec3& normal, double off) {
   for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
-    if (!(std::abs(dot(normal, *corner - source.a)) <= off)) return false;
+    if (!(std::abs(dot(normal, *corner - point_of_source)) <= off)) return false;
   }
-  return true;
+  return is_along(face, normal);
 }
 
 std::vector<std::uint32_t> doubtful_faces(const TriangleMesh& input, double off, const SurfaceMesh& surface) {
   std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
   parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
+    TriangleNormals normals(input);
     for (std::size_t face = begin; face < end; ++face) {
-      const std::int32_t source = surface.sources[face];
-      if (source == kHole) continue;
-      const Corners of_source = corners_of(input, static_cast<std::size_t>(source));
-      doubtful[face] = may_be_of(corners_of(surface.mesh, face), of_source, off) ? 0 : 1;
+      if (surface.sources[face] == kHole) continue;
+      const auto source = static_cast<std::uint32_t>(surface.sources[face]);
+      const Vec3& point = input.vertices[input.triangles[source][0]];
+      doubtful[face] = may_be_of(corners_of(surface.mesh, face), point, normals.of(source), off) ? 0 : 1;
     }
   });
   std::vector<std::uint32_t> faces;
@@ -105,7 +116,7 @@ void settle_sources(const TriangleMesh& input, double off, SurfaceMesh& surface)
       const Vec3 middle = corners_of(surface.mesh, faces[n]).middle();
       source = static_cast<std::int32_t>(nearest.of(middle, static_cast<std::uint32_t>(source)));
       const Corners of_source = corners_of(input, static_cast<std::size_t>(source));
-      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), of_source, off) ? 0 : 1;
+      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), of_source.a, of_source.normal(), off) ? 0 : 1;
     }
   });
   spread_holes(off_mesh, surface);

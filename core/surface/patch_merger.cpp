@@ -281,12 +281,21 @@ bool PatchMerger::keeps_topology(std::uint32_t target) {
   return common == 2;
 }
 
+bool PatchMerger::is_at_needle(std::uint32_t v) const {
+  bool found = false;
+  for_each_face(v, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
+    found = needles_[face] != 0;
+    return !found;
+  });
+  return found;
+}
+
 // A vertex at the same node of the lattice that v can be pulled into: of those in most planes there the nearest.
 // Needles have no say; they vanish as all points at a node become one.
 std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   constexpr double kMayLose = 0.25;
+  if (!is_at_needle(v)) return std::nullopt;
   find_star(v);
-  if (std::ranges::none_of(star_, &StarFace::is_needle)) return std::nullopt;
   find_planes(false);
   const std::vector<std::uint32_t> faces = faces_at_node(v);
   const double before = worst_quality(v, false, -std::numeric_limits<double>::infinity());

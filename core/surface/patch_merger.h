@@ -102,6 +102,7 @@ class PatchMerger {
   [[nodiscard]] std::uint32_t plane_at(std::uint32_t face);
   [[nodiscard]] std::uint32_t plane_of_source(std::int32_t source, const Vec3& front);
   [[nodiscard]] bool is_needle(std::uint32_t face) const;
+  [[nodiscard]] bool is_at_needle(std::uint32_t v) const;
   [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v);
   [[nodiscard]] std::optional<std::uint32_t> best_target(std::uint32_t v);
   [[nodiscard]] double distance(std::uint32_t v, std::uint32_t w) const;

@@ -18,8 +18,9 @@ Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const Shar
     : vertices_(surface.mesh.vertices), input_(input), limits_(limits) {
   std::vector<Placed> of_all(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    TriangleNormals normals(input_);
     for (std::size_t face = begin; face < end; ++face)
-      of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face]);
+      of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face], normals);
   });
   find_strips(surface, of_all);
   if (strip_vertices_.empty()) return;
@@ -29,10 +30,11 @@ Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const Shar
 }
 
 // Faces over holes are in no plane, and belong to no strip.
-Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source) const {
+Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, TriangleNormals& normals) const {
   constexpr double kTurned = 0.9986295347545738;  // cosine of 3 degrees
   if (source == kHole) return Placed::kInPlane;
-  const SourcePlane plane = source_plane(input_, source);
+  const auto triangle = static_cast<std::uint32_t>(source);
+  const SourcePlane plane{input_.vertices[input_.triangles[triangle][0]], normals.of(triangle), source};
   const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
   const double farthest = std::max({std::abs(plane.height(a)), std::abs(plane.height(b)), std::abs(plane.height(c))});
   if (farthest <= limits_.off) return Placed::kInPlane;

@@ -11,6 +11,7 @@
 #include "core/distance/distance.h"
 #include "core/surface/contour.h"
 #include "core/surface/surface_edit.h"
+#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 
@@ -78,7 +79,7 @@ class Sharpener {
     bool may_turn = true;
   };
 
-  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source) const;
+  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source, TriangleNormals& normals) const;
   void find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all);
   void add_to_strips(const Triangle& t);
   void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);

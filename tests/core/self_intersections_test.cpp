@@ -159,6 +159,28 @@ TEST(SelfIntersections, AreTheSameWithoutThePairsAtGraphs) {
   EXPECT_GT(pairs_in_all, 100U);
 }
 
+// Pairs of some triangles with any others, in whichever order they come in the search.
+TEST(SelfIntersections, AreFoundOfSomeTriangles) {
+  test::Random random(9);
+  for (const double part : {0.0, 0.01, 0.1, 0.5, 1.0}) {
+    const TriangleMesh mesh = test::soup(random, 80);
+    std::vector<std::uint8_t> of(mesh.triangles.size());
+    for (std::uint8_t& one : of) one = test::uniform(random, 0, 1) < part ? 1 : 0;
+    std::vector<bool> in_pair(of.size(), false);
+    std::uint64_t pairs = 0;
+    for (const auto& [a, b] : test::exact_self_intersections(mesh)) {
+      if (of[a] == 0 && of[b] == 0) continue;
+      ++pairs;
+      in_pair[a] = in_pair[b] = true;
+    }
+    for (const SearchOrder order : {SearchOrder::kRuns, SearchOrder::kCurve}) {
+      const SelfIntersections found = self_intersections(mesh, order, nullptr, &of);
+      EXPECT_EQ(found.pairs, pairs) << part;
+      EXPECT_EQ(found.of_triangle, in_pair) << part;
+    }
+  }
+}
+
 TEST(SelfIntersections, AreTheSameOnAnyThread) {
   test::Random random(4);
   const TriangleMesh mesh = test::soup(random, 500);

@@ -281,6 +281,7 @@ class BatchRun {
   [[nodiscard]] BatchRecord record_of(const BatchMesh& mesh, JobResult result) const {
     ResultRow& row = result.row;
     row.mesh = mesh.name;
+    row.message = plain_text(row.message, "?");  // a mesh's name in it may have line feeds
     if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
     if (row.sha256.empty()) row.sha256 = hash_of(mesh);
     RowOrigin origin{.stamp = mesh.stamp,

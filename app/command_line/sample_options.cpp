@@ -68,7 +68,10 @@ std::optional<SampleRequest> parse_sample(const Values& values) {
   const std::string text = values.text("--sample");
   for (const std::string_view item : items_of(text)) {
     const std::optional<SampleGroup> group = group_from(item);
-    if (!group) invalid("--sample", text, "uniform=N, near=N:SIGMA, surface=N or several, with commas between");
+    if (!group) {
+      invalid("--sample", text,
+              "uniform=N, near=N:SIGMA, surface=N or several, with commas between; N from 1 to 2^48 = 281474976710656");
+    }
     request.groups.push_back(*group);
   }
   constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();

@@ -17,8 +17,8 @@
 namespace raycone {
 
 // The tolerance that winding numbers are evaluated with, turns. Rules do not depend on it: where nothing else is asked
-// for, it is what they are cheapest with. Far more values would be close to a threshold with a larger one, and those are
-// summed again: many at once near half-integers, near others one by one.
+// for, it is what they are cheapest with. With a larger one far more values would be close to a threshold, and those
+// are summed again: many at once near half-integers, near others one by one.
 [[nodiscard]] double tolerance_of_evaluation(const FieldOptions& options);
 
 class FieldEvaluator {

@@ -33,7 +33,10 @@ void set_axis(Lattice& lattice, int axis, double origin, double spacing, std::in
 }
 
 std::int64_t index_from(double value) {
-  if (!(std::abs(value) <= kMaxIndex)) throw LimitError("the lattice would need the index " + printed(value));
+  if (!(std::abs(value) <= kMaxIndex)) {
+    throw LimitError("the lattice would need the index " + printed(value) + ", expected at most " + printed(kMaxIndex) +
+                     "; voxels are too small so far from the origin, see --voxel-size");
+  }
   return static_cast<std::int64_t>(value);
 }
 
@@ -209,7 +212,8 @@ Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::
 std::uint64_t sample_count(const Lattice& lattice) {
   const auto [x, y, z] = lattice.counts;
   const double samples = static_cast<double>(x) * static_cast<double>(y) * static_cast<double>(z);
-  if (!(samples < 0x1p62)) throw LimitError("the lattice would have " + printed(samples) + " samples");
+  if (!(samples < 0x1p62))
+    throw LimitError("the lattice would have " + printed(samples) + " samples, expected less than 2^62");
   for (std::size_t a = 0; a < 3; ++a) {
     if (lattice.counts[a] <= kMaxBlockSide) continue;
     throw LimitError("the lattice would have " + std::to_string(lattice.counts[a]) + " samples along " + "xyz"[a] +

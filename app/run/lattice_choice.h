@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
+#include "io/files/file_error.h"
 
 namespace raycone {
 
@@ -28,5 +30,15 @@ namespace raycone {
 
 // Number of samples. Throws LimitError, with the number, where it exceeds 64 bits, or kMaxBlockSide along an axis.
 [[nodiscard]] std::uint64_t sample_count(const Lattice& lattice);
+
+// What `choose` returns. A LimitError that it throws gets the name of the file concerned.
+template <class Choose>
+[[nodiscard]] auto choose_for(const std::string& file, const Choose& choose) {
+  try {
+    return choose();
+  } catch (const LimitError& error) {
+    throw LimitError(file + ": " + error.what());
+  }
+}
 
 }  // namespace raycone

@@ -58,7 +58,7 @@ void check_solid(const PlacedLattice& lattice) {
 PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const auto chosen = [&] { return choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings); };
-  const PlacedLattice lattice = grid ? lattice_of_grid(*grid) : PlacedLattice(chosen());
+  const PlacedLattice lattice = grid ? lattice_of_grid(*grid) : PlacedLattice(choose_for(command.mesh.path, chosen));
   if (command.field.has(Field::kDistance)) check_cubic("sdf", lattice);
   if (command.field.has(Field::kSolid)) check_solid(lattice);
   return lattice;
@@ -230,8 +230,10 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   LoadedMesh loaded;
   load(command, run, loaded);
   report.lattice = lattice_for(command, loaded.box, report.warnings);
-  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
-  report.samples = sample_count(report.lattice->grid);
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  if (grid) report.files_read.push_back(grid->path);
+  report.samples =
+      choose_for(grid ? grid->path : command.mesh.path, [&] { return sample_count(report.lattice->grid); });
   const bool solid = command.field.has(Field::kSolid);
   if (std::isinf(command.field.band)) {
     command.field.band =

@@ -19,6 +19,7 @@
 #include "app/run/field_evaluator.h"
 #include "app/run/fields.h"
 #include "app/run/labels.h"
+#include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
 #include "app/run/mesh_warnings.h"
 #include "app/run/slice_choice.h"
@@ -128,6 +129,16 @@ void evaluate_labels(LabelledParts& parts, const Slice& slice, const FieldOption
   std::ranges::copy(labels, values.begin());
 }
 
+// Of the pixels' centres; row 0 of the picture is its last one.
+PlacedLattice lattice_of(const Slice& slice) {
+  if (slice.lattice) return *slice.lattice;
+  const PlaneView& view = slice.view;
+  return {view.centre(0, view.height - 1),
+          {view.pixel * view.right, view.pixel * view.up, view.pixel * view.normal},
+          {0, 0, 0},
+          {view.width, view.height, 1}};
+}
+
 std::string described(const FieldOptions& field) {
   if (field.has(Field::kWinding)) return "winding number";
   if (field.has(Field::kLabel)) return "labels by " + name_of(field.rule);
@@ -178,8 +189,9 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
     values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber, &run.files);
   CutMesh cut;
   load(command, run, cut);
-  const Slice slice = choose_slice(bounding_box(cut.mesh), command.slice, report.warnings);
-  report.lattice = slice.lattice;
+  const Slice slice = choose_for(command.mesh.path,
+                                 [&] { return choose_slice(bounding_box(cut.mesh), command.slice, report.warnings); });
+  report.lattice = lattice_of(slice);
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
   run.print_warnings();
 

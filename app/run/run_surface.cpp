@@ -31,7 +31,8 @@ std::int64_t layers_of(const SurfaceCommand& command, const Vec3& spacing) {
 // With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
 Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const request = std::get_if<LatticeRequest>(&command.lattice);
-  const Lattice lattice = request ? choose_lattice(bounding_box(mesh), *request, warnings)
+  const auto chosen = [&] { return choose_lattice(bounding_box(mesh), *request, warnings); };
+  const Lattice lattice = request ? choose_for(command.mesh.path, chosen)
                                   : world_lattice_of_grid(std::get<GridReference>(command.lattice), "surface");
   return with_layers(lattice, layers_around(command.lattice) + layers_of(command, lattice.spacing));
 }
@@ -44,8 +45,9 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   TriangleMesh mesh = run.load_mesh(files_written(command));
   const Lattice lattice = surface_lattice(command, mesh, report.warnings);
   report.lattice = lattice;
-  if (const auto* const grid = std::get_if<GridReference>(&command.lattice)) report.files_read.push_back(grid->path);
-  report.samples = sample_count(lattice);
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  if (grid) report.files_read.push_back(grid->path);
+  report.samples = choose_for(grid ? grid->path : command.mesh.path, [&] { return sample_count(lattice); });
   run.print_warnings();
 
   const WindingNumberEvaluator evaluator = timed(report.seconds.prepare, [&] {

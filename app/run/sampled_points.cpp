@@ -70,7 +70,8 @@ std::unique_ptr<PointReader> draw_points(const std::string& name, const Triangle
       request.groups, [](const SampleGroup& group) { return !std::holds_alternative<UniformSamples>(group); });
   if (surface && !sampler.has_area())
     throw InputError(name + ": no triangle has an area, expected a surface to draw from");
-  if (!sampler.is_finite()) throw LimitError("box or noise is too large for double precision; see --scale");
+  if (!sampler.is_finite())
+    throw LimitError(name + ": box or noise is too large, expected points within double precision; see --scale");
   return std::make_unique<SampledPoints>(std::move(sampler), single, draws_on_surface(request));
 }
 

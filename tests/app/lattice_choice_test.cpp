@@ -226,7 +226,7 @@ TEST(SampleCount, BeyondSixtyFourBitsIsALimitWithTheNumber) {
     static_cast<void>(sample_count(lattice));
     FAIL() << "no exception";
   } catch (const LimitError& error) {
-    EXPECT_STREQ(error.what(), "the lattice would have 1e+30 samples");
+    EXPECT_STREQ(error.what(), "the lattice would have 1e+30 samples, expected less than 2^62");
   }
 }
 

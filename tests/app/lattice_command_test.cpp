@@ -285,6 +285,21 @@ TEST_F(LatticeCommand, RefusesWhatCannotFitBeforeWorkWithTheNumbers) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST_F(LatticeCommand, NamesTheMeshWhoseLatticeIsBeyondNumbers) {
+  for (const char* const command : {"lattice", "surface"}) {
+    const std::string out = dir_ / (std::string(command) == "lattice" ? "out.npy" : "out.ply");
+    for (const std::vector<std::string>& sampling :
+         {std::vector<std::string>{"--resolution", "4000000"}, {"--voxel-size", "1e-300"}}) {
+      std::vector<std::string> words{command, mesh_, "-o", out};
+      words.insert(words.end(), sampling.begin(), sampling.end());
+      const CommandResult result = run_raycone(words);
+      EXPECT_EQ(result.status, 4) << result.err;
+      EXPECT_EQ(result.err.rfind("raycone: " + mesh_ + ": the lattice would ", 0), 0U) << result.err;
+      EXPECT_NE(result.err.find(", expected "), std::string::npos) << result.err;
+    }
+  }
+}
+
 TEST_F(LatticeCommand, GenerousMemoryLimitChangesNothing) {
   EXPECT_EQ(run_raycone({"lattice", mesh_, "-o", dir_ / "out.vdb", "--memory-limit", "1G"}).status, 0);
 }

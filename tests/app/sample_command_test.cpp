@@ -118,7 +118,7 @@ TEST_F(SampleOption, RefusesWhatDoublesCannotHold) {
     const CommandResult result = run_raycone(arguments);
     EXPECT_EQ(result.status, 4) << command[1];
     EXPECT_EQ(result.out, "");
-    EXPECT_NE(result.err.find("too large for double precision"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("too large, expected points within double precision"), std::string::npos) << result.err;
   }
   const CommandResult still = run_raycone({"points", huge, "--sample", "near=3:0", "--field", "winding", "--quiet"});
   EXPECT_EQ(still.status, 0) << still.err;

@@ -1,9 +1,12 @@
 // `raycone slice` from mesh to picture and numbers. Black box: the real executable.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -89,6 +92,40 @@ TEST_F(Slice, AlongAnObliquePlaneIsThatAlongTheAxisIfTheyAreTheSame) {
   const CommandResult result = slice(oblique);
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(values(8, 16), expected);
+}
+
+// Where each value lies, from the report alone.
+TEST_F(Slice, AlongAnObliquePlaneReportsItsLattice) {
+  const std::string report = dir_ / "report.json";
+  const CommandResult result = slice({"--normal", "1,1,0.5", "--padding", "20%", "--size", "12", "--field", "sdf",
+                                      "--values", values_, "--report", report});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto lattice = nlohmann::json::parse(read_text(report))["lattice"];
+  const auto width = lattice["index_max"][0].get<std::size_t>() + 1,
+             height = lattice["index_max"][1].get<std::size_t>() + 1;
+  EXPECT_EQ(lattice["index_max"][2], 0);
+  const std::vector<double> distances = values(height, width);
+  ASSERT_EQ(distances.size(), width * height);
+  bool some_inside = false;
+  for (std::size_t j = 0; j < height; ++j) {
+    for (std::size_t i = 0; i < width; ++i) {
+      double outside = 0.0, inside = -1.0;  // of the unit cube
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double x =
+            lattice["origin"][axis].get<double>() +
+            static_cast<double>(i) * lattice["spacing"][0].get<double>() * lattice["direction"][axis][0].get<double>() +
+            static_cast<double>(j) * lattice["spacing"][1].get<double>() * lattice["direction"][axis][1].get<double>();
+        const double beyond = std::abs(x - 0.5) - 0.5;
+        outside += beyond > 0.0 ? beyond * beyond : 0.0;
+        inside = std::max(inside, beyond);
+      }
+      const double expected = inside > 0.0 ? std::sqrt(outside) : inside;
+      some_inside = some_inside || inside < -0.1;
+      // Positions from the report differ from the pixels' by their rounding.
+      EXPECT_NEAR(distances[(height - 1 - j) * width + i], expected, 1e-14) << i << ' ' << j;
+    }
+  }
+  EXPECT_TRUE(some_inside);
 }
 
 TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {

@@ -60,6 +60,13 @@ TEST_F(Batch, BrokenMeshesCostTheirRowsOnly) {
   EXPECT_EQ(run().status, 5) << "failed in an earlier run";
 }
 
+TEST_F(Batch, MessagesAreOnOneLine) {
+  put("a\nb.obj", "v 0 0 0\nf 1 2 9\n");
+  EXPECT_EQ(run().status, 5);
+  const std::string message = rows().at("a\nb.obj").message;
+  EXPECT_NE(message.find("a?b.obj:2: face index"), std::string::npos) << message;
+}
+
 TEST_F(Batch, PoisonIsContained) {
   put("a.obj");
   put("big.obj", open_cube(5000));  // 5000^3 values of 4 bytes at voxels of size 1

@@ -117,8 +117,28 @@ bool StarChange::is_between(const Vec3& node) const {
   return p.z >= std::min(*before, *after) - doubt && p.z <= std::max(*before, *after) + doubt;
 }
 
-// Nodes near each face after, row by row along the axis that it is steepest to.
+// The nodes of the cell that holds what is halfway between the vertex and the faces after.
+bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
+  const std::optional<double> height = height_of(seen_after_, seen_vertex_);
+  if (!height) return false;
+  const Vec3 halfway = vertex_ + 0.5 * *height * axes_[2];
+  Vec3 first;
+  for (int a = 0; a < 3; ++a) first[a] = std::floor((halfway[a] - lattice.origin[a]) / lattice.spacing[a]);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 node;
+    for (int a = 0; a < 3; ++a) {
+      node[a] = lattice.coordinate(a, static_cast<std::int64_t>(first[a]) + (corner >> a & 1));
+    }
+    if (is_between(node)) return true;
+  }
+  return false;
+}
+
+// Nodes near each face after, row by row along the axis that it is steepest to. Where there is much between the faces,
+// most of these rows are beside it: then a node below the vertex is found sooner.
 bool StarChange::passes_node(const Lattice& lattice, double distance) const {
+  const double least_spacing = std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
+  if (distance > least_spacing && passes_node_below_vertex(lattice)) return true;
   for (const Corners3& c : after_) {
     const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
     const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};

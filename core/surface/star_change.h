@@ -37,6 +37,7 @@ class StarChange {
   [[nodiscard]] Vec3 seen(const Vec3& p) const;
   [[nodiscard]] bool is_graph() const;
   [[nodiscard]] bool is_between(const Vec3& node) const;
+  [[nodiscard]] bool passes_node_below_vertex(const Lattice& lattice) const;
 
   Vec3 vertex_;
   std::array<Vec3, 3> axes_;  // the direction is the last

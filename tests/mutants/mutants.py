@@ -348,6 +348,10 @@ MUTANTS = [
     Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
         ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
+    Mutant("settled_by_too_rough_sums", "what the direct sum cannot tell from a critical value is enclosed", [
+        ("core/evaluation/settler.cpp", "> mesh_.doubt_of_direct_values()", ">= 0.0")]),
+    Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [
+        ("core/evaluation/settler.cpp", " + std::nearbyint(value - direct[i])", "")]),
     Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
         ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_)",
          "if (std::abs(w - threshold) <= -doubt_)")]),
@@ -495,7 +499,7 @@ MUTANTS = [
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [
         ("core/surface/star_change.cpp", "if (j != i && j != target_) gap = std::max(", "if (j != i && j != target_ && j > 99) gap = std::max(")]),
     Mutant("simplify_over_nodes", "no node lies between faces before and after", [
-        ("core/surface/star_change.cpp", "if (is_between(node)) return true;", "if (is_between(node)) continue;")]),
+        ("core/surface/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
     Mutant("thick_source_is_not_nearest", "a branch is left out only beyond the least distance", [
         ("core/surface/nearest_triangle.cpp", "> beyond_error(best.first)", "> best.first / 2")]),
 

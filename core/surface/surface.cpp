@@ -12,8 +12,9 @@
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/surface/cell_triangles.h"
+#include "core/surface/checked_merge.h"
 #include "core/surface/face_sources.h"
-#include "core/surface/merge_planes.h"
+#include "core/surface/fault_places.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/simplify.h"
 #include "core/surface/source_plane.h"
@@ -25,23 +26,6 @@ namespace {
 
 void round_to_float(std::vector<Vec3>& vertices) {
   for (Vec3& p : vertices) p = rounded_to_float(p);
-}
-
-// Without the vertices that no triangle uses.
-TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  constexpr std::uint32_t kUnused = 0xFFFFFFFF;
-  std::vector<std::uint32_t> number(vertices.size(), kUnused);
-  TriangleMesh used{{}, triangles};
-  for (Triangle& t : used.triangles) {
-    for (std::uint32_t& corner : t) {
-      if (number[corner] == kUnused) {
-        number[corner] = static_cast<std::uint32_t>(used.vertices.size());
-        used.vertices.push_back(vertices[corner]);
-      }
-      corner = number[corner];
-    }
-  }
-  return used;
 }
 
 // One attempt at a surface after the other.
@@ -83,7 +67,7 @@ class SurfaceMaker {
 
  private:
   static constexpr double kMostMargin = 0x1p-4;
-  static constexpr int kRounds = 4, kMergingRounds = 8;
+  static constexpr int kRounds = 4;
 
   void enter(const char* stage) const {
     if (options_.at_stage) options_.at_stage(stage);
@@ -124,48 +108,12 @@ class SurfaceMaker {
     return *is_right_;
   }
 
-  // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
-  // as well as that have faults, they are merged where they agree better. Returns false where faults are left even so.
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
     enter("merging the triangles of a plane");
-    std::optional<SurfaceMesh> result = merged_within(surface, margins.inner, 2.5, false);
-    if (!result && is_right_.value_or(true)) result = merged_within(surface, margins.inner, 0.25, true);
+    const auto is_right_unmerged = [&] { return is_right(surface, 0); };
+    std::optional<SurfaceMesh> result = checked_merge(surface, mesh_, inside_, margins.inner, is_right_unmerged);
     if (result) surface = std::move(*result);
     return result.has_value();
-  }
-
-  // What merging spoils is not merged; `nodes`: nor is what puts more than a few nodes on the wrong side, as happens
-  // where a plane of the mesh is one of the lattice. `most` in margins.
-  std::optional<SurfaceMesh> merged_within(const SurfaceMesh& surface, double margin, double most, bool nodes) {
-    constexpr double kNeedle = 16.0;
-    const std::uint64_t few_nodes = std::max<std::size_t>(64, surface.mesh.vertices.size() / 256);
-    const Vec3& h = inside_.lattice().spacing;
-    const double unit = margin * std::min({h.x, h.y, h.z});
-    std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    PlaneMerger merger(surface, mesh_, inside_.lattice(), {most * unit, kNeedle * unit});
-    std::uint64_t faults_before = 0;
-    for (int round = 0; round < kMergingRounds; ++round) {
-      MergedFaces merged = merger.merge(kept);
-      TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
-      const SurfaceFaults faults = faults_of(compact, inside_);
-      if (faults.none()) {
-        return SurfaceMesh{std::move(compact), std::move(merged.sources)};
-      }
-      if (faults.nodes > few_nodes && !nodes) return std::nullopt;
-      const std::uint64_t count = faults.nodes + faults.intersections.pairs;
-      if (round > 0 && count >= faults_before && !is_right(surface, 0)) return std::nullopt;
-      faults_before = count;
-      const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
-
-      const NodeSet misplaced = misplaced_nodes(compact, inside_);
-      for (std::size_t v = 0; v < kept.size(); ++v) {
-        const Vec3 &from = surface.mesh.vertices[v], &to = surface.mesh.vertices[merged.into[v]];
-        // Large faces are undone near the vertices that they have left, first.
-        const bool undone = touched[merged.into[v]] && voxels_between(from, to) <= std::exp2(round);
-        kept[v] = kept[v] || undone || is_beside(from, misplaced);
-      }
-    }
-    return std::nullopt;
   }
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells. Around faults
@@ -224,29 +172,6 @@ class SurfaceMaker {
     return options_.thickness + std::min({h.x, h.y, h.z}) / 4;
   }
 
-  // Along the axis where that is most.
-  [[nodiscard]] double voxels_between(const Vec3& p, const Vec3& q) const {
-    const Vec3& h = inside_.lattice().spacing;
-    return std::max({std::abs(p.x - q.x) / h.x, std::abs(p.y - q.y) / h.y, std::abs(p.z - q.z) / h.z});
-  }
-
-  // Whether a corner of the cell that a point is in is one of `nodes`.
-  [[nodiscard]] static bool is_beside(const Vec3& p, const NodeSet& nodes) {
-    const Lattice& lattice = nodes.lattice();
-    std::array<std::int64_t, 3> cell;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double index = std::floor((p[axis] - lattice.origin[axis]) / lattice.spacing[axis]);
-      cell[a] =
-          std::clamp<std::int64_t>(static_cast<std::int64_t>(index) - lattice.index_min[a], 0, lattice.counts[a] - 2);
-    }
-    for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
-      const auto [i, j, k] = SurfaceCells::node_at({cell, 0, 0}, corner);
-      if (nodes.holds(i, j, k)) return true;
-    }
-    return false;
-  }
-
   // What is left of `simplify` for pulls. Merging has moved points by a few margins already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargins = 16.0, kMargin = 1.0 - 1e-6;
@@ -273,18 +198,6 @@ class SurfaceMaker {
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
     }
     return false;
-  }
-
-  // Vertices near faces that intersect: those of these faces, and of their neighbours.
-  [[nodiscard]] static std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
-                                                         const SurfaceFaults& faults) {
-    const std::vector<bool>& faulty = faults.intersections.of_triangle;
-    std::vector<bool> vertices(count, false);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      if (!faulty[i]) continue;
-      for (const std::uint32_t corner : triangles[i]) vertices[corner] = true;
-    }
-    return vertices;
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them.

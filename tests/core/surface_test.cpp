@@ -782,6 +782,20 @@ TEST(Surface, IsMergedButAtNodesThatWouldChangeSides) {
   EXPECT_LT(surface.mesh.triangles.size(), 1500U);
 }
 
+// Of the rim's 37 nodes, another one would be outside after each round in which those around the last stay: all rounds
+// end with faults, and all 62488 faces would be left.
+TEST(Surface, IsMergedWhereFaultsMoveAlongAnEdge) {
+  const TriangleMesh box = test::open_box();
+  const double h = 1.0 / 36.0;
+  const Lattice lattice{{0, 0, 0}, {h, h, h}, {-3, -3, -3}, {43, 43, 43}};
+  const WindingNumberEvaluator evaluator(box);
+  const NodeSet nodes = nodes_inside(evaluator, Rule{}, lattice);
+  const FinishedSurface made = closed_surface(box, evaluator, nodes, {});
+  EXPECT_TRUE(made.merged);
+  EXPECT_TRUE(faults_of(made.surface.mesh, nodes).none());
+  EXPECT_LT(made.surface.mesh.triangles.size(), 3000U);
+}
+
 TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   const TriangleMesh mesh = rotated(test::open_box());
   const auto [surface, lattice] = surface_of(mesh, 20);

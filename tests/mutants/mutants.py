@@ -491,7 +491,7 @@ MUTANTS = [
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
-        ("core/surface/surface.cpp", " || is_beside(from, misplaced);", ";")]),
+        ("core/surface/checked_merge.cpp", " || is_beside(from, misplaced);", ";")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "std::signbit(values[2 * i]) != std::signbit(values[2 * i + 1])", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

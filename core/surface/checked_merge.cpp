@@ -1,0 +1,181 @@
+#include "core/surface/checked_merge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/exact/predicates.h"
+#include "core/surface/certificate.h"
+#include "core/surface/fault_places.h"
+#include "core/surface/merge_planes.h"
+
+namespace raycone {
+namespace {
+
+// Near faults, vertices are kept for these many rounds; then, as the last resort, far around them.
+constexpr int kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
+
+// The nodes that are at most `reach` from one of `nodes` along an axis, too. Where merging moves an edge of the surface
+// over a node that it leads through, it does so at any other node that the edge leads through.
+NodeSet along_axes(const NodeSet& nodes, std::int64_t reach) {
+  NodeSet result = nodes;
+  const auto spread = [&](const std::array<std::int64_t, 3>& node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<std::int64_t, 3> at = node;
+      const std::int64_t end = std::min(node[axis] + reach, nodes.lattice().counts[axis] - 1);
+      for (at[axis] = std::max<std::int64_t>(node[axis] - reach, 0); at[axis] <= end; ++at[axis])
+        result.insert(at[0], at[1], at[2]);
+    }
+  };
+  for (std::int64_t k = 0; k < nodes.count(2); ++k) {
+    for (std::int64_t j = 0; j < nodes.count(1); ++j) {
+      const std::uint64_t* const row = nodes.row(j, k);
+      for (std::int64_t i = 0; i < nodes.count(0); ++i) {
+        if (row[i / 64] == 0)
+          i |= 63;
+        else if (nodes.holds(i, j, k))
+          spread({i, j, k});
+      }
+    }
+  }
+  return result;
+}
+
+// Whether the box of a triangle, a voxel larger on each side, has one of the nodes.
+bool is_near(const TriangleMesh& mesh, const Triangle& t, const NodeSet& nodes) {
+  const Lattice& lattice = nodes.lattice();
+  std::array<std::int64_t, 3> low{}, high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const auto index = [&](double x) {
+      const double at = std::floor((x - lattice.origin[axis]) / lattice.spacing[axis]);
+      return static_cast<std::int64_t>(at) - lattice.index_min[a];
+    };
+    const auto [least, most] =
+        std::minmax({mesh.vertices[t[0]][axis], mesh.vertices[t[1]][axis], mesh.vertices[t[2]][axis]});
+    low[a] = std::max<std::int64_t>(index(least) - 1, 0);
+    high[a] = std::min(index(most) + 2, lattice.counts[a] - 1);
+  }
+  for (std::int64_t k = low[2]; k <= high[2]; ++k) {
+    for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+      for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+        if (nodes.holds(i, j, k)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+class CheckedMerger {
+ public:
+  CheckedMerger(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside, double margin,
+                const std::function<bool()>& is_right)
+      : surface_(surface), input_(input), inside_(inside), margin_(margin), is_right_(is_right) {}
+
+  // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
+  // as well as that have faults, they are merged where they agree better. None where faults are left even so.
+  std::optional<SurfaceMesh> merge() {
+    constexpr double kWell = 2.5, kBetter = 0.25;
+    std::optional<SurfaceMesh> result = merged_within(kWell, false);
+    if (!result && !is_wrong_) result = merged_within(kBetter, true);
+    return result;
+  }
+
+ private:
+  // What merging spoils is not merged; `all`: nor is what puts more than a few nodes on the wrong side, as happens
+  // where a plane of the mesh is one of the lattice, or what only the last resort mends. `most` in margins.
+  std::optional<SurfaceMesh> merged_within(double most, bool all) {
+    constexpr double kNeedle = 16.0;
+    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+    const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
+    const Vec3& h = inside_.lattice().spacing;
+    const double unit = margin_ * std::min({h.x, h.y, h.z});
+    kept_.assign(vertices.size(), false);
+    PlaneMerger merger(surface_, input_, inside_.lattice(), {most * unit, kNeedle * unit});
+    std::uint64_t faults_before = 0;
+    for (int round = 0; round < (all ? kRounds + kWideRounds : kRounds); ++round) {
+      MergedFaces merged = merger.merge(kept_);
+      TriangleMesh compact = used_part(vertices, merged.triangles);
+      const SurfaceFaults faults = faults_of(compact, inside_);
+      if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
+      if (faults.nodes > few_nodes && !all) return std::nullopt;
+      const std::uint64_t count = faults.nodes + faults.intersections.pairs;
+      const bool no_better = round > 0 && count >= faults_before;
+      if ((no_better || round == kRounds) && !is_right()) return std::nullopt;
+      faults_before = count;
+      if (round < kRounds) {
+        keep_near(merged, faults, misplaced_nodes(compact, inside_), std::exp2(round));
+      } else {
+        keep_around(merged, faults, misplaced_nodes(compact, inside_), round - kRounds);
+      }
+    }
+    return std::nullopt;
+  }
+
+  bool is_right() {
+    is_wrong_ = !is_right_();
+    return !is_wrong_;
+  }
+
+  // Large faces are undone near the vertices that they have left, first: `most` voxels from them.
+  void keep_near(const MergedFaces& merged, const SurfaceFaults& faults, const NodeSet& misplaced, double most) {
+    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+    const std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      const Vec3 &from = vertices[v], &to = vertices[merged.into[v]];
+      const bool undone = touched[merged.into[v]] && voxels_between(from, to) <= most;
+      kept_[v] = kept_[v] || undone || is_beside(from, misplaced);
+    }
+  }
+
+  // Each time more: all that was pulled into faces with faults and into those around them, in twice as many rings; what
+  // is beside nodes on the lines of misplaced ones, four times as far. At last, misplaced nodes are faults of the faces
+  // next to them.
+  void keep_around(const MergedFaces& merged, const SurfaceFaults& faults, const NodeSet& misplaced, int wide) {
+    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+    std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
+    const auto touch = [&](const Triangle& t) {
+      for (const std::uint32_t corner : t) touched[corner] = true;
+    };
+    for (const Triangle& t : merged.triangles) {
+      const bool is_flat = faults.degenerate_faces > 0 && collinear(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+      if (is_flat || (wide >= kFacesFrom && is_near(surface_.mesh, t, misplaced))) touch(t);
+    }
+    for (int ring = 0; ring < 1 << wide; ++ring) {
+      const std::vector<bool> before = touched;
+      for (const Triangle& t : merged.triangles) {
+        if (before[t[0]] || before[t[1]] || before[t[2]]) touch(t);
+      }
+    }
+    const NodeSet lines = along_axes(misplaced, std::int64_t{2} << 2 * wide);
+    for (std::size_t v = 0; v < kept_.size(); ++v)
+      kept_[v] = kept_[v] || touched[merged.into[v]] || is_beside(vertices[v], lines);
+  }
+
+  // Along the axis where that is most.
+  [[nodiscard]] double voxels_between(const Vec3& p, const Vec3& q) const {
+    const Vec3& h = inside_.lattice().spacing;
+    return std::max({std::abs(p.x - q.x) / h.x, std::abs(p.y - q.y) / h.y, std::abs(p.z - q.z) / h.z});
+  }
+
+  const SurfaceMesh& surface_;
+  const TriangleMesh& input_;
+  const NodeSet& inside_;
+  double margin_;
+  const std::function<bool()>& is_right_;
+  bool is_wrong_ = false;  // as far as is known
+  std::vector<bool> kept_;
+};
+
+}  // namespace
+
+std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
+                                         double margin, const std::function<bool()>& is_right) {
+  return CheckedMerger(surface, input, inside, margin, is_right).merge();
+}
+
+}  // namespace raycone

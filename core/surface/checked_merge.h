@@ -1,0 +1,21 @@
+// Fewer triangles for the same surface, as far as that does no harm.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/data/triangle_mesh.h"
+#include "core/surface/contour.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
+// of them the longer faults are left. So one place where planes do not agree costs few faces. None where all that did
+// not help. `input`: the mesh that it is of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels;
+// `is_right`: whether the surface has no faults before, asked where that matters. The same for any number of threads.
+[[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
+                                                       const NodeSet& inside, double margin,
+                                                       const std::function<bool()>& is_right);
+
+}  // namespace raycone

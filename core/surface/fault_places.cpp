@@ -1,0 +1,56 @@
+#include "core/surface/fault_places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "core/surface/kuhn.h"
+#include "core/surface/surface_cells.h"
+
+namespace raycone {
+
+std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
+                                  const SurfaceFaults& faults) {
+  const std::vector<bool>& faulty = faults.intersections.of_triangle;
+  std::vector<bool> vertices(count, false);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!faulty[i]) continue;
+    for (const std::uint32_t corner : triangles[i]) vertices[corner] = true;
+  }
+  return vertices;
+}
+
+bool is_beside(const Vec3& p, const NodeSet& nodes) {
+  const Lattice& lattice = nodes.lattice();
+  std::array<std::int64_t, 3> cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double index = std::floor((p[axis] - lattice.origin[axis]) / lattice.spacing[axis]);
+    cell[a] =
+        std::clamp<std::int64_t>(static_cast<std::int64_t>(index) - lattice.index_min[a], 0, lattice.counts[a] - 2);
+  }
+  for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
+    const auto [i, j, k] = SurfaceCells::node_at({cell, 0, 0}, corner);
+    if (nodes.holds(i, j, k)) return true;
+  }
+  return false;
+}
+
+TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  constexpr std::uint32_t kUnused = 0xFFFFFFFF;
+  std::vector<std::uint32_t> number(vertices.size(), kUnused);
+  TriangleMesh used{{}, triangles};
+  for (Triangle& t : used.triangles) {
+    for (std::uint32_t& corner : t) {
+      if (number[corner] == kUnused) {
+        number[corner] = static_cast<std::uint32_t>(used.vertices.size());
+        used.vertices.push_back(vertices[corner]);
+      }
+      corner = number[corner];
+    }
+  }
+  return used;
+}
+
+}  // namespace raycone

@@ -1,0 +1,25 @@
+// Where the faults of a surface are, for those who undo what has made them.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/surface/certificate.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// Vertices near faces that intersect: those of these faces, and of their neighbours. `count`: of all vertices;
+// `triangles`: of the mesh that the faults are of.
+[[nodiscard]] std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
+                                                const SurfaceFaults& faults);
+
+// Whether a corner of the cell that a point is in is one of `nodes`. Points beyond the lattice are in its outermost
+// cells.
+[[nodiscard]] bool is_beside(const Vec3& p, const NodeSet& nodes);
+
+// A mesh without the vertices that no triangle uses.
+[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+
+}  // namespace raycone

@@ -87,6 +87,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
+  check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
   FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");

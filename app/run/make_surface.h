@@ -23,8 +23,8 @@ struct MadeSurface {
 
 // The surface between the inside and the outside nodes of `lattice`, by `evaluator` of `mesh`; it has been checked.
 // `name`: the file concerned. `done`, where given, grows by one per node. Throws InputError (nothing is inside, or the
-// inside reaches the lattice's border), LimitError (`memory`, bytes, does not do for the nodes, or numbers do not do
-// for the surface), SurfaceFailure.
+// inside reaches the lattice's border), LimitError (`memory`, bytes, does not do for the nodes or, as
+// soon as these are known, for the surface; or numbers do not do for it), SurfaceFailure.
 [[nodiscard]] MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh,
                                        const WindingNumberEvaluator& evaluator, const Lattice& lattice,
                                        const SurfaceOptions& options, std::uint64_t memory,

@@ -1,10 +1,45 @@
 #include "core/surface/surface_cells.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <stdexcept>
 
 namespace raycone {
+
+namespace {
+
+// Those of a row of cells that have nodes of both kinds, where nodes have places 64 `word` and on: a bit for each.
+std::uint64_t mixed_among(const std::array<const std::uint64_t*, 4>& rows, std::int64_t word, std::int64_t words) {
+  std::uint64_t any = 0, all = ~std::uint64_t{0};
+  for (const std::uint64_t* const row : rows) {
+    const std::uint64_t here = row[word], next = here >> 1U | (word + 1 < words ? row[word + 1] << 63U : 0);
+    any |= here | next;
+    all &= here & next;
+  }
+  return any & ~all;
+}
+
+// The four rows of nodes that a row of cells lies between.
+std::array<const std::uint64_t*, 4> rows_around(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
+  return {nodes.row(j, k), nodes.row(j + 1, k), nodes.row(j, k + 1), nodes.row(j + 1, k + 1)};
+}
+
+}  // namespace
+
+std::uint64_t mixed_cells(const NodeSet& nodes) {
+  std::uint64_t count = 0;
+  const std::int64_t words = nodes.words_per_row();
+  for (std::int64_t k = 0; k + 1 < nodes.count(2); ++k) {
+    for (std::int64_t j = 0; j + 1 < nodes.count(1); ++j) {
+      const std::array rows = rows_around(nodes, j, k);
+      for (std::int64_t word = 0; word < words; ++word)
+        count += static_cast<std::uint64_t>(std::popcount(mixed_among(rows, word, words)));
+    }
+  }
+  return count;
+}
 
 SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
   assert(!nodes.reaches_border());
@@ -20,16 +55,10 @@ SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
 
 void SurfaceCells::add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
   constexpr std::uint32_t kMostEdges = 0x7FFFFFF0;
-  const std::array rows{nodes.row(j, k), nodes.row(j + 1, k), nodes.row(j, k + 1), nodes.row(j + 1, k + 1)};
+  const std::array rows = rows_around(nodes, j, k);
   const std::int64_t words = nodes.words_per_row();
   for (std::int64_t word = 0; word < words; ++word) {
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (const std::uint64_t* const row : rows) {
-      const std::uint64_t here = row[word], next = here >> 1U | (word + 1 < words ? row[word + 1] << 63U : 0);
-      any |= here | next;
-      all &= here & next;
-    }
-    for (std::uint64_t left = any & ~all; left != 0; left &= left - 1) {
+    for (std::uint64_t left = mixed_among(rows, word, words); left != 0; left &= left - 1) {
       const std::int64_t i = word * 64 + std::countr_zero(left);
       SurfaceCell cell{{i, j, k}, 0, edges_};
       for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {

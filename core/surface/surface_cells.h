@@ -25,6 +25,10 @@ struct SurfaceCell {
   }
 };
 
+// How many cells have nodes of both kinds: those that SurfaceCells would hold. Takes no memory, and little
+// time. Precondition: !nodes.reaches_border().
+[[nodiscard]] std::uint64_t mixed_cells(const NodeSet& nodes);
+
 // All cells with nodes of both kinds, in the order of their nodes, and the mixed edges of the Kuhn subdivision: those
 // of one cell after the other, by direction. An edge, a face or a tetrahedron with nodes of both kinds has its lowest
 // node in such a cell.

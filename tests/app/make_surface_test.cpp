@@ -6,7 +6,10 @@
 #include <limits>
 #include <string>
 
+#include "app/process/limits.h"
 #include "core/mesh/weld.h"
+#include "core/surface/node_set.h"
+#include "io/files/file_error.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {
@@ -18,6 +21,31 @@ MadeSurface made(const SurfaceOptions& options) {
   const TriangleMesh mesh = weld(sphere(8), {});
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
   return make_surface("m", mesh, WindingNumberEvaluator(mesh), lattice, options, kAllMemory);
+}
+
+// With the number, once the nodes are known, and before any other work. Half of what is predicted is too little; what
+// is predicted does.
+TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
+  const TriangleMesh mesh = weld(sphere(8), {});
+  const Lattice lattice{{-1.25, -1.25, -1.25}, {0.025, 0.025, 0.025}, {0, 0, 0}, {101, 101, 101}};
+  const WindingNumberEvaluator evaluator(mesh);
+  const double predicted = surface_bytes(nodes_inside(evaluator, Rule{}, lattice), mesh.triangles.size());
+  EXPECT_GT(predicted, 2.0 * node_set_bytes(lattice));  // else the nodes would be refused
+  int stages = 0;
+  SurfaceOptions options;
+  options.at_stage = [&](const char*) { ++stages; };
+  const auto make = [&](double share) {
+    return make_surface("m", mesh, evaluator, lattice, options,
+                        static_cast<std::uint64_t>(memory_in_use() + share * predicted));
+  };
+  try {
+    make(0.5);
+    FAIL();
+  } catch (const LimitError& error) {
+    EXPECT_NE(std::string(error.what()).find("m: needs about "), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(stages, 0);
+  EXPECT_GT(make(1.1).report.faces, 0U);
 }
 
 TEST(MakeSurface, TellsThatNothingIsSimplified) {

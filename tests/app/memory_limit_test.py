@@ -53,6 +53,9 @@ def commands(mesh, resolution, points, out):
     yield "npy to a device", ["lattice", mesh, "-o", "/dev/null", "--format", "npy", "--resolution", resolution]
     yield "sdf", ["lattice", mesh, "-o", out + ".vti", "--field", "sdf", "--resolution", "48"]
     yield "diagnostics", ["lattice", mesh, "-o", out + ".csv", "--field", "inside", "--diagnostics", "--resolution", "12"]
+    if "sheets" not in mesh:  # they wind around all of a lattice, and so have no surface in it
+        yield "surface", ["surface", mesh, "-o", out + ".ply", "--resolution", "48", "--orient", "auto"]
+    yield "solid", ["lattice", mesh, "-o", out + ".npy", "--field", "solid", "--resolution", "48", "--orient", "auto"]
     yield "points", ["points", mesh, points, "-o", out + ".npy"]
     yield "sample", ["points", mesh, "--sample", "uniform=20000", "-o", out + ".npz"]
     yield "slice", ["slice", mesh, "--axis", "x", "--size", "128", "-o", out + ".png"]

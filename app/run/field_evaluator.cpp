@@ -24,7 +24,7 @@ double tolerance_of_evaluation(const FieldOptions& options) {
 }
 
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,
-                               double samples)
+                               double samples, double points)
     : band_(options.band),
       simd_(options.simd),
       rule_(options.rule_only() ? std::optional<Rule>(options.rule) : std::nullopt),
@@ -34,7 +34,10 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
       gradient_(gradient_for(mesh, options, edges)),
       winding_number_(std::move(mesh), {.ray_engine = options.engine,
                                         .level = options.simd,
-                                        .accuracy = {tolerance_of_evaluation(options), samples, options.rule_only()},
+                                        .accuracy = {.tolerance = tolerance_of_evaluation(options),
+                                                     .samples = samples,
+                                                     .sides_only = options.rule_only(),
+                                                     .points = points},
                                         .edges = edges}) {}
 
 void FieldEvaluator::prepare_points() const {

@@ -24,9 +24,9 @@ namespace raycone {
 class FieldEvaluator {
  public:
   // Prepares what `options` need, but for prepare_points(). `mesh` and `edges` as for
-  // WindingNumberEvaluator. `samples`: about how many it is for.
+  // WindingNumberEvaluator. `samples`: about how many it is for. `points`: Accuracy::points.
   FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges = nullptr,
-                 double samples = 1e6);
+                 double samples = 1e6, double points = 0.0);
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 

@@ -26,14 +26,14 @@ void prepare_engine(const WindingNumberEvaluator& evaluator, const FieldOptions&
 
 }  // namespace
 
-FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples)
+FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples, double points)
     : run_(run),
       field_(field),
       original_(field.verify > 0 ? mesh : TriangleMesh{}),
       evaluator_(timed(run.report.seconds.prepare,
                        [&] {
                          const std::vector<ExteriorEdge> edges = run.take_edges();
-                         return FieldEvaluator(std::move(mesh), field, &edges, samples);
+                         return FieldEvaluator(std::move(mesh), field, &edges, samples, points);
                        })),
       samples_(field),
       draw_(field.verify) {

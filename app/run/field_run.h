@@ -22,8 +22,8 @@ namespace raycone {
 class FieldRun {
  public:
   // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this. `samples`: about
-  // how many there are.
-  FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples);
+  // how many there are. `points`: Accuracy::points.
+  FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples, double points = 0.0);
 
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(TriangleMesh surface);

@@ -27,18 +27,45 @@
 namespace raycone {
 namespace {
 
-// Points evaluated at a time.
-constexpr std::size_t kPointBatch = std::size_t{1} << 16;
+// Points evaluated at a time. Values do not depend on it.
+struct PointBatch {
+  std::size_t most = std::size_t{1} << 16;
+  bool gathered = false;  // of several that the reader gives, as long as none has to be waited for
+};
+
+// Of a mesh with a boundary, many points that are known to come share much: the more at a time, the less time each
+// takes. That needs memory.
+PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool has_boundary,
+                     const RunLimits& limits) {
+  constexpr std::size_t kMany = std::size_t{1} << 18;
+  constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 29;
+  PointBatch batch;
+  if (!has_boundary || !reader.size()) return batch;
+  if (limits.memory() >= kEnoughMemory) batch.most = kMany;
+  batch.gathered = !command.sample;  // places() are those of one batch of the reader
+  return batch;
+}
+
+// As reader.next().
+bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& points) {
+  if (!reader.next(points, batch.most)) return false;
+  std::vector<Vec3> more;
+  while (batch.gathered && points.size() < batch.most && !reader.would_block() &&
+         reader.next(more, batch.most - points.size())) {
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  return true;
+}
 
 // Answers are handed on whenever the next question would have to be waited for. `source`: the seconds of what reading
 // points is part of.
-void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, PointWriter& writer, MeshRun& run,
-                     double& source) {
+void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, const PointBatch& batch,
+                     PointWriter& writer, MeshRun& run, double& source) {
   std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
   std::vector<Vec3> points;
   for (;;) {
     if (reader.would_block()) writer.flush();
-    if (!timed(source, [&] { return reader.next(points, kPointBatch); })) return;
+    if (!timed(source, [&] { return next(reader, batch, points); })) return;
     fields.evaluate(points, done);
     if (labels) timed(run.report.seconds.evaluate, [&] { labels->evaluate(points, fields.labels()); });
     const SurfacePlaces places = reader.places();
@@ -111,7 +138,7 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
     mesh = {};
     static_cast<void>(run.take_edges());
   }
-  FieldRun fields(run, std::move(mesh), command.field, points);
+  FieldRun fields(run, std::move(mesh), command.field, points, static_cast<double>(reader->size().value_or(0)));
   fields.prepare_points();
   OutputDescription description = description_of(report, command.field, command.encoding);
   description.single_points = draws_single(command);
@@ -121,7 +148,8 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
       make_point_writer(command.encoding.format, run.output, reader->size(), description);
   // Points that are drawn are made, not read.
   double& source = command.sample ? report.seconds.evaluate : report.seconds.read;
-  evaluate_points(fields, labels ? &*labels : nullptr, *reader, *writer, run, source);
+  const PointBatch batch = batch_for(command, *reader, report.exterior_edges > 0, limits);
+  evaluate_points(fields, labels ? &*labels : nullptr, *reader, batch, *writer, run, source);
   fields.finish(std::numeric_limits<double>::infinity());
   if (labels) labels->finish();
   timed(report.seconds.write, [&] { writer->finish(); });

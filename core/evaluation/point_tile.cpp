@@ -4,14 +4,14 @@
 
 namespace raycone {
 
-Tally PointTile::evaluate(const ScaledMesh& mesh) {
+Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
   Tally tally;
   if (count_ == 0) return tally;
   find_crossings(mesh);
   for (std::size_t i = 0; i < count_; ++i) {
     tally += {static_cast<std::uint64_t>(degenerate_[i].ties), degenerate_[i].on_surface ? 1U : 0U};
   }
-  set_values(mesh);
+  set_values(mesh, sums);
   if (diagnostics_) set_diagnostics(mesh);
   count_ = 0;
   return tally;
@@ -44,13 +44,15 @@ void PointTile::find_candidates(const ScaledMesh& mesh) {
   }
 }
 
-void PointTile::set_values(const ScaledMesh& mesh) {
+void PointTile::set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
   if (mesh.is_closed()) {
     std::transform(n_.begin(), n_.begin() + count_, w_.begin(), [](std::int64_t n) { return static_cast<double>(n); });
   } else {
     samples_.clear();
     for (std::size_t i = 0; i < count_; ++i) samples_.add(queries_[i]);
-    mesh.set_values(samples_, {n_.data(), count_}, {w_.data(), count_}, settling_);
+    const std::span<const std::int64_t> n(n_.data(), count_);
+    const std::span<double> w(w_.data(), count_);
+    sums ? mesh.set_values(*sums, samples_, n, w, settling_) : mesh.set_values(samples_, n, w, settling_);
   }
   for (std::size_t i = 0; i < count_; ++i) values_[indices_[i]] = w_[i];
 }

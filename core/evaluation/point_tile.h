@@ -29,8 +29,8 @@ class PointTile {
     queries_[count_++] = scaled_point;
   }
 
-  // Evaluates the points, if any, and forgets them.
-  Tally evaluate(const ScaledMesh& mesh);
+  // Evaluates the points, if any, and forgets them. `sums`: where they are of one group of the mesh's blocks of points.
+  Tally evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums = nullptr);
 
  private:
   // What exact predicates said about a point.
@@ -41,7 +41,7 @@ class PointTile {
 
   void find_crossings(const ScaledMesh& mesh);
   void find_candidates(const ScaledMesh& mesh);
-  void set_values(const ScaledMesh& mesh);
+  void set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums);
   void set_diagnostics(const ScaledMesh& mesh) const;
 
   std::span<double> values_;

@@ -63,10 +63,18 @@ class CoherentOrder {
 
   // How many points are put in order together: enough that neighbours are near, few enough that they take little
   // memory. Around a far field that pays more: the nearer neighbours are, the more nodes they share.
-  static std::size_t batch(const ScaledMesh& mesh) { return std::size_t{1} << (mesh.has_far_field() ? 19 : 17); }
+  static std::size_t batch(const ScaledMesh& mesh) {
+    return std::size_t{1} << (mesh.blocks_of_points() || mesh.has_far_field() ? 19 : 17);
+  }
+
+  // Of points outside of the blocks of points, where the mesh has them; in the others the key is that of the group + 1.
+  static constexpr std::uint32_t kOutside = 0;
 
   // Whether the mesh can take all of the points.
   [[nodiscard]] bool all_taken() const { return all_taken_; }
+  // Of points in blocks of points: whether any are outside, and the groups of the others.
+  [[nodiscard]] bool any_outside() const { return any_outside_; }
+  [[nodiscard]] std::span<const std::uint32_t> groups() const { return groups_; }
 
   // Those of one bucket, in order.
   [[nodiscard]] std::vector<SortedPoint> operator[](std::size_t bucket) const {
@@ -83,10 +91,14 @@ class CoherentOrder {
     std::uint32_t count;  // of those there can be
     std::vector<std::uint32_t> of_points;
     bool all_taken = true;
+    bool any_outside = false;
+    std::vector<std::uint32_t> groups;
   };
 
   CoherentOrder(std::span<const Vec3> points, const Keys& keys)
       : all_taken_(keys.all_taken),
+        any_outside_(keys.any_outside),
+        groups_(keys.groups),
         keys_per_bucket_(keys.count / kBuckets),
         buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
           for (std::size_t i = begin; i < end; ++i) {
@@ -95,10 +107,38 @@ class CoherentOrder {
           }
         }) {}
 
-  // Embree's rays go in the order of the points: they are for comparison.
   static Keys keys_of(const ScaledMesh& mesh, std::span<const Vec3> points) {
+    const BlocksOfPoints* const blocks = mesh.blocks_of_points();
+    return blocks ? keys_in_blocks(mesh, blocks->sums, points) : keys_along_curves(mesh, points);
+  }
+
+  static Keys keys_in_blocks(const ScaledMesh& mesh, const PointBlocks& blocks, std::span<const Vec3> points) {
+    Keys keys{(blocks.groups() / std::uint32_t{kBuckets} + 1) * std::uint32_t{kBuckets}, {}, true, false, {}};
+    keys.of_points.resize(points.size());
+    std::atomic<bool> all_taken = true;
+    constexpr std::size_t kPointsPerTask = 4096;
+    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const bool taken = mesh.can_take(points[i]);
+        if (!taken) all_taken = false;
+        const auto group = taken ? blocks.group_of(mesh.to_scale(points[i])) : std::nullopt;
+        keys.of_points[i] = group ? *group + 1 : kOutside;
+      }
+    });
+    keys.all_taken = all_taken;
+    std::vector<std::uint8_t> used(std::size_t{blocks.groups()} + 1);
+    for (const std::uint32_t key : keys.of_points) used[key] = 1;
+    keys.any_outside = used[kOutside] != 0;
+    for (std::uint32_t group = 0; group < blocks.groups(); ++group) {
+      if (used[group + 1]) keys.groups.push_back(group);
+    }
+    return keys;
+  }
+
+  // Embree's rays go in the order of the points: they are for comparison.
+  static Keys keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
     const bool far = mesh.has_far_field();
-    Keys keys{far ? SpaceCurve::codes() : std::uint32_t{ProjectedGrid::kMortonCodes}, {}};
+    Keys keys{far ? SpaceCurve::codes() : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, false, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
     const SpaceCurve curve(mesh.mesh());
@@ -120,7 +160,8 @@ class CoherentOrder {
     return keys;
   }
 
-  bool all_taken_;
+  bool all_taken_, any_outside_;
+  std::vector<std::uint32_t> groups_;
   std::size_t keys_per_bucket_;
   Buckets<SortedPoint> buckets_;
 };
@@ -253,6 +294,53 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
 
 // ---- All meshes ------------------------------------------------------------------------------------------------
 
+// What evaluates the points of a batch.
+class BatchEvaluation {
+ public:
+  BatchEvaluation(const ScaledMeshes& meshes, const CoherentOrder& order) : meshes_(meshes), order_(order) {}
+
+  // Points of no blocks.
+  Tally evaluate(std::span<const CoherentOrder::SortedPoint> points, PointTile& tile) const {
+    const ScaledMesh& scaled = meshes_.scaled();
+    Tally tally;
+    for (const CoherentOrder::SortedPoint& p : points) {
+      const bool exact = order_.all_taken() || scaled.can_take(p.point);
+      if (!exact) tally += tile.evaluate(scaled);
+      const ScaledMesh& mesh = meshes_.of_query(exact);
+      tile.add(p.index, mesh.to_scale(p.point));
+      if (!exact || tile.full()) tally += tile.evaluate(mesh);
+    }
+    return tally;
+  }
+
+  // In blocks of points, group by group.
+  Tally evaluate_groups(const PointBlocks& blocks, std::span<const CoherentOrder::SortedPoint> points,
+                        PointTile& tile) const {
+    const ScaledMesh& scaled = meshes_.scaled();
+    Tally tally;
+    for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
+      const std::uint32_t key = begin->key;
+      end = std::find_if(begin, points.end(), [&](const auto& p) { return p.key != key; });
+      if (key == CoherentOrder::kOutside) {
+        tally += evaluate({begin, end}, tile);
+        tally += tile.evaluate(scaled);
+        continue;
+      }
+      PointBlocks::Sums sums(blocks, key - 1);
+      for (const CoherentOrder::SortedPoint& p : std::span(begin, end)) {
+        tile.add(p.index, scaled.to_scale(p.point));
+        if (tile.full()) tally += tile.evaluate(scaled, &sums);
+      }
+      tally += tile.evaluate(scaled, &sums);
+    }
+    return tally;
+  }
+
+ private:
+  const ScaledMeshes& meshes_;
+  const CoherentOrder& order_;
+};
+
 // Some of the points, at most as many as CoherentOrder takes.
 Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
@@ -261,19 +349,17 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
   scaled.prepare_points();
   const CoherentOrder order(scaled, points);
   if (!order.all_taken()) meshes.unscaled().prepare_points();
+  const BlocksOfPoints* const blocks = scaled.blocks_of_points();
+  if (blocks && order.any_outside()) (void)scaled.has_far_field();
+  if (blocks) blocks->sums.prepare(order.groups());
+  const BatchEvaluation batch(meshes, order);
   SharedTally total;
   parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
     PointTile tile(values, diagnostics, settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
-      for (const CoherentOrder::SortedPoint& p : sorted) {
-        const bool exact = order.all_taken() || scaled.can_take(p.point);
-        if (!exact) tally += tile.evaluate(scaled);
-        const ScaledMesh& mesh = meshes.of_query(exact);
-        tile.add(p.index, mesh.to_scale(p.point));
-        if (!exact || tile.full()) tally += tile.evaluate(mesh);
-      }
+      tally += blocks ? batch.evaluate_groups(blocks->sums, sorted, tile) : batch.evaluate(sorted, tile);
       if (done) done->fetch_add(sorted.size(), std::memory_order_relaxed);
     }
     tally += tile.evaluate(scaled);

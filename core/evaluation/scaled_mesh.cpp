@@ -107,6 +107,45 @@ const Blocks& ScaledMesh::blocks() const {
   return *blocks_;
 }
 
+namespace {
+
+// Larger than the mesh's, as points that are drawn for it often are.
+Box box_for_points(const TriangleMesh& mesh) {
+  constexpr double kMargin = 0x1p-4;
+  Box box = bounding_box(mesh);
+  const double margin = kMargin * longest_side(box);
+  box.lower = box.lower - Vec3{margin, margin, margin};
+  box.upper = box.upper + Vec3{margin, margin, margin};
+  return box;
+}
+
+}  // namespace
+
+// Where the estimate says that it takes less time. Times at a point, in units of that of an exterior edge.
+std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const {
+  constexpr double kTriangle = 1.6;
+  constexpr double kFit = 1e7, kInTree = 1e3;  // once: the fit, and of each edge, its part of the tree
+  constexpr double kSafety = 0.75;             // estimates are no better
+  constexpr double kLeastPoints = 2e5;         // an estimate takes as long as some thousand points
+  const double points = options_.accuracy.points;
+  const bool forced = options_.summation == Summation::kBlocks;
+  if (!(points > 0.0) || (!forced && options_.summation != Summation::kCheapest) || !has_blocks()) return nullptr;
+  const double edges = static_cast<double>(boundary_.exterior_edges());
+  const double direct = counts_crossings() ? edges : kTriangleSummed * static_cast<double>(mesh_.triangles.size());
+  if (!forced && (points < kLeastPoints || direct * points < 4 * kFit)) return nullptr;
+  if (!blocks().are_sound) return nullptr;
+  std::unique_ptr<const BlocksOfPoints> result(
+      new BlocksOfPoints{CapCrossings(blocks().caps), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
+  const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
+  const double cost = kTriangle * result->sums.cost() * points + kFit + kInTree * direct;
+  return forced || cost < kSafety * other * points ? std::move(result) : nullptr;
+}
+
+const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
+  std::call_once(points_built_, [this] { blocks_of_points_ = make_blocks_of_points(); });
+  return blocks_of_points_.get();
+}
+
 const FarField* ScaledMesh::far_field() const {
   std::call_once(far_built_, [this] {
     if (is_in_scale_) far_ = make_far_field(mesh_, boundary_, term_.get(), tolerance(), options_);
@@ -151,6 +190,7 @@ double ScaledMesh::most_sources() const {
 
 void ScaledMesh::prepare_points() const {
   if (!options_.accuracy.sides_only) (void)has_far_field();
+  (void)blocks_of_points();
   if (options_.ray_engine == RayEngine::kScan) {
     (void)grid();
   } else {
@@ -178,7 +218,17 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
   } else {
     far_->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, in another order
   }
-  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values);
+  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, far_->doubt());
+}
+
+void ScaledMesh::set_values(PointBlocks::Sums& sums, SampleTile& samples, std::span<const std::int64_t> crossings,
+                            std::span<double> values, Settling settling) const {
+  sums.evaluate(samples, values);
+  if (counts_crossings()) {
+    const std::array<std::int64_t, kTile> caps = blocks_of_points_->caps.of(samples);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(crossings[i] - caps[i]);
+  }
+  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, doubt_of_blocks());
 }
 
 void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings,
@@ -194,14 +244,14 @@ void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int
 }
 
 void ScaledMesh::set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
-                                              std::span<double> values) const {
+                                              std::span<double> values, double doubt) const {
   std::array<std::size_t, kTile> indices;
   std::array<std::int64_t, kTile> crossings_here;
   std::array<double, kTile> values_here;
   SampleTile here;
   here.clear();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (distance_to_half_integer(values[i]) > far_->doubt()) continue;
+    if (distance_to_half_integer(values[i]) > doubt) continue;
     indices[here.count] = i;
     crossings_here[here.count] = crossings[i];
     here.add(samples.query(i));

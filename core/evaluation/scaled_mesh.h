@@ -25,8 +25,10 @@
 #include "core/data/triangle_mesh.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
+#include "core/far/cap_crossings.h"
 #include "core/far/far_field.h"
 #include "core/far/lattice_blocks.h"
+#include "core/far/point_blocks.h"
 
 namespace raycone {
 
@@ -44,6 +46,12 @@ struct Blocks {
   TriangleMesh caps;   // of which crossings are taken off those of the mesh; none where values depend on none
   bool are_sound;      // no triangle is there so often that its error, multiplied, would show
   LatticeBlocks sums;  // of the caps, or of the mesh
+};
+
+// What scattered points are evaluated with, where there are many.
+struct BlocksOfPoints {
+  CapCrossings caps;
+  PointBlocks sums;
 };
 
 class ScaledMesh {
@@ -80,6 +88,8 @@ class ScaledMesh {
   [[nodiscard]] const Changes& changes() const;
   // Only for an open mesh and a tolerance.
   [[nodiscard]] const Blocks& blocks() const;
+  // None where there are too few points for it. Only before loops over points.
+  [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
   void prepare_points() const;
 
   // What follows takes queries in the scale.
@@ -126,6 +136,10 @@ class ScaledMesh {
   void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                          Settling settling = Settling::kDone) const;
 
+  // The same for points of one group of blocks_of_points().
+  void set_values(PointBlocks::Sums& sums, SampleTile& samples, std::span<const std::int64_t> crossings,
+                  std::span<double> values, Settling settling) const;
+
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
     return term_ ? term_->error_bound(q, w, crossings) : 0.0;
   }
@@ -143,8 +157,9 @@ class ScaledMesh {
   // That of the accuracy, where it is of use: more would not be settled at half-integers.
   [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   [[nodiscard]] bool takes_far_field(std::size_t samples) const;
+  [[nodiscard]] std::unique_ptr<const BlocksOfPoints> make_blocks_of_points() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
-                                    std::span<double> values) const;
+                                    std::span<double> values, double doubt) const;
 
   // Queries that scaling up brings beyond this are as good as at it: a mesh of size 1 has vanished.
   static constexpr double kFarthest = 0x1p1000;
@@ -157,13 +172,14 @@ class ScaledMesh {
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
-  mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_;
+  mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_, points_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
   mutable std::optional<Changes> changes_;
   mutable std::unique_ptr<const FarField> far_;
   mutable std::unique_ptr<const Blocks> blocks_;
+  mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };
 

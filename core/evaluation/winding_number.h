@@ -47,7 +47,7 @@ enum class Summation {
   kTriangles,  // the solid angles of all triangles
   // For tests: as kCheapest, but wherever the tolerance allows it, whether it pays or not,
   kFarField,  // with a far field,
-  kBlocks,    // with blocks of lattices
+  kBlocks,    // with blocks of lattices and, if Accuracy::points are given, of points
 };
 
 struct ExteriorEdge;
@@ -63,6 +63,9 @@ struct Accuracy {
   double samples = 1e6;
   // Whether values only serve to tell sides of rules, which are exact: engines may then change as samples go on.
   bool sides_only = false;
+  // About how many points in the mesh's box evaluate() for points is for, spread over it: where they are many, space is
+  // divided into blocks for them. 0: nobody knows, or they are few.
+  double points = 0.0;
 };
 
 // What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.

@@ -54,7 +54,7 @@ class CoverSums {
   template <class Visit>
   void evaluate(SampleTile& tile, TileShape shape, const Visit& visit) {
     tile.fill_up();
-    Tile far{};
+    alignas(64) Tile far{};
     for (const auto& [node, degree] : cover_.expansions) far_.add_multipole(tree_, node, degree, tile, far);
     if (corners_.chunks() > 0) shared_corners_(corners_, tile, shape, products_);
     for (std::size_t i = 0; i < tile.count; ++i) {

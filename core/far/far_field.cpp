@@ -7,7 +7,6 @@
 
 #include "core/boundary/caps.h"
 #include "core/boundary/solid_angles.h"
-#include "core/crossings/crossings.h"
 
 namespace raycone {
 
@@ -22,7 +21,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
     : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)) {
   if (sources == FarSources::kCaps) {
     caps_ = all_caps(boundary);
-    if (!caps_.triangles.empty()) cap_grid_.emplace(caps_);
+    cap_crossings_.emplace(caps_);
   }
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
@@ -54,27 +53,11 @@ double FarField::cost_in(const Box& box, double tolerance) const {
   return sum / static_cast<double>(kTile);
 }
 
-FarField::Crossings FarField::cap_crossings(const SampleTile& samples) const {
-  Crossings n{};
-  if (!cap_grid_) return n;
-  std::array<Vec3, kTile> queries;
-  for (std::size_t i = 0; i < samples.count; ++i) queries[i] = samples.query(i);
-  std::vector<ProjectedGrid::Doubtful> doubtful;
-  cap_grid_->crossings({queries.data(), samples.count}, {n.data(), samples.count}, doubtful);
-  for (const auto& [i, triangle] : doubtful) {
-    const Triangle& t = caps_.triangles[triangle];
-    const Vec3 &a = caps_.vertices[t[0]], &b = caps_.vertices[t[1]], &c = caps_.vertices[t[2]], &q = queries[i];
-    const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}}, nullptr);
-    if (crossing.crossed > 0) n[i] += crossing.sigma;
-  }
-  return n;
-}
-
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                                std::span<double> w) const {
   std::array<std::int64_t, kTile> whole{};
   if (sources_ == FarSources::kCaps) {
-    const Crossings of_caps = cap_crossings(samples);
+    const std::array<std::int64_t, kTile> of_caps = cap_crossings_->of(samples);
     for (std::size_t i = 0; i < samples.count; ++i) whole[i] = crossings[i] - of_caps[i];
   }
   winding_numbers_of_closed(samples, whole, w);

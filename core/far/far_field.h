@@ -12,8 +12,8 @@
 
 #include "core/boundary/boundary_term.h"
 #include "core/boundary/sample_tile.h"
-#include "core/crossings/projected_grid.h"
 #include "core/data/triangle_mesh.h"
+#include "core/far/cap_crossings.h"
 #include "core/far/far_kernel.h"
 #include "core/far/source_tree.h"
 
@@ -56,15 +56,13 @@ class FarField final : public BoundaryTerm {
   [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
 
  private:
-  using Crossings = std::array<std::int64_t, kTile>;
-  [[nodiscard]] Crossings cap_crossings(const SampleTile& samples) const;
   [[nodiscard]] double cost_in(const Box& box, double tolerance) const;
 
   const Boundary& boundary_;
   FarSources sources_;
   FarKernel kernel_;
-  TriangleMesh caps_;                      // none of a soup
-  std::optional<ProjectedGrid> cap_grid_;  // none where no cap is there
+  TriangleMesh caps_;  // none of a soup
+  std::optional<CapCrossings> cap_crossings_;
   std::optional<SourceTree> tree_;
   bool faces_repeat_ = false;
   double doubt_ = 0;

@@ -47,6 +47,8 @@ class LatticeBlocks {
   [[nodiscard]] std::uint64_t near_terms() const { return near_terms_; }
   [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
 
+  [[nodiscard]] SimdLevel level() const { return level_; }
+
   // No sum over so many triangles is off by more, rounding included.
   [[nodiscard]] static double doubt(double tolerance, double triangles);
 

@@ -19,13 +19,13 @@ constexpr double kNodeShare = 0.15;
 
 // Times, in units of that of a triangle at a sample.
 constexpr double kFitting = 8000.0;  // of making a block's polynomial, beside the triangles at its nodes
-constexpr double kPolynomial = 3.0;  // of the polynomial at a sample
+constexpr double kPolynomial = 3.0;  // of the polynomial at a sample, all along rows, ...
+constexpr double kAtPoint = 16.0;    // ... and at a scattered point
 
 // In samples. Blocks smaller than this are not divided, larger ones if that pays, ...
 constexpr double kSmallBlock = 0x1p12;
-constexpr double kLargeBlock = 0x1p15;                    // ... those beyond this always, or beyond ...
-constexpr double kLargestBlock = 0x1p18;                  // ... this where nothing is near.
-constexpr std::array<std::size_t, 3> kSubBlock{8, 8, 4};  // samples that share a list of what is near
+constexpr double kLargeBlock = 0x1p15;    // ... those beyond this always, or beyond ...
+constexpr double kLargestBlock = 0x1p18;  // ... this where nothing is near.
 
 // Cubes are larger than their blocks by this factor: on their faces nodes would lie in the planes of samples, where
 // many meshes have flat boundaries, and the sides of triangles would be ties.
@@ -34,8 +34,6 @@ constexpr double kMargin = 1.0 + 0x1.3p-9;
 double making_cost(double far, bool parent) {
   return far > 0.0 || parent ? far * static_cast<double>(HarmonicFit::kNodes) + kFitting : 0.0;
 }
-
-double near_cost(const SampleBlock& block) { return (block.near_cost + kPolynomial) * block.size(); }
 
 // Cut so that sub-blocks are whole, but for those at the end of the lattice.
 std::size_t middle_of(const SampleBlock& block, std::size_t axis) {
@@ -57,9 +55,10 @@ Box box_around(const Cube& cube) {
 
 // ---- Dividing --------------------------------------------------------------------------------------------------
 
-LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes)
+LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes, AxesOf axes_of)
     : blocks_(blocks),
       axes_(axes),
+      axes_of_(axes_of),
       shared_corners_(shared_corners_kernel(blocks.level_)),
       far_(far_kernel(blocks.level_)),
       matrices_(matrix_kernel(blocks.level_)) {
@@ -72,19 +71,22 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
 }
 
 SampleBlock LatticeBlocksWalk::lattice() const {
-  return {0, {0, 0, 0}, {axes_[0].size(), axes_[1].size(), axes_[2].size()}, {}, {}, 0.0, nullptr};
+  const std::size_t ends = axes_of_ == AxesOf::kCells ? 1 : 0;
+  const std::array<std::size_t, 3> last{axes_[0].size() - ends, axes_[1].size() - ends, axes_[2].size() - ends};
+  return {0, {0, 0, 0}, last, {}, {}, 0.0, nullptr};
 }
 
 double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) const {
-  return axes_[axis][block.last[axis] - 1] - axes_[axis][block.first[axis]];
+  return last_of(axis, block.last[axis]) - first_of(axis, block.first[axis]);
 }
 
-// The block cut in two along its longer axes.
+// The block cut in two along its longer axes. Sub-blocks of cells are the same whatever the blocks, so they stay whole.
 std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) const {
   const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
   std::vector<SampleBlock> pieces{{block.level + 1, block.first, block.last, {}, {}, 0.0, block.field}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (block.count(axis) < 2 || length(block, axis) <= 0.6 * longest) continue;
+    const std::size_t least = axes_of_ == AxesOf::kCells ? 2 * kSubBlock[axis] : 2;
+    if (block.count(axis) < least || length(block, axis) <= 0.6 * longest) continue;
     const std::size_t middle = middle_of(block, axis), count = pieces.size();
     for (std::size_t n = 0; n < count; ++n) {
       SampleBlock upper = pieces[n];
@@ -98,7 +100,7 @@ std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) con
 Cube LatticeBlocksWalk::cube_around(const SampleBlock& block) const {
   Cube cube{{}, 0.0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double first = axes_[axis][block.first[axis]], last = axes_[axis][block.last[axis] - 1];
+    const double first = first_of(axis, block.first[axis]), last = last_of(axis, block.last[axis]);
     cube.centre[static_cast<int>(axis)] = first / 2 + last / 2;
     cube.half = std::max(cube.half, (last / 2 - first / 2) * kMargin);
   }
@@ -108,8 +110,8 @@ Cube LatticeBlocksWalk::cube_around(const SampleBlock& block) const {
 Box LatticeBlocksWalk::box_of(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last) const {
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lower[static_cast<int>(axis)] = axes_[axis][first[axis]];
-    box.upper[static_cast<int>(axis)] = axes_[axis][last[axis] - 1];
+    box.lower[static_cast<int>(axis)] = first_of(axis, first[axis]);
+    box.upper[static_cast<int>(axis)] = last_of(axis, last[axis]);
   }
   return box;
 }
@@ -135,7 +137,7 @@ void LatticeBlocksWalk::add_child(SampleBlock block, std::span<const std::uint32
   Cover cover = cover_at_nodes(far, block.cube);
   if (making_cost(cover.cost, false) > static_cast<double>(far.size()) * block.size()) far.clear(), cover = {};
   std::ranges::set_difference(triangles, far, std::back_inserter(block.near));
-  block.near_cost = cover_at_samples(block, block.first, block.last).cost;
+  block.near_cost = cover_at(block, block.first, block.last).cost;
   division.far.push_back(std::move(cover));
   division.children.push_back(std::move(block));
 }
@@ -178,12 +180,16 @@ Cover LatticeBlocksWalk::cover_at_nodes(std::span<const std::uint32_t> far, cons
   return cover_in(blocks_.tree_, far, box_around(cube), kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
 }
 
-Cover LatticeBlocksWalk::cover_at_samples(const SampleBlock& block, const std::array<std::size_t, 3>& first,
-                                          const std::array<std::size_t, 3>& last) const {
+Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const std::array<std::size_t, 3>& first,
+                                  const std::array<std::size_t, 3>& last) const {
   return cover_in(blocks_.tree_, block.near, box_of(first, last), kSampleShare * blocks_.tolerance_);
 }
 
 // ---- Choosing --------------------------------------------------------------------------------------------------
+
+double LatticeBlocksWalk::near_cost(const SampleBlock& block) const {
+  return (block.near_cost + (axes_of_ == AxesOf::kCells ? kAtPoint : kPolynomial)) * block.size();
+}
 
 bool LatticeBlocksWalk::pays(const SampleBlock& block, const Division& division) const {
   if (division.children.size() < 2) return false;
@@ -266,6 +272,10 @@ void LatticeBlocksWalk::count_terms(const Cover& cover, std::size_t samples) con
   blocks_.far_terms_.fetch_add(samples * cover.expansions.size(), std::memory_order_relaxed);
 }
 
+void LatticeBlocksWalk::count_polynomials(std::size_t samples) const {
+  blocks_.far_terms_.fetch_add(samples, std::memory_order_relaxed);
+}
+
 bool LatticeBlocksWalk::overlap(const SampleBlock& block, const std::array<SampleRange, 3>& part) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!(part[axis].begin < block.last[axis] && block.first[axis] < part[axis].end)) return false;
@@ -273,10 +283,18 @@ bool LatticeBlocksWalk::overlap(const SampleBlock& block, const std::array<Sampl
   return true;
 }
 
+std::size_t LatticeBlocksWalk::degree(const SampleBlock& block) const {
+  return block.field ? truncation(block.field->coefficients, kTruncationShare * blocks_.tolerance_).degree : 0;
+}
+
+CoverSums LatticeBlocksWalk::sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
+                                     const std::array<std::size_t, 3>& last) const {
+  return {blocks_.tree_, cover, box_of(first, last), shared_corners_, far_};
+}
+
 void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
                                  const LatticeBlocks::Sink& sink) const {
-  const std::size_t degree =
-      block.field ? truncation(block.field->coefficients, kTruncationShare * blocks_.tolerance_).degree : 0;
+  const std::size_t degree = this->degree(block);
   GridValues grid(matrices_);
   std::vector<double> numbers;
   std::array<std::size_t, 3> first, last;
@@ -304,8 +322,7 @@ void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree,
     return std::span(axes_[axis]).subspan(first[axis], last[axis] - first[axis]);
   };
   if (block.field) {
-    const std::size_t samples = (last[0] - first[0]) * (last[1] - first[1]) * (last[2] - first[2]);
-    blocks_.far_terms_.fetch_add(samples, std::memory_order_relaxed);
+    count_polynomials((last[0] - first[0]) * (last[1] - first[1]) * (last[2] - first[2]));
     const auto values = grid.evaluate(block.field->coefficients, degree, block.field->cube, coordinates(0),
                                       coordinates(1), coordinates(2));
     sums.numbers.assign(values.begin(), values.end());
@@ -331,9 +348,9 @@ void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std:
     first[axis] = begin[axis] - (begin[axis] - block.first[axis]) % kSubBlock[axis];
     last[axis] = std::min(block.last[axis], first[axis] + kSubBlock[axis]);
   }
-  const Cover cover = cover_at_samples(block, first, last);
+  const Cover cover = cover_at(block, first, last);
   count_terms(cover, (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]));
-  CoverSums cover_sums(blocks_.tree_, cover, box_of(first, last), shared_corners_, far_);
+  CoverSums cover_sums = sums_of(cover, first, last);
   SampleTile tile;
   for (std::size_t z = begin[2]; z < end[2]; ++z) {
     tile.clear();

@@ -23,7 +23,14 @@ struct FieldOnCube {
   Coefficients coefficients;
 };
 
-// Samples [first, last) along each axis.
+// What the coordinates of axes are of: samples, or the ends of cells, in which scattered points lie. There is one cell
+// less than there are coordinates, and one point is expected in each.
+enum class AxesOf { kSamples, kCells };
+
+// In samples, or cells, which share a list of what is near.
+inline constexpr std::array<std::size_t, 3> kSubBlock{8, 8, 4};
+
+// Samples, or cells, [first, last) along each axis.
 struct SampleBlock {
   std::size_t level;  // 0: the whole lattice
   std::array<std::size_t, 3> first, last;
@@ -55,7 +62,7 @@ class LatticeBlocksWalk {
   // Of the tolerance, for multipoles at samples.
   static constexpr double kSampleShare = 0.1;
 
-  LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes);
+  LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes, AxesOf axes_of = AxesOf::kSamples);
 
   // Levels of blocks that may have triangles that are far: so often the budget of a level is spent on a sample at most.
   [[nodiscard]] std::size_t levels() const { return levels_; }
@@ -76,6 +83,16 @@ class LatticeBlocksWalk {
   // Gives the children their fields.
   void make_fields(Division& division) const;
 
+  // Of a block that is not divided: its polynomial needs no more than that, 0 where it has none.
+  [[nodiscard]] std::size_t degree(const SampleBlock& block) const;
+  // Of such a block, what is near those of its samples, or cells, that make up one sub-block.
+  [[nodiscard]] Cover cover_at(const SampleBlock& block, const std::array<std::size_t, 3>& first,
+                               const std::array<std::size_t, 3>& last) const;
+  [[nodiscard]] CoverSums sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
+                                  const std::array<std::size_t, 3>& last) const;
+  void count_terms(const Cover& cover, std::size_t samples) const;
+  void count_polynomials(std::size_t samples) const;
+
   // Calls the sink for the rows of the part that are in a block that is not divided.
   void evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
                 const LatticeBlocks::Sink& sink) const;
@@ -87,6 +104,11 @@ class LatticeBlocksWalk {
 
  private:
   [[nodiscard]] SampleBlock lattice() const;
+  [[nodiscard]] double near_cost(const SampleBlock& block) const;
+  [[nodiscard]] double first_of(std::size_t axis, std::size_t first) const { return axes_[axis][first]; }
+  [[nodiscard]] double last_of(std::size_t axis, std::size_t last) const {
+    return axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1];
+  }
   [[nodiscard]] double length(const SampleBlock& block, std::size_t axis) const;
   [[nodiscard]] std::vector<SampleBlock> halves(const SampleBlock& block) const;
   [[nodiscard]] Cube cube_around(const SampleBlock& block) const;
@@ -98,17 +120,15 @@ class LatticeBlocksWalk {
                                                          std::span<const std::uint32_t> triangles) const;
   static double error_of(const LatticeBlocks::Source& source, const Cube& cube);
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
-  [[nodiscard]] Cover cover_at_samples(const SampleBlock& block, const std::array<std::size_t, 3>& first,
-                                       const std::array<std::size_t, 3>& last) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;
   void set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid, const BlockSums& sums) const;
   void add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
                 const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
-  void count_terms(const Cover& cover, std::size_t samples) const;
 
   const LatticeBlocks& blocks_;
   const LatticeAxes& axes_;
+  AxesOf axes_of_;
   SharedCornersKernel shared_corners_;
   FarKernel far_;
   MatrixKernel matrices_;

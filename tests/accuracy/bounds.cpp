@@ -218,27 +218,32 @@ struct Sampled {
   std::vector<std::uint8_t> on_surface;
 };
 
-// A lattice of about `count` samples by blocks, or as many points by a far field.
-Sampled sampled(const TriangleMesh& mesh, Summation summation, double tolerance, std::size_t count, Random& random) {
+// What evaluates them.
+enum class Engine { kFarField, kBlocksOfLattices, kBlocksOfPoints };
+
+// A lattice of about `count` samples, or as many points.
+Sampled sampled(const TriangleMesh& mesh, Engine engine, double tolerance, std::size_t count, Random& random) {
   const Box box = bounding_box(mesh);
   const Vec3 size = box.upper - box.lower;
   const auto side = static_cast<std::int64_t>(std::cbrt(static_cast<double>(count)));
   const Lattice lattice{
       box.lower - 0.1 * size, (1.2 / static_cast<double>(side - 1)) * size, {0, 0, 0}, {side, side, side}};
-  const bool blocks = summation == Summation::kBlocks;
-  const std::size_t n = blocks ? static_cast<std::size_t>(whole(lattice).size()) : count;
+  const bool on_lattice = engine == Engine::kBlocksOfLattices;
+  const std::size_t n = on_lattice ? static_cast<std::size_t>(whole(lattice).size()) : count;
   Sampled all{std::vector<Vec3>(n), std::vector<double>(n), std::vector<double>(n), std::vector<std::uint8_t>(n)};
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = static_cast<std::int64_t>(i);
-    all.points[i] = blocks ? Vec3{lattice.coordinate(0, at % side), lattice.coordinate(1, at / side % side),
-                                  lattice.coordinate(2, at / side / side)}
-                           : test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size});
+    all.points[i] = on_lattice ? Vec3{lattice.coordinate(0, at % side), lattice.coordinate(1, at / side % side),
+                                      lattice.coordinate(2, at / side / side)}
+                               : test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size});
   }
   std::vector<std::int64_t> crossings(n), degenerate(n);
   const Diagnostics diagnostics{crossings, degenerate, all.on_surface, all.bounds};
-  const WindingNumberEvaluator evaluator(mesh,
-                                         {.summation = summation, .accuracy = {tolerance, static_cast<double>(n)}});
-  if (blocks) {
+  const auto samples = static_cast<double>(n);
+  const WindingNumberEvaluator evaluator(
+      mesh, {.summation = engine == Engine::kFarField ? Summation::kFarField : Summation::kBlocks,
+             .accuracy = {.tolerance = tolerance, .samples = samples, .points = on_lattice ? 0.0 : samples}});
+  if (on_lattice) {
     evaluator.evaluate(lattice, whole(lattice), all.values, nullptr, &diagnostics);
   } else {
     evaluator.evaluate(all.points, all.values, nullptr, &diagnostics);
@@ -269,9 +274,10 @@ int check_bounded_engines(std::size_t values) {
     const TriangleMesh mesh = weld(raw, {});
     for (const double tolerance : kTolerances) {
       Bounded here;
-      for (const Summation summation : {Summation::kFarField, Summation::kBlocks}) {
-        const std::size_t count = values / (2 * kTolerances.size() * all.size());
-        compare(mesh, sampled(mesh, summation, tolerance, count, random), tolerance, here);
+      constexpr std::array kEngines{Engine::kFarField, Engine::kBlocksOfLattices, Engine::kBlocksOfPoints};
+      for (const Engine engine : kEngines) {
+        const std::size_t count = values / (kEngines.size() * kTolerances.size() * all.size());
+        compare(mesh, sampled(mesh, engine, tolerance, count, random), tolerance, here);
       }
       std::printf("| %s | %zu | %.0e | %zu | %zu | %zu | %.2g | %.2g |\n", name.c_str(), mesh.triangles.size(),
                   tolerance, here.values, here.violated, here.beyond_tolerance, here.largest_error, here.largest_bound);

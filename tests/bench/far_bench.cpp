@@ -75,7 +75,8 @@ struct Workload {
 
 std::vector<double> values_of(const Workload& workload, const Samples& samples, Summation summation, double tolerance,
                               benchmark::State* state = nullptr) {
-  const Accuracy accuracy{tolerance, static_cast<double>(samples.size())};
+  const auto count = static_cast<double>(samples.size());
+  const Accuracy accuracy{.tolerance = tolerance, .samples = count, .points = samples.points.empty() ? 0.0 : count};
   const auto start = std::chrono::steady_clock::now();
   const WindingNumberEvaluator evaluator(workload.mesh, {.summation = summation, .accuracy = accuracy});
   if (!samples.points.empty()) evaluator.prepare_points();
@@ -87,7 +88,6 @@ std::vector<double> values_of(const Workload& workload, const Samples& samples, 
     evaluator.evaluate(samples.points, values);
   }
   if (state) {
-    const auto count = static_cast<double>(samples.size());
     state->counters["prepare_ms"] = preparation.count();
     state->counters["exterior_edges"] = static_cast<double>(evaluator.exterior_edges());
     state->counters["near"] = static_cast<double>(evaluator.terms().near) / count;  // of one sample
@@ -124,7 +124,6 @@ void add(Workload& workload) {
     for (const Method& method :
          {Method{"direct", Summation::kCheapest, 0.0}, Method{"default", Summation::kCheapest, kTolerance},
           Method{"far", Summation::kFarField, kTolerance}, Method{"blocks", Summation::kBlocks, kTolerance}}) {
-      if (method.summation == Summation::kBlocks && !samples.points.empty()) continue;
       const std::string name = samples.name + "/" + workload.name + "/" + method.name;
       benchmark::RegisterBenchmark(name.c_str(), [&workload, &samples, method](benchmark::State& state) {
         time_all(state, workload, samples, method.summation, method.tolerance);

@@ -553,6 +553,11 @@ MUTANTS = [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
         ("core/evaluation/lattice_far.cpp", "if (least <= doubt_)", "if (least < 0.0)")]),
+    Mutant("cells_without_their_ends", "the cube of a block of cells has all points in them", [
+        ("core/far/lattice_blocks_walk.h", "axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1]",
+         "axes_[axis][last - 1]")]),
+    Mutant("point_values_not_settled", "a value of blocks of points that may be a half-integer is evaluated again", [
+        ("core/evaluation/scaled_mesh.cpp", "values, doubt_of_blocks());", "values, -1.0);")]),
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
         ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [

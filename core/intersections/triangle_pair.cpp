@@ -258,7 +258,7 @@ bool MeetsBeyondShared::is_surely_beside(const Corners3& other) const {
   constexpr Two kZero{0.0, 0.0};
   const auto size = [&](Two x) { return x < kZero ? -x : x; };
   for (const Edges& edges : edges_) {
-    auto beside = ~decltype(kZero < kZero){};
+    auto beside = ~decltype(Two{} < kZero){};
     for (const Vec3& p : other) {
       // As in determinant_from() and sure_sign().
       const Two left = (edges.from_first - p[first_axis_]) * edges.step_second;

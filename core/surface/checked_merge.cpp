@@ -146,10 +146,12 @@ class CheckedMerger {
       if (is_flat || (wide >= kFacesFrom && is_near(surface_.mesh, t, misplaced))) touch(t);
     }
     for (int ring = 0; ring < 1 << wide; ++ring) {
-      const std::vector<bool> before = touched;
+      std::vector<bool> wider = touched;
       for (const Triangle& t : merged.triangles) {
-        if (before[t[0]] || before[t[1]] || before[t[2]]) touch(t);
+        if (!touched[t[0]] && !touched[t[1]] && !touched[t[2]]) continue;
+        for (const std::uint32_t corner : t) wider[corner] = true;
       }
+      touched = std::move(wider);
     }
     const NodeSet lines = along_axes(misplaced, std::int64_t{2} << 2 * wide);
     for (std::size_t v = 0; v < kept_.size(); ++v)

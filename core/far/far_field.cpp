@@ -21,7 +21,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
     : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)) {
   if (sources == FarSources::kCaps) {
     caps_ = all_caps(boundary);
-    cap_crossings_.emplace(caps_);
+    cap_crossings_ = CapCrossings(caps_);
   }
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
@@ -57,7 +57,7 @@ void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t
                                std::span<double> w) const {
   std::array<std::int64_t, kTile> whole{};
   if (sources_ == FarSources::kCaps) {
-    const std::array<std::int64_t, kTile> of_caps = cap_crossings_->of(samples);
+    const std::array<std::int64_t, kTile> of_caps = cap_crossings_.of(samples);
     for (std::size_t i = 0; i < samples.count; ++i) whole[i] = crossings[i] - of_caps[i];
   }
   winding_numbers_of_closed(samples, whole, w);

@@ -62,7 +62,7 @@ class FarField final : public BoundaryTerm {
   FarSources sources_;
   FarKernel kernel_;
   TriangleMesh caps_;  // none of a soup
-  std::optional<CapCrossings> cap_crossings_;
+  CapCrossings cap_crossings_;
   std::optional<SourceTree> tree_;
   bool faces_repeat_ = false;
   double doubt_ = 0;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -34,9 +35,16 @@ namespace {
 
 constexpr double kHalfWidth = 3.0;  // voxels
 
+// Samples of the band, and what brute force says of them.
+struct Truth {
+  std::array<std::int64_t, 3> index;
+  double distance;  // signed, voxels
+};
+
 struct Workload {
   std::string name;
   TriangleMesh mesh;
+  std::map<std::int64_t, std::vector<Truth>> truths{};  // by samples along the longest side: they take seconds
 };
 
 Lattice lattice_of(const TriangleMesh& mesh, std::int64_t side) {
@@ -51,12 +59,6 @@ Lattice lattice_of(const TriangleMesh& mesh, std::int64_t side) {
   }
   return with_layers(lattice, 4);
 }
-
-// Samples of the band, and what brute force says of them.
-struct Truth {
-  std::array<std::int64_t, 3> index;
-  double distance;  // signed, voxels
-};
 
 std::vector<Truth> some_truths(const TriangleMesh& mesh, const Lattice& lattice) {
   constexpr std::size_t kCount = 40;
@@ -81,10 +83,12 @@ std::vector<Truth> some_truths(const TriangleMesh& mesh, const Lattice& lattice)
 }
 
 template <class DistanceAt>
-void set_counters(benchmark::State& state, const Workload& workload, const Lattice& lattice, const DistanceAt& at) {
+void set_counters(benchmark::State& state, Workload& workload, const Lattice& lattice, const DistanceAt& at) {
+  std::vector<Truth>& truths = workload.truths[*std::ranges::max_element(lattice.counts)];
+  if (truths.empty()) truths = some_truths(workload.mesh, lattice);
   double error = 0.0;
   std::uint64_t wrong = 0;
-  for (const Truth& truth : some_truths(workload.mesh, lattice)) {
+  for (const Truth& truth : truths) {
     const double distance = at(truth.index);
     error = std::max(error, std::abs(std::abs(distance) - std::abs(truth.distance)));
     if (std::signbit(distance) != std::signbit(truth.distance) && truth.distance != 0.0) ++wrong;
@@ -94,7 +98,7 @@ void set_counters(benchmark::State& state, const Workload& workload, const Latti
   state.counters["faces"] = static_cast<double>(workload.mesh.triangles.size());
 }
 
-void by_raycone(benchmark::State& state, const Workload& workload, const Lattice& lattice) {
+void by_raycone(benchmark::State& state, Workload& workload, const Lattice& lattice) {
   const ThreadLimit limit(1);
   FieldOptions options;
   options.fields = {Field::kDistance};
@@ -118,7 +122,7 @@ void by_raycone(benchmark::State& state, const Workload& workload, const Lattice
   });
 }
 
-void by_openvdb(benchmark::State& state, const Workload& workload, const Lattice& lattice) {
+void by_openvdb(benchmark::State& state, Workload& workload, const Lattice& lattice) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<openvdb::Vec3s> points;
   for (const Vec3& p : workload.mesh.vertices) {
@@ -139,7 +143,7 @@ void by_openvdb(benchmark::State& state, const Workload& workload, const Lattice
   });
 }
 
-void add(const Workload& workload, std::int64_t side) {
+void add(Workload& workload, std::int64_t side) {
   const Lattice lattice = lattice_of(workload.mesh, side);
   const std::string name = std::to_string(side) + "/" + workload.name + "/";
   benchmark::RegisterBenchmark((name + "raycone").c_str(), [&workload, lattice](benchmark::State& state) {

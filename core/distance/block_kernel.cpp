@@ -89,20 +89,27 @@ HWY_INLINE Lanes least_distances(const Bearings& bearings, const VectorLanes& fr
                  dot({hn::Abs(away.x), hn::Abs(away.y), hn::Abs(away.z)}, extent));
 }
 
+struct FirstLook {
+  std::size_t number;  // of the triangle that seems to be nearest to the box
+  double bound;        // the least one
+};
+
 // Sets `bounds`, one per triangle, to what its squares are not below at any sample of the box `here`; `slack`: of the
-// largest distance that counts. Returns the number of the triangle that seems to be nearest to the box.
-HWY_INLINE std::size_t find_bounds(const NearTriangles& near, const Middle& middle, const Middle& here, double slack,
+// largest distance that counts.
+HWY_INLINE FirstLook find_bounds(const NearTriangles& near, const Middle& middle, const Middle& here, double slack,
                                    std::vector<double>& bounds) {
   const VectorLanes from = in_all_lanes(here.center - middle.center), extent = in_all_lanes(here.extent);
   const VectorLanes twice_center = in_all_lanes(2.0 * here.center);
-  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
+  Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d), least_bound = hn::Set(d, kNowhere);
   if (bounds.size() < near.count + kWidth) bounds.resize(near.count + kWidth);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
     const BoxLanes boxes = boxes_of(near, n);
     const Lanes distances = hn::Sub(least_distances(bearings_of(near, n), from, extent), hn::Set(d, slack));
     const Lanes positive = hn::Max(distances, hn::Zero(d));
     const Lanes squares = squared_between(boxes.lower, boxes.upper, here.lower, here.upper);
-    hn::StoreU(hn::Max(squares, hn::Mul(positive, positive)), d, &bounds[n]);
+    const Lanes bound = hn::Max(squares, hn::Mul(positive, positive));
+    hn::StoreU(bound, d, &bounds[n]);
+    least_bound = hn::Min(least_bound, bound);
     const VectorLanes to_box = minus(plus(boxes.lower, boxes.upper), twice_center);
     const Lanes square = dot(to_box, to_box);
     const LaneMask nearer = hn::Lt(square, least);
@@ -110,28 +117,38 @@ HWY_INLINE std::size_t find_bounds(const NearTriangles& near, const Middle& midd
     number = hn::IfThenElse(nearer, hn::Iota(d, static_cast<double>(n)), number);
   }
   const LaneMask is_least = hn::Eq(least, hn::MinOfLanes(d, least));
-  return static_cast<std::size_t>(
-      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere)))));
+  const double first = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_least, number, hn::Set(d, kNowhere))));
+  return {static_cast<std::size_t>(first), hn::GetLane(hn::MinOfLanes(d, least_bound))};
 }
 
-// Whether the triangle's box and its half-space, of the bearing from `middle`, leave it nearer to a sample than what
-// was found.
-HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, const Vec3& middle, double slack,
-                              const Group& group) {
-  const Lanes distance = hn::Set(d, near.distances[number] - slack);
-  const VectorLanes away = in_all_lanes({near.away[0][number], near.away[1][number], near.away[2][number]});
+// Whether the triangle's box leaves it nearer to a sample than what was found.
+HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, const Group& group) {
   const VectorLanes lower = in_all_lanes({near.lower[0][number], near.lower[1][number], near.lower[2][number]});
   const VectorLanes upper = in_all_lanes({near.upper[0][number], near.upper[1][number], near.upper[2][number]});
   LaneMask nearer = hn::FirstN(d, 0);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
     const Lanes least = hn::Load(d, &group.least[n]);
-    const Lanes bound = hn::Max(hn::Add(distance, dot(away, minus(ps, in_all_lanes(middle)))), hn::Zero(d));
     const Lanes limit = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
-    nearer = hn::Or(
-        nearer, hn::And(hn::Le(hn::Mul(bound, bound), least), hn::Lt(squared_between(lower, upper, ps, ps), limit)));
+    nearer = hn::Or(nearer, hn::Lt(squared_between(lower, upper, ps, ps), limit));
   }
   return !hn::AllFalse(d, nearer);
+}
+
+// Numbers of those but `first` whose bounds are not above `most`. Returns how many there are.
+HWY_INLINE std::size_t find_candidates(std::size_t count, std::size_t first, double most, BlockScratch& scratch) {
+  if (scratch.candidates.size() < count + kWidth) scratch.candidates.resize(count + kWidth);
+  scratch.bounds[first] = kNowhere;
+  const Places integers;
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
+    const LaneMask wanted = hn::Le(hn::LoadU(d, &scratch.bounds[n]), hn::Set(d, most));
+    if (hn::AllFalse(d, wanted)) continue;
+    const ToFront front(wanted);
+    front.store(integers, hn::Iota(integers, static_cast<std::int64_t>(n)), &scratch.candidates[found]);
+    found += front.count();
+  }
+  return found;
 }
 
 // Of the triangles of scratch.of_part, with bearings from `middle`.
@@ -144,17 +161,14 @@ void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middl
     return beyond_error(lower_to(scratch.packed[place / kStride], place % kStride, group));
   };
   const double slack = slack_of(task.reach * kSlack, middle.radius);
-  const std::size_t first = find_bounds(near, middle, here, slack, scratch.bounds);
-  double most = std::min(square_of_reach(task.reach), look_at(first));
-  for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
-    const Lanes bounds = hn::LoadU(d, &scratch.bounds[n]);
-    LaneMask wanted = hn::Le(bounds, hn::Set(d, most));
-    while (!hn::AllFalse(d, wanted)) {
-      const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, wanted));
-      const bool worth_it = n + lane != first && may_be_nearer(near, n + lane, middle.center, slack, group);
-      if (worth_it) most = std::min(most, look_at(n + lane));
-      wanted = hn::AndNot(hn::FirstN(d, lane + 1), worth_it ? hn::Le(bounds, hn::Set(d, most)) : wanted);
-    }
+  const FirstLook first = find_bounds(near, middle, here, slack, scratch.bounds);
+  if (first.bound > square_of_reach(task.reach)) return;
+  double most = std::min(square_of_reach(task.reach), look_at(first.number));
+  const std::size_t count = find_candidates(near.count, first.number, most, scratch);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto number = static_cast<std::size_t>(scratch.candidates[n]);
+    if (scratch.bounds[number] > most || !may_be_nearer(near, number, group)) continue;
+    most = std::min(most, look_at(number));
   }
   for (std::size_t n = 0; n < kGroup; ++n) scratch.squares[group.index[n]] = group.least[n];
 }
@@ -206,6 +220,18 @@ void fill_block(const BlockTask& task, BlockScratch& scratch) {
   });
 }
 
+bool take_roots(std::span<double, kSamplesOfBlock> squares, const PowerOfTwo& to_world, double band) {
+  const Lanes factor = hn::Set(d, to_world.factors()[0]), other = hn::Set(d, to_world.factors()[1]);
+  const Lanes most = hn::Set(d, band);
+  LaneMask below = hn::FirstN(d, 0);
+  for (std::size_t n = 0; n < squares.size(); n += hn::Lanes(d)) {
+    const Lanes distances = hn::Mul(hn::Mul(hn::Sqrt(hn::LoadU(d, &squares[n])), factor), other);
+    below = hn::Or(below, hn::Lt(distances, most));
+    hn::StoreU(hn::Min(distances, most), d, &squares[n]);
+  }
+  return !hn::AllFalse(d, below);
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace raycone
@@ -214,6 +240,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 BlockKernel block_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, fill_block); }
+RootKernel root_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, take_roots); }
 
 }  // namespace raycone
 #endif

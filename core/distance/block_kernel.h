@@ -10,11 +10,13 @@
 #include "core/crossings/lattice_rows.h"
 #include "core/data/sample_box.h"
 #include "core/distance/distance_tree.h"
+#include "core/exact/scale.h"
 
 namespace raycone {
 
 // The largest side of a block that a kernel takes.
 inline constexpr std::size_t kBlockSide = 8;
+inline constexpr std::size_t kSamplesOfBlock = kBlockSide * kBlockSide * kBlockSide;
 
 // The place of a sample among all of a block's, by its number along each axis.
 [[nodiscard]] constexpr std::size_t index_in_block(const std::array<std::size_t, 3>& sample) {
@@ -33,10 +35,11 @@ struct NearTriangles {
 // What a task keeps from block to block.
 struct BlockScratch {
   std::vector<std::uint32_t> packs;
-  NearTriangles of_block, of_part;   // places: in `packed`
-  std::vector<TrianglePack> packed;  // those of the block
-  std::vector<double> bounds;        // below the squares of those of the part, at all samples of a group
-  std::array<double, kBlockSide * kBlockSide * kBlockSide> squares;  // by index_in_block()
+  NearTriangles of_block, of_part;       // places: in `packed`
+  std::vector<TrianglePack> packed;      // those of the block
+  std::vector<double> bounds;            // below the squares of those of the part, at all samples of a group
+  std::vector<std::int64_t> candidates;  // their numbers
+  alignas(64) std::array<double, kSamplesOfBlock> squares;  // by index_in_block()
 };
 
 // Samples and what is known about their nearest triangles.
@@ -52,7 +55,11 @@ struct BlockTask {
 // reach^2, else to larger numbers or infinity. Needs DefaultFloatingPoint.
 using BlockKernel = void (*)(const BlockTask& task, BlockScratch& scratch);
 
-// That of the level, of the best one where the level is not available. Results are the same for every level.
+// Makes distances in world units of a block's squares, at most `band`. Returns whether one of them is below.
+using RootKernel = bool (*)(std::span<double, kSamplesOfBlock> squares, const PowerOfTwo& to_world, double band);
+
+// Those of the level, of the best one where the level is not available. Results are the same for every level.
 [[nodiscard]] BlockKernel block_kernel(SimdLevel level);
+[[nodiscard]] RootKernel root_kernel(SimdLevel level);
 
 }  // namespace raycone

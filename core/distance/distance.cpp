@@ -128,9 +128,8 @@ struct DistanceEvaluator::Implementation {
     const LatticeRows rows = rows_in_scale(lattice, block, to_unit);
     // No sample that is not far is farther from the mesh than four times kFar.
     const double unit_band = std::min(to_unit(band), 4 * kFar);
-    const auto finish = [&](std::span<double> squares) {
-      for (double& number : squares) number = std::min(to_world(std::sqrt(number)), band);
-    };
+    const RootKernel take_roots = root_kernel(simd);
+    const auto finish = [&](std::span<double, kSamplesOfBlock> squares) { take_roots(squares, to_world, band); };
     fill_band(nearest(), rows, unit_band, {finish, band}, distances);
   }
 
@@ -141,13 +140,9 @@ struct DistanceEvaluator::Implementation {
     const double band = distances.beyond();
     BandVisitor visitor;
     visitor.beyond = [](const SampleBox&) {};
-    visitor.block = [&](const SampleBox& box, std::span<double> squares) {
-      bool any = false;
-      for (double& number : squares) {
-        number = std::min(to_world(std::sqrt(number)), band);
-        any |= number < band;
-      }
-      if (any) take_block(box, squares, distances);
+    const RootKernel take_roots = root_kernel(simd);
+    visitor.block = [&](const SampleBox& box, std::span<double, kSamplesOfBlock> squares) {
+      if (take_roots(squares, to_world, band)) take_block(box, squares, distances);
     };
     BlockPhase phase;
     for (std::size_t a = 0; a < 3; ++a) phase[a] = static_cast<std::size_t>(samples.first[a] & (kSide - 1));

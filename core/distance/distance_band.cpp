@@ -124,7 +124,7 @@ void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, c
   visitor.beyond = [&](const SampleBox& box) {
     for_each_row(box, [&](std::size_t, std::size_t, std::span<double> row) { std::ranges::fill(row, which.beyond); });
   };
-  visitor.block = [&](const SampleBox& box, std::span<double> squares) {
+  visitor.block = [&](const SampleBox& box, std::span<double, kSamplesOfBlock> squares) {
     which.finish(squares);
     for_each_row(box, [&](std::size_t j, std::size_t k, std::span<double> row) {
       const std::size_t first = index_in_block({0, j - box.begin[1], k - box.begin[2]});

@@ -24,7 +24,7 @@ struct BandVisitor {
   // Samples of one block, and room for what may be made of them: index_in_block() of their numbers in the block is the
   // place of the square of the distance to the nearest triangle (core/distance/triangle_distance.h) where that is not
   // above the band's, else of a larger number or infinity.
-  std::function<void(const SampleBox& samples, std::span<double> squares)> block;
+  std::function<void(const SampleBox& samples, std::span<double, kSamplesOfBlock> squares)> block;
 };
 
 // Visits all samples (xs[i], ys[j], zs[k]) of `rows` that may be within `band`. Coordinates of samples are below 2^400
@@ -34,8 +34,9 @@ void visit_band(const DistanceTree& tree, const LatticeRows& rows, double band, 
 
 // What samples get.
 struct BandNumbers {
-  std::function<void(std::span<double> squares)> finish;  // makes numbers of squares, in place; called from all threads
-  double beyond;                                          // the number of samples that are surely beyond the band
+  // Makes numbers of a block's squares, in place. Called from all threads.
+  std::function<void(std::span<double, kSamplesOfBlock> squares)> finish;
+  double beyond;  // the number of samples that are surely beyond the band
 };
 
 // numbers[i + nx (j + ny k)], for sample (xs[i], ys[j], zs[k]), becomes what `which` makes of its square, or
@@ -45,7 +46,8 @@ void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, c
 
 // The squares as they are, infinity beyond the band.
 inline void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, std::span<double> squares) {
-  fill_band(tree, rows, band, {[](std::span<double>) {}, std::numeric_limits<double>::infinity()}, squares);
+  fill_band(tree, rows, band, {[](std::span<double, kSamplesOfBlock>) {}, std::numeric_limits<double>::infinity()},
+            squares);
 }
 
 }  // namespace raycone

@@ -102,7 +102,6 @@ HWY_INLINE Squares squared(const Triangles& t, const VectorLanes& p) {
   Lanes least = hn::IfThenElse(outside, infinity, dot(rest, rest));
   const auto look_at = [&](LaneMask beyond, const VectorLanes& corner, const VectorLanes& edge, std::size_t number) {
     const LaneMask wanted = hn::Or(beyond, all_edges);
-    if (hn::AllFalse(d, wanted)) return;
     const VectorLanes to_edge = rest_to_edge(minus(p, corner), edge, t(pack.inverse_square[number]));
     const Lanes square = dot(to_edge, to_edge);
     const LaneMask nearer = hn::And(wanted, hn::Lt(square, least));

@@ -159,10 +159,9 @@ bool ScaledMesh::has_far_field() const {
   return (forced || far_field_may_pay(options_.accuracy.samples, source_directly)) && far_field() != nullptr;
 }
 
-// Where nobody knows how many samples certificates leave, they are counted: so many take three times as long as the
-// tree.
+// Where nobody knows how many samples certificates leave, they are counted: so many take about as long as the tree.
 bool ScaledMesh::takes_far_field(std::size_t samples) const {
-  constexpr std::uint64_t kEnough = 12'000;
+  constexpr std::uint64_t kEnough = 4'000;
   const bool forced = options_.summation == Summation::kFarField;
   if (forced) return far_field() != nullptr;
   if (options_.accuracy.sides_only && samples_.load(std::memory_order_relaxed) < kEnough) {

@@ -21,7 +21,7 @@ class HarmonicFit {
   static constexpr std::size_t kNodes = 6 * kNodesAlong * kNodesAlong;
   static constexpr std::size_t kTogether = 8;  // functions that are fitted at a time
 
-  // Made when first asked for, in some milliseconds.
+  // Made when first asked for, in about a millisecond.
   [[nodiscard]] static const HarmonicFit& instance();
 
   // Node n on the cube around 0 with half side 1.
@@ -35,6 +35,17 @@ class HarmonicFit {
   static constexpr double kLargestWeights = 41.0;
   static constexpr double kRounding = 4e-12;
 
+  // The least squares of one parity, by a basis that is orthonormal at the nodes.
+  struct Kind {
+    struct Group {
+      std::size_t first_row, terms;
+    };
+    std::size_t rows = 0;          // of the basis
+    std::vector<double> to_basis;  // a row per function of the basis, a column per node of an octant
+    std::vector<double> to_terms;  // a row per coefficient, a column per function
+    std::vector<Group> groups;     // of coefficients one after the other, which depend on no function before first_row
+  };
+
  private:
   HarmonicFit();
   void set_nodes();
@@ -42,13 +53,15 @@ class HarmonicFit {
   // Functions that are even or odd along each axis: the values at the nodes of an octant tell the coefficients of like
   // parity.
   struct ParityClass {
-    std::vector<std::size_t> places;  // of the coefficients
-    std::vector<double> matrix;       // a row per coefficient, a column per node of an octant
+    std::size_t kind;
+    std::vector<std::size_t> nodes;   // of the octant, in the kind's order
+    std::vector<std::size_t> places;  // of the coefficients, likewise
   };
 
   static constexpr std::size_t kOctant = kNodes / 8;
 
   std::array<Vec3, kNodes> nodes_;  // those of the first octant, then their mirror images
+  std::array<Kind, 4> kinds_;
   std::array<ParityClass, 8> classes_;
 };
 

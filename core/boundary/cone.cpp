@@ -42,7 +42,7 @@ void Cone::winding_numbers(SampleTile& samples, std::span<const std::int64_t> cr
     if (group.multiplicity > kLargestInDouble) {
       add_enclosed(group, samples, turns);
     } else {
-      multiply_chains_(group.steps, samples, products);
+      multiply_chains_(group.steps, samples, TileShape::kScattered, products);
       add_product(group, products, turns);
     }
   }

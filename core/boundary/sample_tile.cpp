@@ -4,13 +4,6 @@
 
 namespace raycone {
 
-void SampleTile::add(const Vec3& q) {
-  x[count] = q.x;
-  y[count] = q.y;
-  z[count] = q.z;
-  ++count;
-}
-
 void SampleTile::fill_up() {
   for (std::size_t i = count; i % 8 != 0; ++i) {
     x[i] = x[count - 1];

@@ -20,6 +20,12 @@ struct Turns {
 inline constexpr std::size_t kTile = 64;
 using Tile = std::array<double, kTile>;
 
+// How the samples of a tile lie.
+enum class TileShape {
+  kScattered,  // anyhow; they may share a ray
+  kInRows,     // sample 8 j + i is (x_i, y_j, z): rows of eight
+};
+
 struct SampleTile {
   alignas(64) Tile x;
   alignas(64) Tile y;
@@ -27,7 +33,12 @@ struct SampleTile {
   std::size_t count = 0;  // samples used; the rest of a group of eight repeats the last one
 
   void clear() { count = 0; }
-  void add(const Vec3& q);
+  void add(const Vec3& q) {
+    x[count] = q.x;
+    y[count] = q.y;
+    z[count] = q.z;
+    ++count;
+  }
   [[nodiscard]] Vec3 query(std::size_t i) const { return {x[i], y[i], z[i]}; }
   void fill_up();
   [[nodiscard]] bool share_a_ray() const;  // one y and one z, as along a row of a lattice

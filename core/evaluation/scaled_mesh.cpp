@@ -101,8 +101,9 @@ const Blocks& ScaledMesh::blocks() const {
   std::call_once(blocks_built_, [this] {
     TriangleMesh caps = counts_crossings() ? all_caps(boundary_) : TriangleMesh();
     SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
+    const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
     blocks_.reset(new Blocks{std::move(caps), !faces.has_repeated_faces,
-                             LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level)});
+                             LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)});
   });
   return *blocks_;
 }

@@ -15,7 +15,8 @@ double expansion_cost(int degree) { return kExpansion + kTerm * (degree + 1) * (
 // Of `triangles`, ascending: nodes whose triangles are all among them as expansions of the degree that degree_of(node)
 // says, where that is above 0 and pays.
 template <class DegreeOf>
-Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, const DegreeOf& degree_of) {
+Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, double triangle_cost,
+            const DegreeOf& degree_of) {
   Cover result;
   const std::span<const SourceNode> nodes = tree.nodes();
   auto at = triangles.begin();  // all before are covered
@@ -28,7 +29,7 @@ Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, co
     const auto end = std::lower_bound(at, triangles.end(), node.end);
     if (static_cast<std::size_t>(end - at) == node.triangles()) {
       const int degree = degree_of(node);
-      if (degree > 0 && expansion_cost(degree) < static_cast<double>(node.triangles())) {
+      if (degree > 0 && expansion_cost(degree) < triangle_cost * static_cast<double>(node.triangles())) {
         result.expansions.push_back({static_cast<std::uint32_t>(n), degree});
         result.cost += expansion_cost(degree);
         at = end;
@@ -41,7 +42,7 @@ Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, co
     at = own_end;
     ++n;
   }
-  result.cost += static_cast<double>(result.triangles.size());
+  result.cost += triangle_cost * static_cast<double>(result.triangles.size());
   return result;
 }
 
@@ -50,12 +51,13 @@ double distance_from(const Box& box, const Vec3& p) { return std::sqrt(square_of
 
 }  // namespace
 
-Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box, double tolerance) {
+Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box, double tolerance,
+               double triangle_cost) {
   // Areas of nodes that have no triangle in common sum to that of the tree but for the rounding of sums.
   constexpr double kSlack = 1 - 0x1p-18;
   const double per_area = kSlack * tolerance / 2 / std::max(tree.area(), 0x1p-1000);
   const double per_triangle = tolerance / 2 / static_cast<double>(tree.triangles().size());
-  return cover(tree, triangles, [&](const SourceNode& node) {
+  return cover(tree, triangles, triangle_cost, [&](const SourceNode& node) {
     const double distance = distance_from(box, node.centre);
     if (node.order == 0 || distance <= node.radius) return 0;
     const double budget = per_area * node.area + per_triangle * static_cast<double>(node.triangles());

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/boundary/chain.h"
+#include "core/boundary/cone_kernel.h"
 #include "core/boundary/sample_tile.h"
 #include "core/data/triangle_mesh.h"
 #include "core/far/far_kernel.h"
@@ -23,22 +25,28 @@ struct Cover {
   };
   std::vector<Expansion> expansions;
   std::vector<std::uint32_t> triangles;
-  double cost = 0.0;  // at a point, in units of that of a triangle
+  double cost = 0.0;  // at a point, in units of that of a triangle that is summed by itself
 };
 
 // Of `triangles`, numbers in the tree, ascending: nodes as expansions that are off by `tolerance` in all points of a
 // box at most, all together. Each has a share of it, in proportion to area and to the number of triangles by halves:
-// many small triangles are to be far, too, where there are a few large ones.
+// many small triangles are to be far, too, where there are a few large ones. `triangle_cost`: of one at a point, 1 or
+// less where they are not summed one by one.
 [[nodiscard]] Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box,
-                             double tolerance);
+                             double tolerance, double triangle_cost = 1.0);
+
+struct CoverKernels {
+  SharedCornersKernel shared_corners;
+  ConeKernel cone;
+  FarKernel far;
+};
 
 // Sums of a cover at the samples of tiles.
 class CoverSums {
  public:
   // All samples must be within the box.
-  CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, SharedCornersKernel shared_corners,
-            const FarKernel& far)
-      : tree_(tree), cover_(cover), shared_corners_(shared_corners), far_(far) {
+  CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, const CoverKernels& kernels)
+      : tree_(tree), cover_(cover), kernels_(kernels) {
     triangles_.reserve(cover.triangles.size());
     for (const std::uint32_t n : cover.triangles) triangles_.push_back(tree.triangles()[n]);
     const auto small = static_cast<std::size_t>(
@@ -50,19 +58,28 @@ class CoverSums {
     corners_.add_group(triangles_.size() - small);
   }
 
+  // Without the crossings of the triangles: these have the boundary `steps`, which is summed in their place.
+  CoverSums(const SourceTree& tree, const Cover& cover, std::span<const ChainStep> steps, const CoverKernels& kernels)
+      : tree_(tree), cover_(cover), kernels_(kernels), steps_(steps) {}
+
   // visit(i, turns, rest) for each sample of the tile: the sum of both, the turns being whole.
   template <class Visit>
   void evaluate(SampleTile& tile, TileShape shape, const Visit& visit) {
     tile.fill_up();
     alignas(64) Tile far{};
-    for (const auto& [node, degree] : cover_.expansions) far_.add_multipole(tree_, node, degree, tile, far);
-    if (corners_.chunks() > 0) shared_corners_(corners_, tile, shape, products_);
-    for (std::size_t i = 0; i < tile.count; ++i) {
-      if (corners_.chunks() > 0) {
+    for (const auto& [node, degree] : cover_.expansions) kernels_.far.add_multipole(tree_, node, degree, tile, far);
+    if (corners_.chunks() > 0) {
+      kernels_.shared_corners(corners_, tile, shape, products_);
+      for (std::size_t i = 0; i < tile.count; ++i) {
         visit(i, static_cast<double>(products_.turns(i)), products_.argument[i] + far[i]);
-      } else {
-        visit(i, 0.0, far[i]);
       }
+    } else if (!steps_.empty()) {
+      kernels_.cone(steps_, tile, shape, products_);
+      for (std::size_t i = 0; i < tile.count; ++i) {
+        visit(i, -static_cast<double>(products_.turns(i)), far[i] - products_.argument[i]);
+      }
+    } else {
+      for (std::size_t i = 0; i < tile.count; ++i) visit(i, 0.0, far[i]);
     }
   }
 
@@ -71,8 +88,8 @@ class CoverSums {
   const Cover& cover_;
   std::vector<SolidTriangle> triangles_;  // first those that look small
   SharedCorners corners_;
-  SharedCornersKernel shared_corners_;
-  FarKernel far_;
+  CoverKernels kernels_;
+  std::span<const ChainStep> steps_;
   ProductTile products_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace raycone {
 
-LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
+LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Near near)
     : tree_(std::move(triangles), LatticeBlocksWalk::kSampleShare * tolerance, level),
       tolerance_(tolerance),
       level_(level) {
@@ -22,6 +22,7 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
     source.area = safe_norm(t.normal) / 2 * (1 + 0x1p-40);
     sources_.push_back(source);
   }
+  if (near == Near::kBoundary) edges_.emplace(tree_.triangles());
 }
 
 namespace {

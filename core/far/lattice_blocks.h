@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/crossings/row.h"
 #include "core/data/triangle_mesh.h"
 #include "core/far/harmonic_polynomial.h"
+#include "core/far/shared_edges.h"
 #include "core/far/source_tree.h"
 #include "core/machine/simd.h"
 
@@ -31,7 +33,11 @@ using LatticeAxes = std::array<std::vector<double>, 3>;
 // lattice that is asked for.
 class LatticeBlocks {
  public:
-  LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level);
+  // How triangles that are near are summed: always one by one, or by their boundary where that has few edges, as of
+  // patches of a surface.
+  enum class Near { kTriangles, kBoundary };
+
+  LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Near near = Near::kTriangles);
 
   // The sums of samples [x, x + sums.size()) of the row (y, z).
   using Sink = std::function<void(std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums)>;
@@ -60,7 +66,8 @@ class LatticeBlocks {
   };
 
   SourceTree tree_;
-  std::vector<Source> sources_;  // the triangles of the tree
+  std::vector<Source> sources_;       // the triangles of the tree
+  std::optional<SharedEdges> edges_;  // likewise, where boundaries are asked for
   double tolerance_;
   SimdLevel level_;
   mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "core/boundary/sample_tile.h"
+#include "core/crossings/crossings.h"
 #include "core/far/harmonic_error.h"
 #include "core/far/harmonic_fit.h"
 
@@ -21,6 +23,8 @@ constexpr double kNodeShare = 0.15;
 constexpr double kFitting = 8000.0;  // of making a block's polynomial, beside the triangles at its nodes
 constexpr double kPolynomial = 3.0;  // of the polynomial at a sample, all along rows, ...
 constexpr double kAtPoint = 16.0;    // ... and at a scattered point
+constexpr double kEdge = 0.85;       // of an edge of the boundary of what is near
+constexpr double kInPatch = 0.75;    // of a near triangle, where boundaries may be summed in their place
 
 // In samples. Blocks smaller than this are not divided, larger ones if that pays, ...
 constexpr double kSmallBlock = 0x1p12;
@@ -59,9 +63,9 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
     : blocks_(blocks),
       axes_(axes),
       axes_of_(axes_of),
-      shared_corners_(shared_corners_kernel(blocks.level_)),
-      far_(far_kernel(blocks.level_)),
-      matrices_(matrix_kernel(blocks.level_)) {
+      kernels_{shared_corners_kernel(blocks.level_), cone_kernel(blocks.level_), far_kernel(blocks.level_)},
+      matrices_(matrix_kernel(blocks.level_)),
+      near_triangle_(blocks.edges_ && axes_of == AxesOf::kSamples ? kInPatch : 1.0) {
   for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++levels_) {
     std::vector<SampleBlock> parts = halves(block);
     if (parts.size() < 2) break;
@@ -182,7 +186,7 @@ Cover LatticeBlocksWalk::cover_at_nodes(std::span<const std::uint32_t> far, cons
 
 Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const std::array<std::size_t, 3>& first,
                                   const std::array<std::size_t, 3>& last) const {
-  return cover_in(blocks_.tree_, block.near, box_of(first, last), kSampleShare * blocks_.tolerance_);
+  return cover_in(blocks_.tree_, block.near, box_of(first, last), kSampleShare * blocks_.tolerance_, near_triangle_);
 }
 
 // ---- Choosing --------------------------------------------------------------------------------------------------
@@ -253,7 +257,7 @@ void LatticeBlocksWalk::add_at_nodes(const Cover& far, const Cube& cube, std::si
                                      std::span<double> values) const {
   if (far.cost == 0.0) return;
   const HarmonicFit& fit = HarmonicFit::instance();
-  CoverSums sums(blocks_.tree_, far, box_around(cube), shared_corners_, far_);
+  CoverSums sums(blocks_.tree_, far, box_around(cube), kernels_);
   count_terms(far, HarmonicFit::kNodes);
   SampleTile nodes;
   for (std::size_t begin = 0; begin < HarmonicFit::kNodes; begin += kTile) {
@@ -289,13 +293,15 @@ std::size_t LatticeBlocksWalk::degree(const SampleBlock& block) const {
 
 CoverSums LatticeBlocksWalk::sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
                                      const std::array<std::size_t, 3>& last) const {
-  return {blocks_.tree_, cover, box_of(first, last), shared_corners_, far_};
+  return {blocks_.tree_, cover, box_of(first, last), kernels_};
 }
 
 void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
                                  const LatticeBlocks::Sink& sink) const {
   const std::size_t degree = this->degree(block);
   GridValues grid(matrices_);
+  std::optional<SharedEdges::Boundary> boundary;
+  if (blocks_.edges_) boundary.emplace(*blocks_.edges_);
   std::vector<double> numbers;
   std::array<std::size_t, 3> first, last;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -305,7 +311,7 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
   for (std::size_t begin = first[2], end; begin < last[2]; begin = end) {
     end = std::min(last[2], end_of_sub_block(block, 2, begin));
     const BlockSums sums{numbers, {first[0], first[1], begin}, {last[0], last[1], end}};
-    set_layers(block, degree, grid, sums);
+    set_layers(block, degree, grid, boundary ? &*boundary : nullptr, sums);
     for (std::size_t z = begin; z < end; ++z) {
       for (std::size_t y = first[1]; y < last[1]; ++y) {
         sink(first[0], y, z, std::span(numbers).subspan(sums.place(first[0], y, z), last[0] - first[0]));
@@ -316,7 +322,7 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
 
 // As many layers along z as a sub-block has: the polynomial up to `degree`, and what is near.
 void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid,
-                                   const BlockSums& sums) const {
+                                   SharedEdges::Boundary* boundary, const BlockSums& sums) const {
   const std::array<std::size_t, 3>&first = sums.first, &last = sums.last;
   const auto coordinates = [&](std::size_t axis) {
     return std::span(axes_[axis]).subspan(first[axis], last[axis] - first[axis]);
@@ -335,14 +341,15 @@ void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree,
     end[1] = std::min(last[1], end_of_sub_block(block, 1, begin[1]));
     for (begin[0] = first[0]; begin[0] < last[0]; begin[0] = end[0]) {
       end[0] = std::min(last[0], end_of_sub_block(block, 0, begin[0]));
-      add_near(block, begin, end, sums);
+      add_near(block, begin, end, boundary, sums);
     }
   }
 }
 
 // Which nodes are far is a matter of the whole sub-block, whatever part of it is asked for.
 void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
-                                 const std::array<std::size_t, 3>& end, const BlockSums& sums) const {
+                                 const std::array<std::size_t, 3>& end, SharedEdges::Boundary* boundary,
+                                 const BlockSums& sums) const {
   std::array<std::size_t, 3> first, last;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     first[axis] = begin[axis] - (begin[axis] - block.first[axis]) % kSubBlock[axis];
@@ -350,21 +357,56 @@ void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std:
   }
   const Cover cover = cover_at(block, first, last);
   count_terms(cover, (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]));
-  CoverSums cover_sums = sums_of(cover, first, last);
+  const std::span<const ChainStep> steps = boundary ? boundary->of(cover.triangles) : std::span<const ChainStep>();
+  const bool by_boundary =
+      boundary && kEdge * static_cast<double>(boundary->edges()) < static_cast<double>(cover.triangles.size());
+  if (by_boundary) add_crossings(cover.triangles, begin, end, sums);
+  CoverSums cover_sums = by_boundary ? CoverSums(blocks_.tree_, cover, steps, kernels_) : sums_of(cover, first, last);
   SampleTile tile;
-  for (std::size_t z = begin[2]; z < end[2]; ++z) {
-    tile.clear();
-    for (std::size_t y = begin[1]; y < end[1]; ++y) {
-      for (std::size_t i = 0; i < kSubBlock[0]; ++i) {
-        tile.add({axes_[0][std::min(begin[0] + i, end[0] - 1)], axes_[1][y], axes_[2][z]});
-      }
+  tile.clear();
+  for (std::size_t y = begin[1]; y < end[1]; ++y) {
+    for (std::size_t i = 0; i < kSubBlock[0]; ++i) {
+      tile.add({axes_[0][std::min(begin[0] + i, end[0] - 1)], axes_[1][y], 0.0});
     }
+  }
+  for (std::size_t z = begin[2]; z < end[2]; ++z) {
+    tile.z.fill(axes_[2][z]);
     cover_sums.evaluate(tile, TileShape::kInRows, [&](std::size_t i, double turns, double rest) {
       const std::size_t in_row = i % kSubBlock[0];
       if (begin[0] + in_row >= end[0]) return;
       double& sum = sums.numbers[sums.place(begin[0] + in_row, begin[1] + i / kSubBlock[0], z)];
       sum = turns + (rest + sum);
     });
+  }
+}
+
+// Those of the rays of samples with triangles, which what their boundary adds wants in addition.
+void LatticeBlocksWalk::add_crossings(std::span<const std::uint32_t> triangles, const std::array<std::size_t, 3>& begin,
+                                      const std::array<std::size_t, 3>& end, const BlockSums& sums) const {
+  const std::span xs = std::span(axes_[0]).subspan(begin[0], end[0] - begin[0]);
+  const auto range = [&](std::size_t axis, const Box& box) {  // of samples in the box's extent
+    const std::span along = std::span(axes_[axis]).subspan(begin[axis], end[axis] - begin[axis]);
+    const auto lower = std::ranges::lower_bound(along, box.lower[static_cast<int>(axis)]);
+    const auto upper = std::ranges::upper_bound(along, box.upper[static_cast<int>(axis)]);
+    return std::pair(begin[axis] + static_cast<std::size_t>(lower - along.begin()),
+                     begin[axis] + static_cast<std::size_t>(upper - along.begin()));
+  };
+  for (const std::uint32_t n : triangles) {
+    const Box& box = blocks_.sources_[n].box;
+    if (box.upper.x < xs.front()) continue;
+    const auto [y_begin, y_end] = range(1, box);
+    const auto [z_begin, z_end] = range(2, box);
+    if (y_begin >= y_end || z_begin >= z_end) continue;
+    const SolidTriangle& t = blocks_.tree_.triangles()[n];
+    const TrianglePlane plane(t.a, t.b, t.c);
+    for (std::size_t z = z_begin; z < z_end; ++z) {
+      for (std::size_t y = y_begin; y < y_end; ++y) {
+        const TriangleCrossing crossing = triangle_crossing(t.a, t.b, t.c, {axes_[1][y], axes_[2][z], xs}, &plane);
+        const double turns = t.orientation * crossing.sigma;
+        double* const row = &sums.numbers[sums.place(begin[0], y, z)];
+        for (std::size_t i = 0; i < crossing.crossed; ++i) row[i] += turns;
+      }
+    }
   }
 }
 

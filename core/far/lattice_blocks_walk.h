@@ -14,6 +14,7 @@
 #include "core/far/lattice_blocks.h"
 #include "core/far/matrix_kernel.h"
 #include "core/far/shared_corners.h"
+#include "core/far/shared_edges.h"
 
 namespace raycone {
 
@@ -122,16 +123,19 @@ class LatticeBlocksWalk {
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;
-  void set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid, const BlockSums& sums) const;
+  void set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid, SharedEdges::Boundary* boundary,
+                  const BlockSums& sums) const;
   void add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
-                const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
+                const std::array<std::size_t, 3>& end, SharedEdges::Boundary* boundary, const BlockSums& sums) const;
+  void add_crossings(std::span<const std::uint32_t> triangles, const std::array<std::size_t, 3>& begin,
+                     const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
 
   const LatticeBlocks& blocks_;
   const LatticeAxes& axes_;
   AxesOf axes_of_;
-  SharedCornersKernel shared_corners_;
-  FarKernel far_;
+  CoverKernels kernels_;
   MatrixKernel matrices_;
+  double near_triangle_;  // at a sample, in units of a triangle that is summed by itself
   std::size_t levels_ = 1;
   double far_budget_;  // of a level
 };

@@ -63,12 +63,6 @@ class SharedCorners {
 // The square of the distance beyond which it does, its longest side; infinite where no factor may be trusted.
 [[nodiscard]] double square_to_look_small(const SolidTriangle& triangle);
 
-// How the samples of a tile lie.
-enum class TileShape {
-  kScattered,
-  kInRows,  // sample 8 j + i is (x_i, y_j, z): rows of eight
-};
-
 // As SolidAngleKernel, with the bits that it has for samples with a ray each, whatever the shape.
 using SharedCornersKernel = void (*)(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
                                      ProductTile& products);

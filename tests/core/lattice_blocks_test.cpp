@@ -263,6 +263,24 @@ TEST(LatticeBlocksTest, SumsAreWithinTheTolerance) {
   }
 }
 
+// A part of a sphere, level with samples: rays pass through vertices and along edges.
+TEST(LatticeBlocksTest, WhatIsNearIsTheSameByItsBoundary) {
+  TriangleMesh mesh = test::moved(test::sphere(24), {0.375, 0.375, 0.375}, {0, 0, 0});
+  mesh.triangles.resize(mesh.triangles.size() * 2 / 3);
+  const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
+  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  const LatticeBlocks by_triangles(triangles, 1e-13, SimdLevel::kBest);
+  const LatticeBlocks by_boundary(triangles, 1e-13, SimdLevel::kBest, LatticeBlocks::Near::kBoundary);
+  const std::vector<double> expected = sums_of(by_triangles, axes, whole_of(axes));
+  const std::vector<double> sums = sums_of(by_boundary, axes, whole_of(axes));
+  std::size_t different = 0;
+  for (std::size_t n = 0; n < sums.size(); ++n) {
+    ASSERT_NEAR(sums[n], expected[n], 1e-11) << n;
+    if (sums[n] != expected[n]) ++different;
+  }
+  EXPECT_GT(different, sums.size() / 4);
+}
+
 // What a level may be off by is spent on a sample so often.
 std::size_t levels_with_far_triangles(const LatticeBlocksWalk& walk, const LatticeBlocksWalk::Division& division,
                                       std::size_t above) {
@@ -307,6 +325,26 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBits) {
         EXPECT_EQ(some[((z - 3) * 2 + y - 15) * 25 + x - 5], sums[(z * kSide + y) * kSide + x]);
       }
     }
+  }
+}
+
+TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBitsByBoundaries) {
+  TriangleMesh mesh = test::moved(test::sphere(24), {0.4, 0.37, 0.31}, {0.01, 0.02, 0});
+  mesh.triangles.resize(mesh.triangles.size() * 2 / 3);
+  const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
+  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  constexpr auto kBoundary = LatticeBlocks::Near::kBoundary;
+  const LatticeBlocks blocks(triangles, 1e-8, SimdLevel::kBest, kBoundary);
+  const std::vector<double> sums = sums_of(blocks, axes, whole_of(axes));
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {
+    EXPECT_EQ(sums_of(LatticeBlocks(triangles, 1e-8, level, kBoundary), axes, whole_of(axes)), sums);
+  }
+  Random random(8);
+  for (int n = 0; n < 1000; ++n) {
+    const auto x = static_cast<std::uint32_t>(random() % kSide), y = static_cast<std::uint32_t>(random() % kSide);
+    const auto z = static_cast<std::uint32_t>(random() % kSide);
+    const std::vector<double> one = sums_of(blocks, axes, {{{x, x + 1}, {y, y + 1}, {z, z + 1}}});
+    ASSERT_EQ(one[0], sums[(z * kSide + y) * kSide + x]) << x << ' ' << y << ' ' << z;
   }
 }
 

@@ -48,7 +48,7 @@ MUTANTS = [
         ("core/boundary/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
          "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
     Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
-        ("core/boundary/cone_kernel.cpp", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
+        ("core/boundary/edge_lanes-inl.h", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
     Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
         ("core/exact/predicates.h", "kSideFilter = 4.0 * 0x1p-53", "kSideFilter = 0.25 * 0x1p-53")]),
     Mutant("side_filter_without_underflow", "products that underflow vouch for nothing", [
@@ -110,7 +110,7 @@ MUTANTS = [
     Mutant("determinant_from_farther_end", "D is computed from the edge's nearer end", [
         ("core/exact/predicates.h", "<= std::abs(b.y - q.y) + std::abs(b.z - q.z);",
          "> std::abs(b.y - q.y) + std::abs(b.z - q.z);"),
-        ("core/boundary/cone_kernel.cpp", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
+        ("core/boundary/edge_lanes-inl.h", "hn::Le(a.square, b.square)", "hn::Gt(a.square, b.square)")]),
     Mutant("s_cancels", "s = |P|^2 / (|p| + p_x) ahead, which does not cancel", [
         ("core/boundary/cone_kernel.cpp", "store(hn::IfNegativeThenElse(px, sum, square), s, n);",
          "store(hn::IfNegativeThenElse(px, sum, hn::Sub(sum, hn::Add(px, px))), s, n);"),
@@ -136,7 +136,7 @@ MUTANTS = [
     Mutant("near_edge_form_always_normal", "the better conditioned of z and z' is taken", [
         ("core/boundary/near_edge.cpp", "plain.condition() <= normal.condition() ||", "")]),
     Mutant("underflow_is_ordinary", "|P|^2 that has underflowed or overflowed serves for nothing", [
-        ("core/boundary/cone_kernel.cpp", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
+        ("core/boundary/edge_lanes-inl.h", "return hn::IfThenElse(ordinary, square, hn::NaN(d));",
          "return (void)ordinary, square;"),
         ("core/boundary/edge_factor.cpp", "return square > kSmallest && square < kLargest && std::abs(x) < kLargestX;",
          "return true;")]),
@@ -168,7 +168,7 @@ MUTANTS = [
         ("core/boundary/product_lanes-inl.h", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
         ("core/boundary/product_lanes-inl.h", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),
     Mutant("blocks_of_any_size", "a block may underflow or overflow, and is then multiplied factor by factor", [
-        ("core/boundary/cone_kernel.cpp", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
+        ("core/boundary/edge_lanes-inl.h", "kSmallestSquare = 0x1p-50;", "kSmallestSquare = 0x1p-800;"),
         ("core/boundary/product_lanes-inl.h", "hn::Set(d, kLargestProduct)", "hn::Inf(d)")]),
     Mutant("multiplicity_is_one", "edges with |m| > 1 count |m| times", [
         ("core/boundary/boundary.cpp", "multiplicity = std::abs(e.multiplicity);", "multiplicity = 1;")]),
@@ -556,6 +556,12 @@ MUTANTS = [
     Mutant("cells_without_their_ends", "the cube of a block of cells has all points in them", [
         ("core/far/lattice_blocks_walk.h", "axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1]",
          "axes_[axis][last - 1]")]),
+    Mutant("patches_without_crossings", "a patch that is summed by its boundary has the crossings of its triangles, too", [
+        ("core/far/lattice_blocks_walk.cpp", "if (by_boundary) add_crossings(cover.triangles, begin, end, sums);", "")]),
+    Mutant("boundaries_without_orientation", "edges that triangles run along in opposite directions cancel", [
+        ("core/far/shared_edges.cpp", "multiplicity += side.reversed ? -1 : 1;", "multiplicity += 1;")]),
+    Mutant("rows_of_a_tile_alike", "each row of a tile has its own projections", [
+        ("core/boundary/edge_lanes-inl.h", "projections.row = i / 8;", "projections.row = i / 16;")]),
     Mutant("point_values_not_settled", "a value of blocks of points that may be a half-integer is evaluated again", [
         ("core/evaluation/scaled_mesh.cpp", "values, doubt_of_blocks());", "values, -1.0);")]),
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [

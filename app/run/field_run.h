@@ -67,6 +67,7 @@ class FieldRun {
   FieldSamples samples_;
   SampleDraw draw_;
   bool found_inside_ = false;
+  bool of_lattice_ = false;
   double largest_bound_ = 0.0;  // of diagnostics
 };
 

@@ -98,9 +98,10 @@ struct Expectations {
 
 // The same of a run of `evaluator`, which is that of the meshes and `options`; throws also if it answers differently
 // now, as at points, or if a winding number is off by more than its error bound. Samples without a winding number are
-// verified with what the evaluator answers now. `band_width` as above.
+// verified with what the evaluator answers now. `band_width` as above. `within`: by how much winding numbers may differ
+// from those at points, as those of lattices do within the tolerance (docs/method.md, "Blocks of lattices").
 [[nodiscard]] Verification verify(const std::string& name, const VerifiedMeshes& meshes,
                                   const FieldEvaluator& evaluator, const FieldOptions& options, double band_width,
-                                  std::span<const DrawnSample> samples);
+                                  std::span<const DrawnSample> samples, double within = 0.0);
 
 }  // namespace raycone

@@ -208,6 +208,22 @@ TEST(Verify, NoticesAValueThatTheEvaluatorDidNotGive) {
   EXPECT_NE(error(), "");
 }
 
+// As those of lattices that are evaluated by blocks.
+TEST(Verify, TakesWindingNumbersThatDifferWithinWhatIsAllowed) {
+  const TriangleMesh mesh = random_mesh(10);
+  const FieldOptions options = all_fields();
+  const FieldEvaluator evaluator(mesh, options);
+  const std::vector<DrawnSample> right = drawn(mesh, random_points(50));
+  const auto error_with = [&](double by, double within) {
+    std::vector<DrawnSample> samples = right;
+    *samples[17].winding += by;
+    return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, samples, within); });
+  };
+  EXPECT_EQ(error_with(5e-11, 2e-10), "");
+  EXPECT_TRUE(error_with(3e-10, 2e-10).ends_with(", expected the same bits"));
+  EXPECT_TRUE(error_with(5e-11, 0.0).ends_with(", expected the same bits"));
+}
+
 TEST(Verify, NoticesAnEvaluatorThatIsWrong) {
   const TriangleMesh mesh = random_mesh(20);
   TriangleMesh other = mesh;

@@ -1,5 +1,6 @@
 #include "core/evaluation/lattice_far.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -11,13 +12,17 @@ namespace {
 
 // Times at a sample, in units of that of one of the blocks' triangles: of an exterior edge, and of a triangle among
 // all.
-constexpr double kEdge = 0.4;
-constexpr double kTriangle = 0.75;
+constexpr double kEdge = 0.46;
+constexpr double kTriangle = 0.86;
+constexpr double kInBlocks = 10.0;  // of a sample of blocks, beside what they sum
 // Of what is made once: the fit; of each triangle, its part of the tree.
-constexpr double kFit = 4e6;
+constexpr double kFit = 1e6;
 constexpr double kInTree = 4e2;
-// An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples.
-constexpr double kLeastSamples = 4e5;
+// An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples, where that
+// takes so long.
+constexpr double kLeastSamples = 2e5;
+constexpr double kLeastCost = 2e7;
+constexpr double kSafety = 0.92;  // estimates are no better
 
 double direct_cost(const ScaledMesh& mesh) {
   return mesh.counts_crossings() ? kEdge * static_cast<double>(mesh.boundary().exterior_edges())
@@ -26,22 +31,35 @@ double direct_cost(const ScaledMesh& mesh) {
 
 double once_cost(const ScaledMesh& mesh) { return kFit + kInTree * direct_cost(mesh); }
 
+double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
+  return mesh.blocks().sums.cost(axes) + kInBlocks;
+}
+
 double gap_to_half_integer(double w) { return 0.5 - std::abs(w - ((w + 0x1.8p52) - 0x1.8p52)); }
+
+double samples_of(const Lattice& lattice) {
+  double samples = 1.0;
+  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
+  return samples;
+}
+
+// Whether it is worth looking at what blocks would take.
+bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
+  constexpr std::int64_t kMostAlong = 1 << 20;  // samples
+  constexpr std::int64_t kLeastAlong = 8;
+  if (!mesh.has_blocks()) return false;
+  for (const std::int64_t count : lattice.counts) {
+    if (count > kMostAlong || count < kLeastAlong) return false;
+  }
+  const double samples = samples_of(lattice);
+  const bool forced = mesh.options().summation == Summation::kBlocks;
+  return forced || (samples >= kLeastSamples && direct_cost(mesh) * samples >= kLeastCost);
+}
 
 }  // namespace
 
 std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice& lattice) {
-  constexpr std::int64_t kMostAlong = 1 << 20;  // samples
-  constexpr std::int64_t kLeastAlong = 8;
-  if (!mesh.has_blocks()) return std::nullopt;
-  double samples = 1.0;
-  for (const std::int64_t count : lattice.counts) {
-    if (count > kMostAlong || count < kLeastAlong) return std::nullopt;
-    samples *= static_cast<double>(count);
-  }
-  const bool forced = mesh.options().summation == Summation::kBlocks;
-  const double direct = direct_cost(mesh);
-  if (!forced && (samples < kLeastSamples || direct * samples < 2 * kFit)) return std::nullopt;
+  if (!blocks_may_pay(mesh, lattice)) return std::nullopt;
   LatticeAxes axes;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -51,28 +69,38 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
       axes[a].push_back(mesh.to_scale(x));
     }
   }
-  constexpr double kSafety = 0.75;  // estimates are no better
   if (!mesh.blocks().are_sound) return std::nullopt;
-  if (forced) return axes;
-  if (mesh.blocks().sums.cost(axes) * samples + once_cost(mesh) > kSafety * direct * samples) return std::nullopt;
+  if (mesh.options().summation == Summation::kBlocks) return axes;
+  const double samples = samples_of(lattice), direct = direct_cost(mesh);
+  const bool far = takes_far_field(mesh);
+  const double other = far ? std::min(direct, kEdge * mesh.far_field()->cost_on_lattice()) : direct;
+  if (blocks_cost(mesh, axes) * samples + once_cost(mesh) > kSafety * other * samples) return std::nullopt;
   return axes;
 }
 
+bool takes_far_field(const ScaledMesh& mesh) {
+  constexpr std::uint64_t kTooFew = 200;  // exterior edges, of which the tree saves too little
+  const bool forced = mesh.options().summation == Summation::kFarField;
+  if (forced || !mesh.counts_crossings()) return mesh.has_far_field();
+  const std::uint64_t edges = mesh.boundary().exterior_edges();
+  return edges >= kTooFew && mesh.has_far_field() &&
+         mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
+}
+
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so these are in the middle.
-  constexpr double kUnit = 3.3e-9;    // of a direct sum
-  constexpr double kInBlocks = 5e-9;  // of blocks, with all that they take beside triangles; of five meshes at 256
-  constexpr double kSource = 1e-5;    // in the tree
+  // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
+  constexpr double kUnit = 2.9e-9;
+  constexpr double kSource = 1e-5;  // in the tree
   if (mesh.is_closed()) return 0.0;
-  double samples = 1.0;
-  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
+  const double samples = samples_of(lattice);
   if (!by_far_field) return kUnit * direct_cost(mesh) * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kInBlocks * (mesh.blocks().sums.cost(*axes) * samples + once_cost(mesh));
+    return kUnit * (blocks_cost(mesh, *axes) * samples + once_cost(mesh));
   }
-  if (mesh.has_far_field()) {
+  if (takes_far_field(mesh)) {
     const FarField* const far = mesh.far_field();
-    return kUnit * kEdge * far->cost() * samples + kSource * static_cast<double>(far->sources().triangles().size());
+    return kUnit * kEdge * far->cost_on_lattice() * samples +
+           kSource * static_cast<double>(far->sources().triangles().size());
   }
   return kUnit * direct_cost(mesh) * samples;
 }

@@ -66,7 +66,9 @@ class LatticeTile {
 template <class Set>
 class RowTiles {
  public:
-  RowTiles(const ScaledMesh& mesh, const Set& set) : along_(mesh, set), across_(mesh, set) {}
+  RowTiles(const ScaledMesh& mesh, const Set& set,
+           typename LatticeTile<Set>::Sum sum = LatticeTile<Set>::Sum::kCheapest)
+      : along_(mesh, set, sum), across_(mesh, set, sum) {}
 
   // The next `samples` samples that are added are of one row.
   void begin_row(std::size_t samples) { left_ = samples; }

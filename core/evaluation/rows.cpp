@@ -24,11 +24,11 @@ std::int64_t crossings_at(const ScaledMesh& mesh, std::span<const double> values
   return mesh.counts_crossings() ? static_cast<std::int64_t>(values[index]) : 0;
 }
 
-// Turns crossings of the rows [begin, end) into winding numbers.
+// Turns crossings of the rows [begin, end) into winding numbers, by the direct sum.
 void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
                        std::span<double> values) {
   const std::size_t samples = rows.xs.size();
-  RowTiles tiles(mesh, SetValue{values});
+  RowTiles tiles(mesh, SetValue{values}, LatticeTile<SetValue>::Sum::kDirect);
   for (std::size_t number = begin; number < end; ++number) {
     const Row row = rows.row(number);
     tiles.begin_row(samples);
@@ -163,7 +163,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
   const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   collect_crossings(mesh, lattice, block, rows, sums);
-  const bool in_bricks = mesh.has_far_field();
+  const bool in_bricks = takes_far_field(mesh);
   const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, in_bricks);
   if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
   return {sums.ties(), on_surface};

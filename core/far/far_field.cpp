@@ -27,14 +27,15 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
   tree_.emplace(std::move(faces.triangles), tolerance, level);
-  cost_ = cost_in(bounding_box(mesh), tolerance);
+  set_costs(bounding_box(mesh), tolerance);
 }
 
 double FarField::doubt(double tolerance, double sources) { return tolerance + doubt_of_factors(3 * sources); }
 
-double FarField::cost_in(const Box& box, double tolerance) const {
+void FarField::set_costs(const Box& box, double tolerance) {
   constexpr double kTriangle = 2.5;
-  const double expansion = 2.0 + 0.7 * std::max(2.0, -std::log10(tolerance));  // degrees grow with the digits
+  const double digits = std::max(2.0, -std::log10(tolerance));  // with which degrees grow
+  const double expansion = 2.0 + 0.7 * digits, expansion_on_lattice = 3.0 + 2.0 * digits;
   constexpr std::array kSteps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // of an even sequence
   SampleTile places;
   places.clear();
@@ -48,9 +49,10 @@ double FarField::cost_in(const Box& box, double tolerance) const {
   }
   FarTile result;
   kernel_.sum(*tree_, places, result);
-  const double sum =
-      kTriangle * static_cast<double>(result.near_terms) + expansion * static_cast<double>(result.far_terms);
-  return sum / static_cast<double>(kTile);
+  const double near = static_cast<double>(result.near_terms) / static_cast<double>(kTile);
+  const double far = static_cast<double>(result.far_terms) / static_cast<double>(kTile);
+  cost_ = kTriangle * near + expansion * far;
+  cost_on_lattice_ = kTriangle * near + expansion_on_lattice * far;
 }
 
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,

@@ -79,11 +79,13 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
 }
 
 bool takes_far_field(const ScaledMesh& mesh) {
-  constexpr std::uint64_t kTooFew = 200;  // exterior edges, of which the tree saves too little
+  // Exterior edges, of which the tree saves too little; on small lattices, where it takes a twentieth of the time.
+  constexpr std::uint64_t kTooFewAnywhere = 200, kTooFewOfSmall = 1500;
   const bool forced = mesh.options().summation == Summation::kFarField;
   if (forced || !mesh.counts_crossings()) return mesh.has_far_field();
   const std::uint64_t edges = mesh.boundary().exterior_edges();
-  return edges >= kTooFew && mesh.has_far_field() &&
+  const bool is_small = mesh.options().accuracy.samples < kLeastSamples;
+  return edges >= (is_small ? kTooFewOfSmall : kTooFewAnywhere) && mesh.has_far_field() &&
          mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
 }
 

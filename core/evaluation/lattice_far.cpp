@@ -72,13 +72,13 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   if (!mesh.blocks().are_sound) return std::nullopt;
   if (mesh.options().summation == Summation::kBlocks) return axes;
   const double samples = samples_of(lattice), direct = direct_cost(mesh);
-  const bool far = takes_far_field(mesh);
+  const bool far = takes_far_field_on_lattice(mesh);
   const double other = far ? std::min(direct, kEdge * mesh.far_field()->cost_on_lattice()) : direct;
   if (blocks_cost(mesh, axes) * samples + once_cost(mesh) > kSafety * other * samples) return std::nullopt;
   return axes;
 }
 
-bool takes_far_field(const ScaledMesh& mesh) {
+bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
   // Exterior edges, of which the tree saves too little; on small lattices, where it takes a twentieth of the time.
   constexpr std::uint64_t kTooFewAnywhere = 200, kTooFewOfSmall = 1500;
   const bool forced = mesh.options().summation == Summation::kFarField;
@@ -99,7 +99,7 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
     return kUnit * (blocks_cost(mesh, *axes) * samples + once_cost(mesh));
   }
-  if (takes_far_field(mesh)) {
+  if (takes_far_field_on_lattice(mesh)) {
     const FarField* const far = mesh.far_field();
     return kUnit * kEdge * far->cost_on_lattice() * samples +
            kSource * static_cast<double>(far->sources().triangles().size());

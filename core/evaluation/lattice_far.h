@@ -19,8 +19,9 @@ namespace raycone {
 // the mesh and the lattice alone.
 [[nodiscard]] std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice& lattice);
 
-// Whether samples of a lattice that is not evaluated by blocks have the far field; a matter of the mesh alone.
-[[nodiscard]] bool takes_far_field(const ScaledMesh& mesh);
+// Whether samples of a lattice that is not evaluated by blocks have the far field: a matter of the mesh and of how many
+// samples were declared (Accuracy::samples), not of the part at hand.
+[[nodiscard]] bool takes_far_field_on_lattice(const ScaledMesh& mesh);
 
 // What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
 // goes about it. Seconds of a machine that docs/benchmarks.md describes. `by_far_field`: whether blocks and far field

@@ -163,7 +163,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
   const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   collect_crossings(mesh, lattice, block, rows, sums);
-  const bool in_bricks = takes_far_field(mesh);
+  const bool in_bricks = takes_far_field_on_lattice(mesh);
   const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, in_bricks);
   if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
   return {sums.ties(), on_surface};

@@ -125,15 +125,16 @@ Box box_for_points(const TriangleMesh& mesh) {
 // Where the estimate says that it takes less time. Times at a point, in units of that of an exterior edge.
 std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const {
   constexpr double kTriangle = 1.6;
-  constexpr double kFit = 1e7, kInTree = 1e3;  // once: the fit, and of each edge, its part of the tree
-  constexpr double kSafety = 0.75;             // estimates are no better
-  constexpr double kLeastPoints = 2e5;         // an estimate takes as long as some thousand points
+  constexpr double kFit = 1.5e6, kInTree = 1e3;  // once: the fit, and of each edge, its part of the tree
+  constexpr double kSafety = 0.75;               // estimates are no better
+  constexpr double kLeastPoints = 2e5;           // an estimate takes as long as some thousand points, ...
+  constexpr double kLeastCost = 4e7;             // ... of some hundred edges
   const double points = options_.accuracy.points;
   const bool forced = options_.summation == Summation::kBlocks;
   if (!(points > 0.0) || (!forced && options_.summation != Summation::kCheapest) || !has_blocks()) return nullptr;
   const double edges = static_cast<double>(boundary_.exterior_edges());
   const double direct = counts_crossings() ? edges : kTriangleSummed * static_cast<double>(mesh_.triangles.size());
-  if (!forced && (points < kLeastPoints || direct * points < 4 * kFit)) return nullptr;
+  if (!forced && (points < kLeastPoints || direct * points < kLeastCost)) return nullptr;
   if (!blocks().are_sound) return nullptr;
   std::unique_ptr<const BlocksOfPoints> result(
       new BlocksOfPoints{CapCrossings(blocks().caps), PointBlocks(blocks().sums, box_for_points(mesh_), points)});

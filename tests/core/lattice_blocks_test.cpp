@@ -386,14 +386,7 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
 
 TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
   // The rim is in one plane: there, the winding number is a half-integer or 0 in a whole layer.
-  constexpr std::uint32_t kCorners = 700;
-  TriangleMesh mesh;
-  for (std::uint32_t n = 0; n < kCorners; ++n) {  // a fan that is notched
-    const double angle = 2 * std::numbers::pi * n / kCorners, radius = n % 2 == 0 ? 0.45 : 0.4;
-    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
-  }
-  mesh.vertices.push_back({0.01, 0.02, -0.45});
-  for (std::uint32_t n = 0; n < kCorners; ++n) mesh.triangles.push_back({n, kCorners, (n + 1) % kCorners});
+  const TriangleMesh mesh = test::notched_fan();
   Lattice lattice = cube_lattice(96);
   lattice.origin.z = -48 * lattice.spacing.z;  // a layer at z = 0
   LatticeBlock layer{{0, 0, 8}, {96, 96, 1}};

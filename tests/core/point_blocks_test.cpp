@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <span>
 #include <vector>
 
@@ -113,14 +112,7 @@ TEST(PointBlocksTest, AQueryHasTheSameBitsAnywhere) {
 
 TEST(PointBlocksTest, HalfIntegersStayHalfIntegers) {
   // The rim is in one plane: there, the winding number is a half-integer or 0.
-  constexpr std::uint32_t kCorners = 700;
-  TriangleMesh mesh;
-  for (std::uint32_t n = 0; n < kCorners; ++n) {  // a fan that is notched
-    const double angle = 2 * std::numbers::pi * n / kCorners, radius = n % 2 == 0 ? 0.45 : 0.4;
-    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
-  }
-  mesh.vertices.push_back({0.01, 0.02, -0.45});
-  for (std::uint32_t n = 0; n < kCorners; ++n) mesh.triangles.push_back({n, kCorners, (n + 1) % kCorners});
+  const TriangleMesh mesh = test::notched_fan();
   Random random(7);
   std::vector<Vec3> points;
   while (points.size() < 2000) points.push_back(test::uniform_point(random, {{-0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}}));

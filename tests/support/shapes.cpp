@@ -132,6 +132,18 @@ TriangleMesh random_cells(Random& random, int size) {
   return weld(mesh, {});
 }
 
+TriangleMesh notched_fan() {
+  constexpr std::uint32_t kCorners = 700;
+  TriangleMesh mesh;
+  for (std::uint32_t n = 0; n < kCorners; ++n) {
+    const double angle = 2 * std::numbers::pi * n / kCorners, radius = n % 2 == 0 ? 0.45 : 0.4;
+    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
+  }
+  mesh.vertices.push_back({0.01, 0.02, -0.45});
+  for (std::uint32_t n = 0; n < kCorners; ++n) mesh.triangles.push_back({n, kCorners, (n + 1) % kCorners});
+  return mesh;
+}
+
 TriangleMesh fan(int triangles, int same) {
   TriangleMesh mesh;
   const Vec3 a{0, 0, 0}, b{0.25, 0.5, 1};

@@ -29,6 +29,8 @@ using Random = std::mt19937_64;
 [[nodiscard]] TriangleMesh random_cells(Random& random, int size);
 // Triangles around one common edge, the first `same` of them in one direction, the others in the other.
 [[nodiscard]] TriangleMesh fan(int triangles, int same);
+// A cone without its base, whose rim of 700 corners lies in the plane z = 0 and is notched.
+[[nodiscard]] TriangleMesh notched_fan();
 
 // Large triangles and small ones, a needle, a segment and a point, across and along the axes, some reaching far out of
 // [0, 1]^3.

@@ -47,7 +47,7 @@ only_in Embree '[<"]embree' 'core/crossings/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/exact/(predicates|projection)\.cpp'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/machine/threads\.cpp'
 only_in Highway '[<"]hwy' \
-  'core/(boundary/(change|cone|solid_angle)_kernel\.cpp|boundary/(product|triangle)_lanes-inl\.h|far/((far|matrix|moment|polynomial)_kernel|shared_corners)\.cpp|distance/(block|tree)_kernel\.cpp|distance/(near_triangles|to_front|triangle_lanes)-inl\.h|machine/(simd\.cpp|simd_kernel\.h))'
+  'core/(boundary/(change|cone|solid_angle)_kernel\.cpp|boundary/(product|triangle)_lanes-inl\.h|far/((far|matrix|moment|polynomial)_kernel|shared_corners)\.cpp|distance/(block|tree)_kernel\.cpp|distance/(near_triangles|to_front|triangle_lanes)-inl\.h|mesh/selection_kernel\.cpp|machine/(simd\.cpp|simd_kernel\.h))'
 only_in OpenVDB '[<"]openvdb' 'io/vdb/((read|write)_vdb|stored_values)\.cpp'
 only_in nlohmann-json '[<"]nlohmann' 'io/mesh/(bounded_json\.(h|cpp)|gltf_document\.cpp)|app/report/json\.cpp'
 only_in tinygltf '[<"]tiny_gltf' 'io/mesh/(gltf_data|read_gltf)\.cpp'

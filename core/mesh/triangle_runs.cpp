@@ -3,48 +3,58 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <span>
+#include <memory>
 
 #include "core/machine/threads.h"
+#include "core/mesh/selection_kernel.h"
 
 namespace raycone {
 namespace {
 
-// Where a triangle's box has its middle, in units of the longest side of all middles' box: at least 0. It goes along
-// with the triangle, so that what is looked at one after the other lies in memory so; in floats, as memory is what
-// sorting takes.
-struct PlacedTriangle {
-  std::array<float, 3> middle;
-  std::uint32_t number;
+// The places of triangles' middles along each axis, from 0 on, in units of 2^-30 of the longest side of all middles'
+// box.
+constexpr double kUnits = 0x1p30;
 
-  // Orders by the middle along an axis, then by number: bits of floats that are not negative are ordered as they are.
-  [[nodiscard]] std::uint64_t key(std::size_t axis) const {
-    return std::uint64_t{std::bit_cast<std::uint32_t>(middle[axis])} << 32 | number;
+// Of `count` triangles.
+class TriangleColumns {
+ public:
+  explicit TriangleColumns(std::size_t count)
+      : count_(count), numbers_(std::make_unique_for_overwrite<std::uint32_t[]>(4 * count)) {}
+
+  [[nodiscard]] PlacedTriangles all() const {
+    std::uint32_t* const first = numbers_.get();
+    return {{first, first + count_, first + 2 * count_}, first + 3 * count_};
   }
+
+ private:
+  std::size_t count_;
+  std::unique_ptr<std::uint32_t[]> numbers_;
 };
 
 // A quarter of it, which never overflows.
 Vec3 quarter_of_middle(const Box& box) { return 0.125 * box.lower + 0.125 * box.upper; }
 
-// Puts the `count` triangles whose keys along the axis are least before the others.
+// Puts those of `size` triangles first whose keys along the axis are least. `room` is for as many.
 class Selection {
  public:
-  Selection(std::span<PlacedTriangle> triangles, std::size_t axis) : triangles_(triangles), axis_(axis) {}
+  Selection(const SelectionKernel& kernel, const PlacedTriangles& triangles, const PlacedTriangles& room,
+            std::size_t size, std::size_t axis)
+      : kernel_(kernel), triangles_(triangles), room_(room), size_(size), axis_(axis) {}
 
+  // `count` of them.
   void select(std::size_t count) {
-    std::size_t begin = 0, end = triangles_.size();
+    std::size_t begin = 0, end = size_;
     // Halves would need half as many rounds. An order that defeats the samples is not to take quadratic time.
     int rounds = 4 * static_cast<int>(std::bit_width(end));
     while (begin < count && count < end) {
-      if (end - begin <= kFew) return sort_few(begin, end);
-      if (rounds-- == 0) return select_slowly(begin, count, end);
-      const std::size_t middle = partition(begin, end, pivot(begin, end, count));
+      if (end - begin <= kMostSorted) return kernel_.sort_few(triangles_.from(begin), end - begin, axis_);
+      const std::uint64_t key = rounds-- > 0 ? pivot(begin, end, count) : key_at(begin, end, count);
+      const std::size_t middle = begin + kernel_.partition(triangles_.from(begin), room_, end - begin, axis_, key);
       (middle <= count ? begin : end) = middle;
     }
   }
 
  private:
-  static constexpr std::size_t kFew = 32;     // more than a sample, whose keys differ then
   static constexpr std::size_t kMany = 1024;  // worth a larger sample
   static constexpr std::size_t kLarge = 31, kSmall = 7;
 
@@ -52,7 +62,9 @@ class Selection {
   [[nodiscard]] std::uint64_t pivot(std::size_t begin, std::size_t end, std::size_t wanted) const {
     std::array<std::uint64_t, kLarge> keys;
     const std::size_t size = end - begin, sample = size < kMany ? kSmall : kLarge, aside = size < kMany ? 1 : 2;
-    for (std::size_t n = 0; n < sample; ++n) keys[n] = triangles_[begin + (2 * n + 1) * size / (2 * sample)].key(axis_);
+    for (std::size_t n = 0; n < sample; ++n) {
+      keys[n] = triangles_.key(axis_, begin + (2 * n + 1) * size / (2 * sample));
+    }
     const std::size_t place = (wanted - begin) * sample / size;
     const bool in_upper_half = 2 * (wanted - begin) > size;
     const std::size_t chosen = in_upper_half ? std::max(place, aside + 1) - aside : std::min(place + aside, sample - 1);
@@ -61,55 +73,36 @@ class Selection {
     return *at;
   }
 
-  // Puts keys below `pivot` first; returns where the others begin. Without branches, which nobody could predict.
-  std::size_t partition(std::size_t begin, std::size_t end, std::uint64_t pivot) {
-    std::size_t middle = begin;
-    for (std::size_t n = begin; n < end; ++n) {
-      const PlacedTriangle triangle = triangles_[n];
-      triangles_[n] = triangles_[middle];
-      triangles_[middle] = triangle;
-      middle += triangle.key(axis_) < pivot ? 1 : 0;
-    }
-    return middle;
+  // The key at `wanted` in sorted order.
+  [[nodiscard]] std::uint64_t key_at(std::size_t begin, std::size_t end, std::size_t wanted) const {
+    std::vector<std::uint64_t> keys(end - begin);
+    for (std::size_t n = 0; n < keys.size(); ++n) keys[n] = triangles_.key(axis_, begin + n);
+    const auto at = keys.begin() + static_cast<std::ptrdiff_t>(wanted - begin);
+    std::nth_element(keys.begin(), at, keys.end());
+    return *at;
   }
 
-  void select_slowly(std::size_t begin, std::size_t count, std::size_t end) {
-    const auto at = [&](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(n); };
-    std::nth_element(at(begin), at(count), at(end),
-                     [&](const PlacedTriangle& a, const PlacedTriangle& b) { return a.key(axis_) < b.key(axis_); });
-  }
-
-  // Each goes where as many keys as are below its own say.
-  void sort_few(std::size_t begin, std::size_t end) {
-    std::array<PlacedTriangle, kFew> few;
-    std::array<std::uint64_t, kFew> keys;
-    const std::size_t size = end - begin;
-    for (std::size_t n = 0; n < size; ++n) few[n] = triangles_[begin + n], keys[n] = few[n].key(axis_);
-    for (std::size_t n = 0; n < size; ++n) {
-      std::size_t below = 0;
-      for (std::size_t other = 0; other < size; ++other) below += keys[other] < keys[n] ? 1 : 0;
-      triangles_[begin + below] = few[n];
-    }
-  }
-
-  std::span<PlacedTriangle> triangles_;
-  std::size_t axis_;
+  const SelectionKernel& kernel_;
+  PlacedTriangles triangles_, room_;
+  std::size_t size_, axis_;
 };
 
 // Sorts triangles into the tree's order.
 class RunOrder {
  public:
-  explicit RunOrder(const TriangleMesh& mesh) : triangles_(mesh.triangles.size()) {
+  explicit RunOrder(const TriangleMesh& mesh) : count_(mesh.triangles.size()), columns_(count_), room_columns_(count_) {
     const Box box = middles_of(mesh);
     const Vec3 sides = box.upper - box.lower;
     const double longest = std::max({sides.x, sides.y, sides.z});
-    const double scale = longest > kNoSize ? 1.0 / longest : 0.0;
-    parallel_for(triangles_.size(), kWorthATask, [&](std::size_t begin, std::size_t end) {
+    const double scale = longest > kNoSize ? kUnits / longest : 0.0;
+    parallel_for(count_, kWorthATask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         const auto number = static_cast<std::uint32_t>(n);
-        const Vec3 middle = scale * (quarter_of_middle(box_of_triangle(mesh, number)) - box.lower);
-        triangles_[n] = {{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)},
-                         number};
+        const Vec3 place = scale * (quarter_of_middle(box_of_triangle(mesh, number)) - box.lower);
+        for (int axis = 0; axis < 3; ++axis) {
+          triangles_.place[static_cast<std::size_t>(axis)][n] = static_cast<std::uint32_t>(place[axis]);
+        }
+        triangles_.number[n] = number;
       }
     });
   }
@@ -117,11 +110,9 @@ class RunOrder {
   // The triangles in runs of `width` that are close together, these in runs of `width` runs, and so on.
   std::vector<std::uint32_t> in_runs_of(std::size_t width) && {
     std::size_t run = width;
-    while (run < triangles_.size()) run *= width;
-    split(0, triangles_.size(), run / width, width);
-    std::vector<std::uint32_t> numbers(triangles_.size());
-    std::ranges::transform(triangles_, numbers.begin(), &PlacedTriangle::number);
-    return numbers;
+    while (run < count_) run *= width;
+    split(0, count_, run / width, width);
+    return {triangles_.number, triangles_.number + count_};
   }
 
  private:
@@ -140,7 +131,8 @@ class RunOrder {
     if (run < width) return;
     const std::size_t runs = (end - begin + run - 1) / run;
     const std::size_t middle = begin + (runs + 1) / 2 * run;
-    Selection(std::span(triangles_).subspan(begin, end - begin), longest_axis(begin, end)).select(middle - begin);
+    Selection(kernel_, triangles_.from(begin), room_.from(begin), end - begin, longest_axis(begin, end))
+        .select(middle - begin);
     if (end - begin < kWorthATask) {
       split(begin, middle, run, width);
       split(middle, end, run, width);
@@ -157,18 +149,23 @@ class RunOrder {
   [[nodiscard]] std::size_t longest_axis(std::size_t begin, std::size_t end) const {
     constexpr std::size_t kSome = 128;
     const std::size_t step = std::max<std::size_t>((end - begin) / kSome, 1);
-    std::array<float, 3> lower = triangles_[begin].middle, upper = lower;
-    for (std::size_t n = begin; n < end; n += step) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        lower[axis] = std::min(lower[axis], triangles_[n].middle[axis]);
-        upper[axis] = std::max(upper[axis], triangles_[n].middle[axis]);
+    std::array<std::uint32_t, 3> sides;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint32_t* const places = triangles_.place[axis];
+      std::uint32_t lower = places[begin], upper = lower;
+      for (std::size_t n = begin; n < end; n += step) {
+        lower = std::min(lower, places[n]);
+        upper = std::max(upper, places[n]);
       }
+      sides[axis] = upper - lower;
     }
-    const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
-    return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    return static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
   }
 
-  std::vector<PlacedTriangle> triangles_;
+  std::size_t count_;
+  TriangleColumns columns_, room_columns_;
+  PlacedTriangles triangles_ = columns_.all(), room_ = room_columns_.all();
+  SelectionKernel kernel_ = selection_kernel(SimdLevel::kBest);
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What a mesh takes before anything is evaluated, on one thread, and what warnings about it take of that.
 //   raycone_prepare_bench [BENCHMARK-OPTION...] -- [MESH...]       without meshes: the shared ones named below
-// Counters: the least time of each step in ms; `percent`, what warnings take (links, defects) of all other steps.
+// Counters: the least time of each step in ms; `percent`, what warnings take (links, defects) of all other steps;
+// of distances, the order of the search tree's triangles (`runs`) and the whole tree.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -12,10 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/distance/distance_tree.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_defects.h"
+#include "core/mesh/triangle_runs.h"
 #include "core/mesh/vertex_links.h"
 #include "core/mesh/weld.h"
 #include "io/mesh/read_mesh.h"
@@ -48,6 +51,7 @@ void time_steps(benchmark::State& state, const std::string& path) {
   const ThreadLimit limit(1);
   constexpr double kMs = 1e3, kLong = 1e9;
   double read = kLong, weld_time = kLong, plain = kLong, linked = kLong, defects = kLong, evaluator = kLong;
+  double faces = 1, runs = kLong, tree = kLong;
   std::uint64_t found = 0;
   for (auto _ : state) {
     Stopwatch watch;
@@ -60,8 +64,13 @@ void time_steps(benchmark::State& state, const std::string& path) {
     VertexLinks links(mesh.vertices.size());
     const std::vector<ExteriorEdge> edges = exterior_edges(mesh, &links);
     linked = std::min(linked, watch.lap());
+    faces = static_cast<double>(mesh.triangles.size());
     found = mesh_defects(mesh, edges, links).reversed_components;
     defects = std::min(defects, watch.lap());
+    benchmark::DoNotOptimize(triangles_in_runs(mesh, TrianglePack::kWidth));
+    runs = std::min(runs, watch.lap());
+    benchmark::DoNotOptimize(DistanceTree(mesh));
+    tree = std::min(tree, watch.lap());
     const WindingNumberEvaluator prepared(std::move(mesh), {.edges = &edges});
     evaluator = std::min(evaluator, watch.lap());
   }
@@ -72,6 +81,8 @@ void time_steps(benchmark::State& state, const std::string& path) {
   state.counters["defects"] = kMs * defects;
   state.counters["evaluator"] = kMs * evaluator;
   state.counters["percent"] = 100 * (linked - plain + defects) / (read + weld_time + plain + evaluator);
+  state.counters["runs_ns_per_face"] = 1e9 * runs / faces;
+  state.counters["tree_ns_per_face"] = 1e9 * tree / faces;
   state.counters["reversed"] = static_cast<double>(found);
 }
 

@@ -293,7 +293,8 @@ MUTANTS = [
 
     # --- Distances ---
     Mutant("few_in_reverse", "runs are of triangles next to one another", [
-        ("core/mesh/triangle_runs.cpp", "keys[other] < keys[n]", "keys[other] > keys[n]")]),
+        ("core/mesh/selection_kernel.cpp", "hn::Lt(hn::Load(d, &keys[other]), key)",
+         "hn::Gt(hn::Load(d, &keys[other]), key)")]),
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
         ("core/distance/tree_kernel.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [

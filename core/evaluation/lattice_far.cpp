@@ -11,25 +11,32 @@ namespace raycone {
 namespace {
 
 // Times at a sample, in units of that of one of the blocks' triangles: of an exterior edge, and of a triangle among
-// all.
-constexpr double kEdge = 0.46;
-constexpr double kTriangle = 0.86;
+// all; of what far fields count as an edge.
+constexpr double kEdge = 0.52;
+constexpr double kFarEdge = 0.46;
+constexpr double kTriangle = 1.0;
 constexpr double kInBlocks = 10.0;  // of a sample of blocks, beside what they sum
-// Of what is made once: the fit; of each triangle, its part of the tree.
-constexpr double kFit = 1e6;
-constexpr double kInTree = 4e2;
+// Of what is made once: the fit; of each edge or triangle, its part of the tree.
+constexpr double kFit = 1.1e6;
+constexpr double kInTree = 3.5e3;
 // An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples, where that
 // takes so long.
-constexpr double kLeastSamples = 2e5;
+constexpr double kLeastSamples = 1e5;
 constexpr double kLeastCost = 2e7;
-constexpr double kSafety = 0.92;  // estimates are no better
+// Where a lattice is smaller than this, soups and so many exterior edges are left to the far field: a second tree would
+// take a twentieth of the time.
+constexpr double kSmallLattice = 2e5;  // samples
+constexpr std::uint64_t kManyForSmall = 1500;
+// An estimate of blocks is 0.95 to 1.4 times what they take, that of the far field no better than this.
+constexpr double kSafetyOfBlocks = 1.03;
+constexpr double kSafety = 0.92;
 
 double direct_cost(const ScaledMesh& mesh) {
   return mesh.counts_crossings() ? kEdge * static_cast<double>(mesh.boundary().exterior_edges())
                                  : kTriangle * static_cast<double>(mesh.mesh().triangles.size());
 }
 
-double once_cost(const ScaledMesh& mesh) { return kFit + kInTree * direct_cost(mesh); }
+double tree_cost(const ScaledMesh& mesh) { return kInTree * direct_cost(mesh); }
 
 double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
   return mesh.blocks().sums.cost(axes) + kInBlocks;
@@ -52,8 +59,10 @@ bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
     if (count > kMostAlong || count < kLeastAlong) return false;
   }
   const double samples = samples_of(lattice);
-  const bool forced = mesh.options().summation == Summation::kBlocks;
-  return forced || (samples >= kLeastSamples && direct_cost(mesh) * samples >= kLeastCost);
+  if (mesh.options().summation == Summation::kBlocks) return true;
+  const bool left_to_far_field =
+      samples < kSmallLattice && (!mesh.counts_crossings() || mesh.boundary().exterior_edges() >= kManyForSmall);
+  return samples >= kLeastSamples && direct_cost(mesh) * samples >= kLeastCost && !left_to_far_field;
 }
 
 }  // namespace
@@ -73,35 +82,36 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   if (mesh.options().summation == Summation::kBlocks) return axes;
   const double samples = samples_of(lattice), direct = direct_cost(mesh);
   const bool far = takes_far_field_on_lattice(mesh);
-  const double other = far ? std::min(direct, kEdge * mesh.far_field()->cost_on_lattice()) : direct;
-  if (blocks_cost(mesh, axes) * samples + once_cost(mesh) > kSafety * other * samples) return std::nullopt;
+  const double other = far ? std::min(direct, kFarEdge * mesh.far_field()->cost_on_lattice()) : direct;
+  // The tree is there by now.
+  if (blocks_cost(mesh, axes) * samples + kFit > kSafetyOfBlocks * other * samples) return std::nullopt;
   return axes;
 }
 
 bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
   // Exterior edges, of which the tree saves too little; on small lattices, where it takes a twentieth of the time.
-  constexpr std::uint64_t kTooFewAnywhere = 200, kTooFewOfSmall = 1500;
+  constexpr std::uint64_t kTooFewAnywhere = 200;
   const bool forced = mesh.options().summation == Summation::kFarField;
   if (forced || !mesh.counts_crossings()) return mesh.has_far_field();
   const std::uint64_t edges = mesh.boundary().exterior_edges();
-  const bool is_small = mesh.options().accuracy.samples < kLeastSamples;
-  return edges >= (is_small ? kTooFewOfSmall : kTooFewAnywhere) && mesh.has_far_field() &&
+  const bool is_small = mesh.options().accuracy.samples < kSmallLattice;
+  return edges >= (is_small ? kManyForSmall : kTooFewAnywhere) && mesh.has_far_field() &&
          mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
 }
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
-  constexpr double kUnit = 2.9e-9;
+  constexpr double kUnit = 2.5e-9;
   constexpr double kSource = 1e-5;  // in the tree
   if (mesh.is_closed()) return 0.0;
   const double samples = samples_of(lattice);
   if (!by_far_field) return kUnit * direct_cost(mesh) * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kUnit * (blocks_cost(mesh, *axes) * samples + once_cost(mesh));
+    return kUnit * (blocks_cost(mesh, *axes) * samples + kFit + tree_cost(mesh));
   }
   if (takes_far_field_on_lattice(mesh)) {
     const FarField* const far = mesh.far_field();
-    return kUnit * kEdge * far->cost_on_lattice() * samples +
+    return kUnit * kFarEdge * far->cost_on_lattice() * samples +
            kSource * static_cast<double>(far->sources().triangles().size());
   }
   return kUnit * direct_cost(mesh) * samples;

@@ -1,6 +1,8 @@
 #include "core/far/far_kernel.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -147,14 +149,12 @@ HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, c
 }
 
 // The degrees that serve lanes as far away as `square` says, none above the node's order.
-HWY_INLINE Degrees degrees_at(const SourceNode& node, hn::Mask<Doubles> accepted, Lanes square) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+HWY_INLINE Degrees degrees_at(const SourceNode& node, Lanes square) {
   const auto degree_at = [&](double distance, int p) {
     while (p > 1 && distance >= node.square_of_distance[static_cast<std::size_t>(p - 1)]) --p;
     return p;
   };
-  const double nearest = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(accepted, square, hn::Set(d, kInfinity))));
-  const double farthest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(accepted, square)));
+  const double nearest = hn::GetLane(hn::MinOfLanes(d, square)), farthest = hn::GetLane(hn::MaxOfLanes(d, square));
   const int most = degree_at(nearest, node.order), all = degree_at(farthest, most);
   Lanes each = hn::Set(d, kDegrees[static_cast<unsigned>(all)]);
   for (int k = all; k < most; ++k) {
@@ -164,38 +164,74 @@ HWY_INLINE Degrees degrees_at(const SourceNode& node, hn::Mask<Doubles> accepted
   return {all, most, each};
 }
 
-// Samples on their way through the tree. A lane that has taken a node as far is out until the node is over.
+// Samples that take a node as far, moved together: they leave few lanes idle then.
+struct FarSamples {
+  std::array<std::uint8_t, kTile> places;  // in the tile
+  std::size_t count = 0;
+
+  HWY_INLINE void add(hn::Mask<Doubles> lanes, std::size_t first) {
+    std::array<std::uint8_t, 8> bytes{};  // as many as Highway may write
+    hn::StoreMaskBits(d, lanes, bytes.data());
+    for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) {
+      places[count++] = static_cast<std::uint8_t>(first + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+  }
+
+  // Those from `first` on, the last one repeated where there are none left.
+  [[nodiscard]] HWY_INLINE LanesOfPoints points(const SampleTile& samples, std::size_t first) const {
+    alignas(64) std::array<double, hn::MaxLanes(d)> x, y, z;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      const std::size_t i = places[std::min(first + lane, count - 1)];
+      x[lane] = samples.x[i];
+      y[lane] = samples.y[i];
+      z[lane] = samples.z[i];
+    }
+    return {hn::Load(d, x.data()), hn::Load(d, y.data()), hn::Load(d, z.data())};
+  }
+
+  HWY_INLINE void add_to(Tile& sums, std::size_t first, Lanes values) const {
+    alignas(64) std::array<double, hn::MaxLanes(d)> each;
+    hn::Store(values, d, each.data());
+    const std::size_t end = std::min(first + hn::Lanes(d), count);
+    for (std::size_t n = first; n < end; ++n) sums[places[n]] += each[n - first];
+  }
+};
+
+// Samples on their way through the tree. One that has taken a node as far is out until the node is over.
 struct Walk {
   const SourceTree& tree;
   const SampleTile& samples;
   FarTile& result;
-  alignas(64) Tile until{};
+  alignas(64) Tile until;  // infinite behind the last sample
 
   // Lanes from sample i on that have not taken a node above node k.
   [[nodiscard]] HWY_INLINE hn::Mask<Doubles> open(std::size_t i, std::size_t k) const {
     return hn::Ge(hn::Set(d, static_cast<double>(k)), hn::Load(d, &until[i]));
   }
-  [[nodiscard]] HWY_INLINE std::size_t count(hn::Mask<Doubles> lanes, std::size_t i) const {
-    return hn::CountTrue(d, hn::And(lanes, hn::FirstN(d, samples.count - i)));
-  }
 
-  // Takes node k where it is far enough; whether it is too near for any of the lanes from sample i on.
-  HWY_INLINE bool take(std::size_t k, std::size_t i) {
+  // Takes node k where it is far enough; whether it is too near for any sample.
+  HWY_INLINE bool take(std::size_t k) {
     const SourceNode& node = tree.nodes()[k];
-    const auto entered = open(i, k);
-    const LanesOfPoints r = seen_from(node.centre, points_at(samples, i));
-    const Lanes square = square_of(r);
-    const double least = node.square_of_distance[static_cast<std::size_t>(node.order)];
-    const auto accepted = hn::And(entered, hn::Ge(square, hn::Set(d, least)));
-    if (hn::AllFalse(d, accepted)) return !hn::AllFalse(d, entered);
-    const double* coefficients = tree.coefficients().data() + node.first_coefficient;
-    const Lanes value = multipole(node, coefficients, degrees_at(node, accepted, square), r);
-    const Lanes far = hn::Load(d, &result.far[i]);
-    hn::Store(hn::IfThenElse(accepted, hn::Add(far, value), far), d, &result.far[i]);
+    const Lanes least = hn::Set(d, node.square_of_distance[static_cast<std::size_t>(node.order)]);
     const Lanes next = hn::Set(d, static_cast<double>(node.next));
-    hn::Store(hn::IfThenElse(accepted, next, hn::Load(d, &until[i])), d, &until[i]);
-    result.far_terms += count(accepted, i);
-    return !hn::AllTrue(d, hn::Or(accepted, hn::Not(entered)));
+    FarSamples far;
+    bool near = false;
+    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
+      const auto entered = open(i, k);
+      if (hn::AllFalse(d, entered)) continue;
+      const auto accepted = hn::And(entered, hn::Ge(square_of(seen_from(node.centre, points_at(samples, i))), least));
+      near |= !hn::AllTrue(d, hn::Or(accepted, hn::Not(entered)));
+      if (hn::AllFalse(d, accepted)) continue;
+      hn::Store(hn::IfThenElse(accepted, next, hn::Load(d, &until[i])), d, &until[i]);
+      far.add(accepted, i);
+    }
+    const double* coefficients = tree.coefficients().data() + node.first_coefficient;
+    for (std::size_t n = 0; n < far.count; n += hn::Lanes(d)) {
+      const LanesOfPoints r = seen_from(node.centre, far.points(samples, n));
+      far.add_to(result.far, n, multipole(node, coefficients, degrees_at(node, square_of(r)), r));
+    }
+    result.far_terms += far.count;
+    return near;
   }
 
   HWY_INLINE void multiply_own(std::size_t k) {
@@ -210,7 +246,7 @@ struct Walk {
         TrianglesOfChunk views(chunk, samples);
         multiply_chunk(result.near, chunk, views, samples, i, near, small);
       }
-      result.near_terms += (node.own_end - node.begin) * count(near, i);
+      result.near_terms += (node.own_end - node.begin) * hn::CountTrue(d, near);
     }
   }
 };
@@ -219,11 +255,11 @@ struct Walk {
 void sum_here(const SourceTree& tree, const SampleTile& samples, FarTile& result) {
   set_ones(result.near);
   result.far.fill(0.0);
-  Walk walk{tree, samples, result};
+  Walk walk{tree, samples, result, {}};
+  for (std::size_t i = samples.count; i < kTile; ++i) walk.until[i] = std::numeric_limits<double>::infinity();
   const std::span<const SourceNode> nodes = tree.nodes();
   for (std::size_t k = 0; k < nodes.size();) {
-    bool near = false;
-    for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) near |= walk.take(k, i);
+    const bool near = walk.take(k);
     if (near && nodes[k].first_chunk < nodes[k].last_chunk) walk.multiply_own(k);
     k = near ? k + 1 : nodes[k].next;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -130,6 +132,7 @@ LatticeBlocksWalk::Division LatticeBlocksWalk::whole() const {
 
 LatticeBlocksWalk::Division LatticeBlocksWalk::divide(const SampleBlock& block) const {
   Division division;
+  if (block.near.empty() ? block.size() <= kLargestBlock : block.size() < kSmallBlock) return division;
   for (SampleBlock& child : halves(block)) add_child(std::move(child), block.near, division);
   return division;
 }
@@ -152,16 +155,24 @@ std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& b
                                                             std::span<const std::uint32_t> triangles) const {
   std::vector<std::uint32_t> far;
   if (block.level >= levels_) return far;
-  std::vector<std::pair<double, std::uint32_t>> errors;
+  using Error = std::pair<double, std::uint32_t>;
+  std::vector<Error> errors;
   for (const std::uint32_t n : triangles) {
     const double error = error_of(blocks_.sources_[n], block.cube);
     if (error <= far_budget_) errors.emplace_back(error, n);
   }
-  std::ranges::sort(errors);
+  // By halves: sorting all takes longer.
   double sum = 0.0;
-  for (const auto& [error, n] : errors) {
-    if ((sum += error) > far_budget_) break;
-    far.push_back(n);
+  for (auto begin = errors.begin(), end = errors.end(); begin != end;) {
+    const auto middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end);
+    const double with = std::accumulate(begin, middle + 1, sum, [](double s, const Error& e) { return s + e.first; });
+    if (with > far_budget_) {
+      end = middle;
+      continue;
+    }
+    sum = with;
+    for (; begin <= middle; ++begin) far.push_back(begin->second);
   }
   std::ranges::sort(far);
   return far;
@@ -197,9 +208,7 @@ double LatticeBlocksWalk::near_cost(const SampleBlock& block) const {
 
 bool LatticeBlocksWalk::pays(const SampleBlock& block, const Division& division) const {
   if (division.children.size() < 2) return false;
-  if (block.near.empty()) return block.size() > kLargestBlock;
-  if (block.size() > kLargeBlock) return true;
-  if (block.size() < kSmallBlock) return false;
+  if (block.near.empty() || block.size() > kLargeBlock) return true;
   double cost = 0.0;
   for (std::size_t n = 0; n < division.children.size(); ++n) {
     cost += making_cost(division.far[n].cost, block.field != nullptr) + near_cost(division.children[n]);
@@ -362,21 +371,45 @@ void LatticeBlocksWalk::add_near(const SampleBlock& block, const std::array<std:
       boundary && kEdge * static_cast<double>(boundary->edges()) < static_cast<double>(cover.triangles.size());
   if (by_boundary) add_crossings(cover.triangles, begin, end, sums);
   CoverSums cover_sums = by_boundary ? CoverSums(blocks_.tree_, cover, steps, kernels_) : sums_of(cover, first, last);
+  add_at_samples(cover_sums, last[0] - first[0] <= kSubBlock[0] / 2, begin, end, sums);
+}
+
+// `narrow`: whether rows would leave half of their lanes idle. Then samples are taken as they come.
+void LatticeBlocksWalk::add_at_samples(CoverSums& cover_sums, bool narrow, const std::array<std::size_t, 3>& begin,
+                                       const std::array<std::size_t, 3>& end, const BlockSums& sums) const {
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   SampleTile tile;
+  std::array<std::size_t, kTile> places;  // among the sums; kNone: of an idle lane
   tile.clear();
-  for (std::size_t y = begin[1]; y < end[1]; ++y) {
-    for (std::size_t i = 0; i < kSubBlock[0]; ++i) {
-      tile.add({axes_[0][std::min(begin[0] + i, end[0] - 1)], axes_[1][y], 0.0});
+  const auto add = [&](std::size_t x, std::size_t y, std::size_t z) {
+    places[tile.count] = x < end[0] ? sums.place(x, y, z) : kNone;
+    tile.add({axes_[0][std::min(x, end[0] - 1)], axes_[1][y], axes_[2][z]});
+  };
+  const auto evaluate = [&](TileShape shape, std::size_t beyond) {
+    cover_sums.evaluate(tile, shape, [&](std::size_t i, double turns, double rest) {
+      if (places[i] == kNone) return;
+      double& sum = sums.numbers[places[i] + beyond];
+      sum = turns + (rest + sum);
+    });
+  };
+  if (narrow) {
+    for (std::size_t z = begin[2]; z < end[2]; ++z) {
+      for (std::size_t y = begin[1]; y < end[1]; ++y) {
+        for (std::size_t x = begin[0]; x < end[0]; ++x) {
+          add(x, y, z);
+          if (tile.count == kTile) evaluate(TileShape::kScattered, 0), tile.clear();
+        }
+      }
     }
+    if (tile.count > 0) evaluate(TileShape::kScattered, 0);
+    return;
+  }
+  for (std::size_t y = begin[1]; y < end[1]; ++y) {
+    for (std::size_t x = begin[0]; x < begin[0] + kSubBlock[0]; ++x) add(x, y, begin[2]);
   }
   for (std::size_t z = begin[2]; z < end[2]; ++z) {
     tile.z.fill(axes_[2][z]);
-    cover_sums.evaluate(tile, TileShape::kInRows, [&](std::size_t i, double turns, double rest) {
-      const std::size_t in_row = i % kSubBlock[0];
-      if (begin[0] + in_row >= end[0]) return;
-      double& sum = sums.numbers[sums.place(begin[0] + in_row, begin[1] + i / kSubBlock[0], z)];
-      sum = turns + (rest + sum);
-    });
+    evaluate(TileShape::kInRows, sums.place(begin[0], begin[1], z) - sums.place(begin[0], begin[1], begin[2]));
   }
 }
 

@@ -76,6 +76,7 @@ class LatticeBlocksWalk {
 
   // The whole lattice, as the only child of nothing.
   [[nodiscard]] Division whole() const;
+  // No children where that never pays.
   [[nodiscard]] Division divide(const SampleBlock& block) const;
 
   // Whether this division of the block takes less time than none.
@@ -127,6 +128,8 @@ class LatticeBlocksWalk {
                   const BlockSums& sums) const;
   void add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
                 const std::array<std::size_t, 3>& end, SharedEdges::Boundary* boundary, const BlockSums& sums) const;
+  void add_at_samples(CoverSums& cover_sums, bool narrow, const std::array<std::size_t, 3>& begin,
+                      const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
   void add_crossings(std::span<const std::uint32_t> triangles, const std::array<std::size_t, 3>& begin,
                      const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
 

@@ -1,5 +1,8 @@
 #include "core/far/moment_kernel.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "core/far/gauss_rule.h"
 #include "core/far/multipole.h"
 
@@ -70,7 +73,7 @@ HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, Integrals&
   }
 }
 
-void add_edges(const MomentEdges& edges, MomentSums& sums) {
+void add_edges_here(const MomentEdges& edges, MomentSums& sums) {
   Integrals integrals;
   for (std::size_t lane = 0; lane < kMomentLanes; lane += hn::Lanes(d)) {
     integrate(edges, lane, integrals);
@@ -86,6 +89,29 @@ void add_edges(const MomentEdges& edges, MomentSums& sums) {
   }
 }
 
+// One lane is one m.
+void shift_here(const DegreeRows& shift, const DegreeRows& part, DegreeRows& sums) {
+  constexpr int kMiddle = DegreeRows::kMiddle;
+  for (int n = 1; n <= kMomentOrder + 1; ++n) {
+    for (int m = 0; m <= n; m += static_cast<int>(hn::Lanes(d))) {
+      Lanes re = hn::Zero(d), im = hn::Zero(d);
+      for (int k = 0; k < n; ++k) {
+        const auto of_shift = static_cast<std::size_t>(k), of_part = static_cast<std::size_t>(n - k);
+        for (int l = std::max(-k, m - (n - k)); l <= k; ++l) {
+          const auto at = static_cast<std::size_t>(kMiddle + l), from = static_cast<std::size_t>(kMiddle + m - l);
+          const Lanes a_re = hn::Set(d, shift.re[of_shift][at]), a_im = hn::Set(d, shift.im[of_shift][at]);
+          const Lanes b_re = hn::LoadU(d, &part.re[of_part][from]), b_im = hn::LoadU(d, &part.im[of_part][from]);
+          re = hn::Add(re, hn::Sub(hn::Mul(a_re, b_re), hn::Mul(a_im, b_im)));
+          im = hn::Add(im, hn::Add(hn::Mul(a_re, b_im), hn::Mul(a_im, b_re)));
+        }
+      }
+      const auto degree = static_cast<std::size_t>(n), to = static_cast<std::size_t>(kMiddle + m);
+      hn::Store(re, d, &sums.re[degree][to]);
+      hn::Store(im, d, &sums.im[degree][to]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace raycone
@@ -94,7 +120,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-MomentKernel moment_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, add_edges); }
+MomentKernel moment_kernel(SimdLevel level) {
+  return {RAYCONE_AT_LEVEL(level, add_edges_here), RAYCONE_AT_LEVEL(level, shift_here)};
+}
 
 }  // namespace raycone
 #endif

@@ -1,4 +1,4 @@
-// The inner loop of expansions: integrals of solid harmonics along edges, in SIMD lanes.
+// The inner loops of expansions, in SIMD lanes: integrals of solid harmonics along edges, and shifts.
 #pragma once
 
 #include <array>
@@ -24,9 +24,21 @@ struct MomentSums {
   alignas(64) std::array<std::array<MomentLanes, kMomentTerms>, 3> re{}, im{};
 };
 
-// Adds eight edges. One lane is one edge, and its operations come in one order, without fused multiply-add: results are
-// the same for every SIMD level. Integrals are by Gauss's rule of eight points, exact but for rounding. Thread-safe.
-using MomentKernel = void (*)(const MomentEdges& edges, MomentSums& sums);
+// Complex numbers of degrees n up to kMomentOrder + 1 and all m: that of (n, m) is at [n][kMiddle + m].
+struct DegreeRows {
+  static constexpr int kMiddle = 32;  // whole vectors of zeros around each row
+  static constexpr std::size_t kRow = 64;
+  alignas(64) std::array<std::array<double, kRow>, kMomentOrder + 2> re{}, im{};
+};
+
+// Operations come in one order, without fused multiply-add: results are the same for every SIMD level. Thread-safe.
+struct MomentKernel {
+  // Adds eight edges, a lane each. Integrals are by Gauss's rule of eight points, exact but for rounding.
+  void (*add_edges)(const MomentEdges& edges, MomentSums& sums);
+  // Sets sums[n][m], 1 <= n and 0 <= m <= n, to the sum over k < n and |l| <= k of shift[k][l] * part[n - k][m - l]. Of
+  // `part`, what is beyond a degree, |m| > n, must be 0; of `sums` it gets no meaning.
+  void (*shift)(const DegreeRows& shift, const DegreeRows& part, DegreeRows& sums);
+};
 
 // That of the level, of the best one where the level is not available.
 [[nodiscard]] MomentKernel moment_kernel(SimdLevel level);

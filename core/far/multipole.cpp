@@ -84,7 +84,7 @@ const Tables& tables() {
 // The sums of (a x b) times the integral of R_n^m along an edge a -> b, n < kP.
 class EdgeSums {
  public:
-  explicit EdgeSums(MomentKernel kernel) : kernel_(kernel) {}
+  explicit EdgeSums(const MomentKernel& kernel) : kernel_(kernel) {}
 
   void add(const Vec3& a, const Vec3& along, double sign) {
     const Vec3 normal = sign * cross(a, along);
@@ -95,7 +95,7 @@ class EdgeSums {
       edges_.normal[i][count_] = normal[axis];
     }
     if (++count_ < kMomentLanes) return;
-    kernel_(edges_, lanes_);
+    kernel_.add_edges(edges_, lanes_);
     count_ = 0;
   }
   void finish() {
@@ -122,14 +122,14 @@ class EdgeSums {
   std::array<std::array<Complex, kMomentTerms>, 3> sums_;
 };
 
-// R_n^m(s), m >= 0.
+// R_n^m(s), m >= 0, n < kP.
 std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
   std::array<Complex, kMultipoleTerms> all;
   const double square = dot(s, s);
   Complex corner = 1.0;
-  for (int m = 0; m <= kP; ++m) {
+  for (int m = 0; m < kP; ++m) {
     Complex value = corner, before = 0.0;
-    for (int n = m; n <= kP; ++n) {
+    for (int n = m; n < kP; ++n) {
       all[multipole_index(n, m)] = value;
       const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
       const Complex next = (2 * n + 1) * step * s.z * value - step * square * before;
@@ -141,17 +141,18 @@ std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
   return all;
 }
 
-// All m of degree n from -n to n, at [m + kP].
-using Degree = std::array<Complex, 2 * kP + 1>;
+// at(n, m) for all m >= 0, and what follows for the others.
 template <class At>
-std::array<Degree, kP + 1> rows_of(const At& at) {
-  std::array<Degree, kP + 1> rows{};
-  for (int n = 0; n <= kP; ++n) {
+DegreeRows rows_of(int order, const At& at) {
+  DegreeRows rows;
+  for (int n = 0; n <= order; ++n) {
     for (int m = 0; m <= n; ++m) {
-      const Complex c = at(n, m);
-      Degree& row = rows[index(n)];
-      row[index(kP + m)] = c;
-      row[index(kP - m)] = m % 2 == 0 ? std::conj(c) : -std::conj(c);
+      const Complex c = at(n, m), mirrored = m % 2 == 0 ? std::conj(c) : -std::conj(c);
+      const std::size_t to = index(DegreeRows::kMiddle + m), back = index(DegreeRows::kMiddle - m);
+      rows.re[index(n)][back] = mirrored.real();
+      rows.im[index(n)][back] = mirrored.imag();
+      rows.re[index(n)][to] = c.real();
+      rows.im[index(n)][to] = c.imag();
     }
   }
   return rows;
@@ -160,7 +161,7 @@ std::array<Degree, kP + 1> rows_of(const At& at) {
 }  // namespace
 
 Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius,
-                       MomentKernel kernel) {
+                       const MomentKernel& kernel) {
   EdgeSums sums(kernel);
   const double scale = 1 / unit;
   double reach = 0;  // the sum of |a||b - a|
@@ -191,30 +192,22 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
   return all;
 }
 
-void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio) {
+void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio, const MomentKernel& kernel) {
   const std::array<Complex, kMultipoleTerms> harmonics = regular_harmonics(shift);
-  const auto regular = rows_of([&](int n, int m) { return std::conj(harmonics[multipole_index(n, m)]); });
+  const auto regular = rows_of(kP - 1, [&](int n, int m) { return std::conj(harmonics[multipole_index(n, m)]); });
   std::array<double, kP + 1> powers{};  // of the ratio, the exponent being n + 1
   powers[0] = ratio;
   for (std::size_t n = 1; n <= kP; ++n) powers[n] = powers[n - 1] * ratio;
-  const auto moments = rows_of([&](int n, int m) {
+  const auto moments = rows_of(kP, [&](int n, int m) {
     const std::size_t term = multipole_index(n, m);
     return powers[index(n)] * Complex(part.re[term], part.im[term]);
   });
+  DegreeRows shifted;
+  kernel.shift(regular, moments, shifted);
   for (int n = 1; n <= kP; ++n) {
     for (int m = 0; m <= n; ++m) {
-      double re = 0, im = 0;
-      for (int k = 0; k < n; ++k) {
-        const int j = n - k;
-        const Degree &r = regular[index(k)], &s = moments[index(j)];
-        for (int l = std::max(-k, m - j); l <= std::min(k, m + j); ++l) {
-          const Complex a = r[index(kP + l)], b = s[index(kP + m - l)];
-          re += a.real() * b.real() - a.imag() * b.imag();
-          im += a.real() * b.imag() + a.imag() * b.real();
-        }
-      }
-      sum.re[multipole_index(n, m)] += re;
-      sum.im[multipole_index(n, m)] += im;
+      sum.re[multipole_index(n, m)] += shifted.re[index(n)][index(DegreeRows::kMiddle + m)];
+      sum.im[multipole_index(n, m)] += shifted.im[index(n)][index(DegreeRows::kMiddle + m)];
     }
   }
   const MultipoleBounds bounds = bounds_of(part);

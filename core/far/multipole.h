@@ -36,11 +36,12 @@ struct Multipole {
 // Of the triangles, each of which is at most `radius` units away from the centre at every point; radius <= 1. `unit` is
 // a power of two. The result does not depend on the kernel.
 [[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit,
-                                     double radius, MomentKernel kernel = moment_kernel(SimdLevel::kBest));
+                                     double radius, const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
 // Adds an expansion that is about a centre that lies `shift` away, in units of the sum, and whose unit is `ratio` such
-// units, a power of two. |shift| <= 1.
-void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio);
+// units, a power of two. |shift| <= 1. The result does not depend on the kernel.
+void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio,
+                 const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
 // What bounds the error of an expansion that is cut off behind degree p, at a distance of 1 / rho units: at most the
 // sum of evaluation[n] rho^(n+1) over n <= p and of size[n] rho^(n+1) over n > p, and of beyond_multipoles().

@@ -207,7 +207,7 @@ void SourceTree::expand() {
         multipole.error[1] += kNeglected * (part.area / node.unit / node.unit);
         continue;
       }
-      add_shifted(multipole, expansion, (1 / node.unit) * (part.centre - node.centre), part.unit / node.unit);
+      add_shifted(multipole, expansion, (1 / node.unit) * (part.centre - node.centre), part.unit / node.unit, moments_);
     }
     finish(node, multipole);
     return multipole;

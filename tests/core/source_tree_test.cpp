@@ -123,13 +123,17 @@ TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
   }
 }
 
-TEST(SourceTree, MomentsAreTheSameForEverySimdLevel) {
+TEST(SourceTree, MomentsAndShiftsAreTheSameForEverySimdLevel) {
   const DefaultFloatingPoint guard;
   test::Random random(4);
   for (const int count : {1, 2, 3, 7, 8, 9}) {
     const auto all = solid_faces(small_triangles(random, count, 0.3)).triangles;
     const auto moments = [&](SimdLevel level) {
-      return multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, moment_kernel(level));
+      const MomentKernel kernel = moment_kernel(level);
+      const Multipole here = multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, kernel);
+      Multipole sum = here;
+      add_shifted(sum, here, {0.3, -0.2, 0.4}, 0.5, kernel);
+      return sum;
     };
     const Multipole best = moments(SimdLevel::kBest);
     for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {

@@ -170,11 +170,6 @@ class RunOrder {
 
 }  // namespace
 
-Box box_of_triangle(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  return box_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-}
-
 std::vector<std::uint32_t> triangles_in_runs(const TriangleMesh& mesh, std::size_t width) {
   return RunOrder(mesh).in_runs_of(width);
 }

@@ -15,7 +15,9 @@ namespace raycone {
 // is outside of the lattice has the cells at its border.
 class CellSet {
  public:
-  explicit CellSet(const Lattice& lattice) : cells_(lattice) {}
+  explicit CellSet(const Lattice& lattice) : cells_(lattice) {
+    for (int axis = 0; axis < 3; ++axis) per_length_[axis] = 1.0 / lattice.spacing[axis];
+  }
 
   void insert(const Box& box) {
     for_each_cell(box, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
@@ -36,7 +38,7 @@ class CellSet {
   [[nodiscard]] std::int64_t cell_at(const Vec3& p, int axis) const {
     const Lattice& lattice = cells_.lattice();
     const auto a = static_cast<std::size_t>(axis);
-    const double index = (p[axis] - lattice.origin[axis]) / lattice.spacing[axis];
+    const double index = (p[axis] - lattice.origin[axis]) * per_length_[axis];
     const auto first = static_cast<double>(lattice.index_min[a]), last = static_cast<double>(lattice.counts[a] - 1);
     return static_cast<std::int64_t>(std::clamp(index - first, 0.0, last));
   }
@@ -56,6 +58,7 @@ class CellSet {
   }
 
   NodeSet cells_;  // by their lowest corners
+  Vec3 per_length_;
 };
 
 }  // namespace raycone

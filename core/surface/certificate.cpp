@@ -273,7 +273,7 @@ NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const s
   return nodes;
 }
 
-SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
+SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside, NodeSet* misplaced) {
   SurfaceFaults faults;
   const Fans fans = fans_of(mesh);
   faults.links = fans.count_of_wrong();
@@ -283,7 +283,9 @@ SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside) {
   const std::vector<ExteriorEdge> none;
   faults.degenerate_faces = degenerate_faces(mesh);
   faults.equal_vertices = equal_vertices(mesh);
-  faults.nodes = misplaced_nodes(mesh, inside, faults.links > 0 ? nullptr : &none).size();
+  NodeSet nodes = misplaced_nodes(mesh, inside, faults.links > 0 ? nullptr : &none);
+  faults.nodes = nodes.size();
+  if (misplaced) *misplaced = std::move(nodes);
   faults.intersections = self_intersections(mesh, SearchOrder::kCurve, &fans.graphs);
   return faults;
 }

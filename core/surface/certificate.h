@@ -30,8 +30,8 @@ struct SurfaceFaults {
 
 // Looks for all of them but places, exactly. So a mesh without faults is closed, a 2-manifold and free of
 // self-intersections, with the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a
-// triangle.
-[[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside);
+// triangle. Sets `misplaced`, where given, to the nodes on the wrong side: misplaced_nodes().
+[[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside, NodeSet* misplaced = nullptr);
 
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
 // `edges`: its exterior edges, where known, to spare finding them.

@@ -12,6 +12,8 @@
 #include "core/surface/certificate.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/mesh_corners.h"
+#include "core/surface/source_plane.h"
 
 namespace raycone {
 namespace {
@@ -73,8 +75,13 @@ bool is_near(const TriangleMesh& mesh, const Triangle& t, const NodeSet& nodes) 
 class CheckedMerger {
  public:
   CheckedMerger(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside, double margin,
-                const std::function<bool()>& is_right)
-      : surface_(surface), input_(input), inside_(inside), margin_(margin), is_right_(is_right) {}
+                bool single_precision, const std::function<bool()>& is_right)
+      : surface_(surface),
+        input_(input),
+        inside_(inside),
+        margin_(margin),
+        single_precision_(single_precision),
+        is_right_(is_right) {}
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
   // as well as that have faults, they are merged where they agree better. None where faults are left even so.
@@ -86,10 +93,11 @@ class CheckedMerger {
   }
 
  private:
+  static constexpr double kNeedle = 16.0;  // margins: how far apart points at one node are at most
+
   // What merging spoils is not merged; `all`: nor is what puts more than a few nodes on the wrong side, as happens
   // where a plane of the mesh is one of the lattice, or what only the last resort mends. `most` in margins.
   std::optional<SurfaceMesh> merged_within(double most, bool all) {
-    constexpr double kNeedle = 16.0;
     const std::vector<Vec3>& vertices = surface_.mesh.vertices;
     const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
     const Vec3& h = inside_.lattice().spacing;
@@ -97,10 +105,14 @@ class CheckedMerger {
     kept_.assign(vertices.size(), false);
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most * unit, kNeedle * unit});
     std::uint64_t faults_before = 0;
+    NodeSet misplaced(inside_.lattice());
+    bool to_corners = false;
     for (int round = 0; round < (all ? kRounds + kWideRounds : kRounds); ++round) {
       MergedFaces merged = merger.merge(kept_);
       TriangleMesh compact = used_part(vertices, merged.triangles);
-      const SurfaceFaults faults = faults_of(compact, inside_);
+      if (round > 0 && to_corners) move_to_corners(compact, unit);
+      SurfaceFaults faults = faults_of(compact, inside_, &misplaced);
+      if (round == 0 && faults.nodes > 0) to_corners = is_better_at_corners(compact, unit, faults, misplaced);
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       if (faults.nodes > few_nodes && !all) return std::nullopt;
       const std::uint64_t count = faults.nodes + faults.intersections.pairs;
@@ -108,12 +120,37 @@ class CheckedMerger {
       if ((no_better || round == kRounds) && !is_right()) return std::nullopt;
       faults_before = count;
       if (round < kRounds) {
-        keep_near(merged, faults, misplaced_nodes(compact, inside_), std::exp2(round));
+        keep_near(merged, faults, misplaced, std::exp2(round));
       } else {
-        keep_around(merged, faults, misplaced_nodes(compact, inside_), round - kRounds);
+        keep_around(merged, faults, misplaced, round - kRounds);
       }
     }
     return std::nullopt;
+  }
+
+  // Where a plane of the mesh leads through nodes, its faces have them on the right side if they are in that plane
+  // exactly, as those between corners of the mesh are. Points next to corners were kept off nodes, or are rounded.
+  // Returns whether fewer nodes are on the wrong side, and no other faults more, with such points moved to the corners;
+  // sets all to what it is then.
+  bool is_better_at_corners(TriangleMesh& merged, double unit, SurfaceFaults& faults, NodeSet& misplaced) const {
+    TriangleMesh moved = merged;
+    move_to_corners(moved, unit);
+    const std::vector<ExteriorEdge> none;
+    NodeSet misplaced_then = misplaced_nodes(moved, inside_, faults.links > 0 ? nullptr : &none);  // tells most
+    if (misplaced_then.size() >= faults.nodes) return false;
+    SurfaceFaults then = faults_of(moved, inside_);
+    const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
+    if (others > 0 || then.intersections.pairs > faults.intersections.pairs) return false;
+    merged = std::move(moved);
+    faults = std::move(then);
+    misplaced = std::move(misplaced_then);
+    return true;
+  }
+
+  void move_to_corners(TriangleMesh& merged, double unit) const {
+    raycone::move_to_corners(input_, inside_.lattice(), kNeedle * unit, merged.vertices);
+    if (!single_precision_) return;
+    for (Vec3& p : merged.vertices) p = rounded_to_float(p);
   }
 
   bool is_right() {
@@ -168,6 +205,7 @@ class CheckedMerger {
   const TriangleMesh& input_;
   const NodeSet& inside_;
   double margin_;
+  bool single_precision_;
   const std::function<bool()>& is_right_;
   bool is_wrong_ = false;  // as far as is known
   std::vector<bool> kept_;
@@ -176,8 +214,8 @@ class CheckedMerger {
 }  // namespace
 
 std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
-                                         double margin, const std::function<bool()>& is_right) {
-  return CheckedMerger(surface, input, inside, margin, is_right).merge();
+                                         double margin, bool single_precision, const std::function<bool()>& is_right) {
+  return CheckedMerger(surface, input, inside, margin, single_precision, is_right).merge();
 }
 
 }  // namespace raycone

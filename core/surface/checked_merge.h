@@ -11,11 +11,13 @@
 namespace raycone {
 
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
-// of them the longer faults are left. So one place where planes do not agree costs few faces. None where all that did
-// not help. `input`: the mesh that it is of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels;
-// `is_right`: whether the surface has no faults before, asked where that matters. The same for any number of threads.
+// of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
+// fewer, vertices next to the input's are moved there. None where all that did not help. `input`: the mesh that it is
+// of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `single_precision`: vertices are
+// floats, and stay so; `is_right`: whether the surface has no faults before, asked where that matters. The same for any
+// number of threads.
 [[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
-                                                       const NodeSet& inside, double margin,
+                                                       const NodeSet& inside, double margin, bool single_precision,
                                                        const std::function<bool()>& is_right);
 
 }  // namespace raycone

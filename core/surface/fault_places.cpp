@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "core/surface/kuhn.h"
 #include "core/surface/surface_cells.h"
@@ -37,18 +38,19 @@ bool is_beside(const Vec3& p, const NodeSet& nodes) {
   return false;
 }
 
-TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles) {
   constexpr std::uint32_t kUnused = 0xFFFFFFFF;
   std::vector<std::uint32_t> number(vertices.size(), kUnused);
-  TriangleMesh used{{}, triangles};
-  for (Triangle& t : used.triangles) {
+  std::uint32_t count = 0;
+  for (Triangle& t : triangles) {
     for (std::uint32_t& corner : t) {
-      if (number[corner] == kUnused) {
-        number[corner] = static_cast<std::uint32_t>(used.vertices.size());
-        used.vertices.push_back(vertices[corner]);
-      }
+      if (number[corner] == kUnused) number[corner] = count++;
       corner = number[corner];
     }
+  }
+  TriangleMesh used{std::vector<Vec3>(count), std::move(triangles)};
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    if (number[v] != kUnused) used.vertices[number[v]] = vertices[v];
   }
   return used;
 }

@@ -20,6 +20,6 @@ namespace raycone {
 [[nodiscard]] bool is_beside(const Vec3& p, const NodeSet& nodes);
 
 // A mesh without the vertices that no triangle uses.
-[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles);
 
 }  // namespace raycone

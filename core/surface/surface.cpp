@@ -112,7 +112,8 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0); };
-    std::optional<SurfaceMesh> result = checked_merge(surface, mesh_, inside_, margins.inner, is_right_unmerged);
+    std::optional<SurfaceMesh> result =
+        checked_merge(surface, mesh_, inside_, margins.inner, options_.single_precision, is_right_unmerged);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
@@ -164,7 +165,7 @@ class SurfaceMaker {
     }
     surface.mesh.triangles.resize(left);
     surface.sources.resize(left);
-    surface.mesh = used_part(surface.mesh.vertices, surface.mesh.triangles);
+    surface.mesh = used_part(surface.mesh.vertices, std::move(surface.mesh.triangles));
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.

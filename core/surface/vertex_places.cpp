@@ -2,7 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -33,9 +32,7 @@ class ChainPlace {
   }
 
  private:
-  [[nodiscard]] static std::size_t first_axis(unsigned axes) {
-    return static_cast<std::size_t>(std::countr_zero(axes));
-  }
+  [[nodiscard]] static std::size_t first_axis(unsigned axes) { return (axes & 1U) != 0 ? 0 : (axes & 2U) != 0 ? 1 : 2; }
   [[nodiscard]] bool all_at(const std::array<double, 3>& at, unsigned axes, double where) const {
     for (std::size_t axis = 0; axis < at.size(); ++axis) {
       if ((axes >> axis & 1U) != 0 && !(std::abs(at[axis] - where) <= margin_ / 16)) return false;

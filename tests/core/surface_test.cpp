@@ -26,6 +26,7 @@
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/mesh_corners.h"
 #include "core/surface/patch_merger.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/surface_cells.h"
@@ -794,6 +795,28 @@ TEST(Surface, IsMergedWhereFaultsMoveAlongAnEdge) {
   EXPECT_TRUE(made.merged);
   EXPECT_TRUE(faults_of(made.surface.mesh, nodes).none());
   EXPECT_LT(made.surface.mesh.triangles.size(), 3000U);
+}
+
+// A box across the corners of the lattice: the planes of its sides lead through nodes, its corners are nodes. Points
+// there are kept off them, so that faces between these are not quite in the planes: some nodes on them would be on the
+// wrong side.
+TEST(Surface, HasThePlanesOfTheMeshThroughNodes) {
+  for (const double height : {0.7, 1.4142, 3.0}) {
+    for (const std::int64_t side : {13, 23, 43}) {
+      TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+      for (Vec3& p : box.vertices) p = {1.632993 * (p.x - p.y), 1.632993 * (p.x + p.y - 1), height * p.z};
+      EXPECT_EQ(surface_of(box, side).surface.mesh.triangles.size(), 12U) << height << " at " << side;
+    }
+  }
+}
+
+TEST(MeshCorners, TakeTheNearestVertexEach) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}}, {{0, 1, 2}}};
+  const Lattice lattice{{0, 0, 0}, {0.5, 0.5, 0.5}, {-1, -1, -1}, {5, 5, 5}};
+  std::vector<Vec3> vertices{{0.002, 0, 0}, {-0.001, 0, 0}, {0, 0.001, 0}, {1, 0.004, 0}, {0.004, 0.996, -0.006}};
+  move_to_corners(mesh, lattice, 0.005, vertices);
+  const std::vector<Vec3> expected{{0.002, 0, 0}, {0, 0, 0}, {0, 0.001, 0}, {1, 0, 0}, {0.004, 0.996, -0.006}};
+  EXPECT_EQ(vertices, expected);
 }
 
 TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {

@@ -493,6 +493,8 @@ MUTANTS = [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
         ("core/surface/checked_merge.cpp", " || is_beside(from, misplaced);", ";")]),
+    Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
+        ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "std::signbit(values[2 * i]) != std::signbit(values[2 * i + 1])", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

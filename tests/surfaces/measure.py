@@ -1,4 +1,4 @@
-"""Makes surfaces of meshes, checks them again with `raycone info`, and prints the table of docs/surfaces.md.
+"""Makes surfaces of meshes, checks them again with `raycone info`, and prints the tables of docs/surfaces.md.
 
 usage: python3 tests/surfaces/measure.py RAYCONE MESH-DIRECTORY [--resolution N] [--most-bytes B] [--timeout S]
 
@@ -25,13 +25,23 @@ def meshes_in(directory, most_bytes):
 
 
 def measured(words):
-    """The exit status, standard error, seconds of user time, and the peak of memory in MB."""
+    """The exit status, standard error, seconds of user and system time, and the peak of memory in MB."""
     with tempfile.TemporaryFile("w+") as errors:
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=errors)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         errors.seek(0)
-        return process.returncode, errors.read().strip(), usage.ru_utime, usage.ru_maxrss / 1024
+        return process.returncode, errors.read().strip(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def print_percentiles(rows):
+    print("\n| of %d meshes | median | 90 %% | 95 %% | largest |" % len(rows))
+    print("|---|---|---|---|---|")
+    for name, number_format in (("surface faces", "%.0f"), ("max. distance, voxels", "%.2g"), ("holes, %", "%.2g"),
+                                ("dropped, %", "%.2g"), ("CPU, s", "%.2f"), ("peak, MB", "%.0f")):
+        numbers = sorted(row[name] for row in rows)
+        at = [numbers[int(part * (len(numbers) - 1))] for part in (0.5, 0.9, 0.95, 1)]
+        print("| %s | %s |" % (name, " | ".join(number_format % number for number in at)))
 
 
 def main():
@@ -42,7 +52,7 @@ def main():
     parser.add_argument("--most-bytes", type=int, default=1_000_000)
     parser.add_argument("--timeout", type=int, default=60)
     arguments = parser.parse_args()
-    refused, failed, left_out, slow, made = [], [], 0, 0, 0
+    refused, failed, rows, left_out, slow, made = [], [], [], 0, 0, 0
     print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
           "dropped, % | CPU, s | peak, MB |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -77,10 +87,16 @@ def main():
                                                  check=True).stdout)["surface_area"]
                 surface = run["surface"]
                 voxel = min(run["lattice"]["spacing"])
+                row = {"surface faces": surface["faces"], "parts": surface["components"],
+                       "max. distance, voxels": surface["max_distance"] / voxel,
+                       "holes, %": 100 * surface["hole_area"] / area,
+                       "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds, "peak, MB": memory}
+                rows.append(row)
                 print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f |" % (
-                    os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], surface["faces"],
-                    surface["components"], surface["max_distance"] / voxel, 100 * surface["hole_area"] / area,
-                    100 * surface["dropped_area"] / area, seconds, memory), flush=True)
+                    os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], *row.values()),
+                      flush=True)
+    if rows:
+        print_percentiles(rows)
     print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
           "took too long." % (made, len(refused), len(failed), left_out, slow))
     return 1 if refused or failed else 0

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/exact/predicates.h"
+#include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/merge_planes.h"

@@ -52,7 +52,7 @@ def main():
     parser.add_argument("--most-bytes", type=int, default=1_000_000)
     parser.add_argument("--timeout", type=int, default=60)
     arguments = parser.parse_args()
-    refused, failed, rows, left_out, slow, made = [], [], [], 0, 0, 0
+    refused, failed, limits, rows, left_out, made = [], [], [], [], 0, 0
     print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
           "dropped, % | CPU, s | peak, MB |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -65,7 +65,8 @@ def main():
                     [arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient", "auto",
                      "--resolution", str(arguments.resolution), "--timeout", str(arguments.timeout), "--quiet"])
                 if status == 4:
-                    slow += 1
+                    limits.append((path, ending, errors))
+                    print(*limits[-1], file=sys.stderr, flush=True)
                     break
                 if status == 2:
                     left_out += 1
@@ -98,7 +99,7 @@ def main():
     if rows:
         print_percentiles(rows)
     print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
-          "took too long." % (made, len(refused), len(failed), left_out, slow))
+          "met a limit." % (made, len(refused), len(failed), left_out, len(limits)))
     return 1 if refused or failed else 0
 
 

@@ -177,11 +177,6 @@ void cap_memory(std::uint64_t bytes, double untouched) {
   setrlimit(RLIMIT_DATA, &limit);
 }
 
-std::uint64_t data_limit() {
-  rlimit limit{};
-  return getrlimit(RLIMIT_DATA, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
-}
-
 std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(proc_bytes("/proc/self/status", "VmHWM").value_or(0.0));
 }

@@ -23,9 +23,6 @@ inline constexpr int kMaxThreads = 4096;
 // to stay so; so are `untouched` bytes that are yet to be mapped. Never more than `ulimit -d` allowed at the start.
 void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 
-// Bytes of memory that can be written which this process may map, by `ulimit -d` and cap_memory().
-[[nodiscard]] std::uint64_t data_limit();
-
 // Largest resident size so far, in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
 

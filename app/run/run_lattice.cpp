@@ -29,7 +29,6 @@
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
-#include "io/vdb/preload_vdb_module.h"
 
 namespace raycone {
 namespace {
@@ -221,19 +220,10 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
   });
 }
 
-// Where memory is short, the module loads once it is known what else is in it.
-VdbModulePreload preload_vdb(const LatticeCommand& command, const RunLimits& limits) {
-  constexpr std::uint64_t kPlenty = std::uint64_t{2} << 30;
-  const bool wanted = command.encoding.format == FieldFormat::kVdb && limits.threads() > 1;
-  const bool has_plenty = std::min(limits.memory(), data_limit()) >= kPlenty;
-  return wanted && has_plenty ? VdbModulePreload(limits.threads()) : VdbModulePreload();
-}
-
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
   LatticeCommand command = asked;
-  const VdbModulePreload preload = preload_vdb(command, limits);
   MeshRun run(command.mesh, command.output, command.run, limits);
   const std::unique_ptr<OutputFile> names = open_label_names(command, run.files);
   RunReport& report = run.report;

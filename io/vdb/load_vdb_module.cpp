@@ -3,17 +3,15 @@
 #include <pthread.h>
 #include <sys/mman.h>
 
+#include <array>
 #include <cstddef>
-#include <exception>
 #include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "io/fields/format_writers.h"
 #include "io/files/file_error.h"
-#include "io/vdb/preload_vdb_module.h"
 #include "io/vdb/read_vdb.h"
 #include "io/vdb/vdb_module.h"
 
@@ -41,25 +39,24 @@ void* wait_for(void* gate) {
 
 // The C library keeps the stacks for the next threads. It would keep 64 MB of address space more for each thread that
 // frees memory, as those of std::thread do.
-void require_threads(const std::string& name, std::size_t others) {
-  const std::size_t needed = 6 + others;  // log4cplus starts four, and other processes may start some meanwhile
+void require_threads(const std::string& name) {
+  constexpr std::size_t kNeeded = 6;  // log4cplus starts four, and others may start some meanwhile
   pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-  std::vector<pthread_t> trial(needed);
+  std::array<pthread_t, kNeeded> trial{};
   std::size_t started = 0;
   pthread_mutex_lock(&gate);
-  while (started < needed && pthread_create(&trial[started], nullptr, wait_for, &gate) == 0) ++started;
+  while (started < kNeeded && pthread_create(&trial[started], nullptr, wait_for, &gate) == 0) ++started;
   pthread_mutex_unlock(&gate);
   for (std::size_t i = 0; i < started; ++i) pthread_join(trial[i], nullptr);
-  if (started < needed)
-    throw LimitError(name + ": cannot start the " + std::to_string(needed) + " threads that OpenVDB needs");
+  if (started < kNeeded)
+    throw LimitError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
 }
 
 // Where threads or memory are short, the libraries that OpenVDB brings abort or wait for ever while they are loaded,
 // and the dynamic linker does not tell this from a library that is damaged: refuse before. TBB may still fail to start
 // a thread, in a way that can be caught.
-// `others`: threads that are started while the module loads.
-void require_what_loading_takes(const std::string& name, std::size_t others) {
-  require_threads(name, others);
+void require_what_loading_takes(const std::string& name) {
+  require_threads(name);
   constexpr std::size_t kMegabyte = std::size_t{1} << 20;
   // The libraries take 60 MB of addresses, most of them files; the rest is for what the allocator reserves.
   require_room(160 * kMegabyte, PROT_NONE);
@@ -67,36 +64,18 @@ void require_what_loading_takes(const std::string& name, std::size_t others) {
   require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
 }
 
-// Null where that fails. Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
-void* load_library() { return dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL); }
-
 // `name`: the file that asks for it. Throws std::bad_alloc, LimitError, and Error where the module cannot be loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
-  require_what_loading_takes(name, 0);
-  void* const library = load_library();
+  require_what_loading_takes(name);
+  // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
+  void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
   if (symbol) return *static_cast<const vdb::Module*>(symbol);
   throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
 }
 
 }  // namespace
-
-VdbModulePreload::VdbModulePreload(int others) {
-  const auto load = [others] {
-    try {
-      require_what_loading_takes("", static_cast<std::size_t>(others));
-      static_cast<void>(load_library());
-    } catch (const std::exception&) {
-      // is told where the module is needed
-    }
-  };
-  try {
-    thread_ = std::jthread(load);
-  } catch (const std::system_error&) {
-    // no thread: no hint
-  }
-}
 
 std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {

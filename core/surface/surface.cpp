@@ -83,9 +83,11 @@ class SurfaceMaker {
     is_right_.reset();
     is_sharpened_ = false;
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
-    // Merging keeps sources, so that it changes no area of theirs.
+    // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no area
+    // of theirs.
     settle_sources(mesh_, farthest_source(), surface);
     if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
+    if (is_sharpened_) settle_sources(mesh_, farthest_source(), surface);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins);

@@ -199,7 +199,8 @@ void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
 // The lattice of the surface that solid distances are to: that of `raycone surface`, since faces are merged, and points
 // kept off nodes, as the whole lattice has it.
 Lattice solid_lattice(const LatticeCommand& command, const PlacedLattice& lattice) {
-  return with_layers(world_order(lattice)->lattice, layers_around(command.lattice));
+  const auto layered = [&] { return with_layers(world_order(lattice)->lattice, layers_around(command.lattice)); };
+  return choose_for(command.mesh.path, layered);
 }
 
 // The surface that `raycone surface` would make.

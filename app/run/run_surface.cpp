@@ -30,11 +30,13 @@ std::int64_t layers_of(const SurfaceCommand& command, const Vec3& spacing) {
 
 // With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
 Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
-  const auto* const request = std::get_if<LatticeRequest>(&command.lattice);
-  const auto chosen = [&] { return choose_lattice(bounding_box(mesh), *request, warnings); };
-  const Lattice lattice = request ? choose_for(command.mesh.path, chosen)
-                                  : world_lattice_of_grid(std::get<GridReference>(command.lattice), "surface");
-  return with_layers(lattice, layers_around(command.lattice) + layers_of(command, lattice.spacing));
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  const auto chosen = [&] {
+    return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
+  };
+  const Lattice lattice = grid ? world_lattice_of_grid(*grid, "surface") : choose_for(command.mesh.path, chosen);
+  const std::int64_t layers = layers_around(command.lattice) + layers_of(command, lattice.spacing);
+  return choose_for(grid ? grid->path : command.mesh.path, [&] { return with_layers(lattice, layers); });
 }
 
 }  // namespace

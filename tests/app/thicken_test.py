@@ -100,5 +100,15 @@ class Thicken(CommandCase):
         self.assertEqual(result.returncode, 4)
         self.assertIn("--thicken is more than a million voxels", result.stderr.decode())
 
+    def test_layers_beyond_double_precision_name_the_file(self):
+        with open("huge.obj", "w") as file:
+            file.write("v -8.9e307 0 0\nv 8.9e307 0 0\nv 0 8.9e307 0\nv 0 0 8.9e307\n"
+                       "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        for words in ("surface huge.obj -o a.ply --resolution 8",
+                      "lattice huge.obj -o a.npy --field solid --dtype f64 --resolution 8"):
+            result = run(words)
+            self.assertEqual(result.returncode, 4)
+            self.assertIn("huge.obj: the lattice is too large for double precision", result.stderr.decode())
+
 
 unittest.main()

@@ -35,6 +35,21 @@ double square_of_size(const Box& box) {
   return dot(size, size);
 }
 
+Box widened(const Box& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
+
+// Cuts abc at the middle of its longest side, and the parts, until the diagonals of their boxes are `size` at most, or
+// so often. visit(box, cuts) for each of the parts, all of which have had that many cuts.
+template <class Visit>
+void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& visit, int cuts = 0) {
+  const double ab = square_of_size(box_of(a, b)), bc = square_of_size(box_of(b, c)), ca = square_of_size(box_of(c, a));
+  if (cuts == kMostCuts || !(std::max({ab, bc, ca}) > size * size)) return visit(box_of(a, b, c), cuts);
+  if (bc > ab && bc >= ca) return cut(b, c, a, size, visit, cuts);
+  if (ca > ab) return cut(c, a, b, size, visit, cuts);
+  const Vec3 middle = 0.5 * a + 0.5 * b;
+  cut(a, middle, c, size, visit, cuts + 1);
+  cut(middle, b, c, size, visit, cuts + 1);
+}
+
 }  // namespace
 
 ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_kernel(level)) {
@@ -55,12 +70,11 @@ ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_ker
   }
   if (sources_.empty()) return;
   nodes_.emplace_back();
-  build(0, sources_);
+  build(0, {sources_});
   sources_ = {};
 }
 
 void ChangeBound::add_edges(const std::vector<DirectedEdge>& edges) {
-  const Vec3 error{place_error_, place_error_, place_error_};
   for (const DirectedEdge& e : edges) {
     const Vec3 along = e.to - e.from;
     const double length = std::sqrt(dot(along, along));
@@ -69,8 +83,8 @@ void ChangeBound::add_edges(const std::vector<DirectedEdge>& edges) {
     Vec3 from = e.from;
     for (double i = 1.0; i <= count; ++i) {
       const Vec3 to = i == count ? e.to : e.from + (i / count) * along;
-      const Box box = box_of(from, to);
-      sources_.push_back({{box.lower - error, box.upper + error}, length / count / (4 * std::numbers::pi), 0.0});
+      const double share = 1 / (count * 4 * std::numbers::pi);
+      sources_.push_back({widened(box_of(from, to), place_error_), share * length, 0.0, share * along});
       from = to;
     }
   }
@@ -80,33 +94,30 @@ void ChangeBound::add_narrow(const Caps& caps) {
   for (std::size_t n = 0; n < caps.narrow; ++n) {
     const auto [a, b, c] = corners(caps.mesh, n);
     const Vec3 normal = cross(b - a, c - a);
-    const Box box = box_of(a, b, c);
-    const double twice_area = safe_norm(normal) + kAreaError * square_of_size(box);
-    sources_.push_back({box, 0.0, twice_area / (4 * std::numbers::pi)});
+    const double twice_area = safe_norm(normal) + kAreaError * square_of_size(box_of(a, b, c));
+    cut(a, b, c, piece_, [this, of_cap = twice_area / (4 * std::numbers::pi)](const Box& box, int cuts) {
+      sources_.push_back({widened(box, place_error_), 0.0, std::ldexp(of_cap, -cuts), {}});
+    });
   }
 }
 
 void ChangeBound::add_wide(const Caps& caps) {
   for (std::size_t n = caps.narrow; n < caps.mesh.triangles.size(); ++n) {
-    const std::array<Vec3, 3> cap = corners(caps.mesh, n);
-    cut(cap, cap[0], cap[1], cap[2], kMostCuts);
+    const auto [a, b, c] = corners(caps.mesh, n);
+    cut(a, b, c, 2 * piece_, [&, &a = a, &b = b, &c = c](const Box& box, int) {
+      wide_caps_.push_back(FlatPiece::of_triangle(a, b, c, widened(box, place_error_)));
+    });
   }
 }
 
-// abc, a part of the cap, at the middle of the longest side, until the box of a piece is small; `depth` times at most.
-void ChangeBound::cut(const std::array<Vec3, 3>& cap, const Vec3& a, const Vec3& b, const Vec3& c, int depth) {
-  const double ab = square_of_size(box_of(a, b)), bc = square_of_size(box_of(b, c)), ca = square_of_size(box_of(c, a));
-  if (depth == 0 || !(std::max({ab, bc, ca}) > 4 * piece_ * piece_)) {
-    const Vec3 error{place_error_, place_error_, place_error_};
-    const Box box = box_of(a, b, c);
-    wide_caps_.push_back(FlatPiece::of_triangle(cap[0], cap[1], cap[2], {box.lower - error, box.upper + error}));
-    return;
-  }
-  if (bc > ab && bc >= ca) return cut(cap, b, c, a, depth);
-  if (ca > ab) return cut(cap, c, a, b, depth);
-  const Vec3 middle = 0.5 * a + 0.5 * b;
-  cut(cap, a, middle, c, depth - 1);
-  cut(cap, middle, b, c, depth - 1);
+// Of a cluster that acts as one: moved to the middle of its box, its pieces are one vector. Each moves by half of the
+// diagonal at most, which changes derivatives as an area of that times its length would (docs/method.md).
+ChangeBound::Source ChangeBound::seen_from_afar(const Source& cluster) {
+  Source moved = cluster;
+  moved.length = safe_norm(cluster.along) + kBoundError * cluster.length;
+  moved.area += std::sqrt(square_of_size(cluster.box)) * cluster.length;
+  // At the nearest distance, twice the diagonal, the area adds half of what the length did.
+  return moved.length < cluster.length / 2 ? moved : cluster;
 }
 
 // Into two, so often, along the longest side of what there is.
@@ -125,23 +136,25 @@ void ChangeBound::halve(std::span<Source> sources, int times, std::vector<std::s
   halve(sources.subspan(half), times - 1, parts);
 }
 
-void ChangeBound::build(std::uint32_t node, std::span<Source> sources) {
-  std::vector<std::span<Source>> parts;
-  halve(sources, 3, parts);
+// `parts`, eight at most, are below the node.
+void ChangeBound::build(std::uint32_t node, const std::vector<std::span<Source>>& parts) {
   for (std::size_t n = 0; n < nodes_[node].length.size(); ++n) {
-    Source sum{{{kInfinity, kInfinity, kInfinity}, {kInfinity, kInfinity, kInfinity}}, 0.0, 0.0};
+    Source sum{{{kInfinity, kInfinity, kInfinity}, {kInfinity, kInfinity, kInfinity}}, 0.0, 0.0, {}};
     double far_square = -1.0;
     std::uint32_t child = 0;
     if (n < parts.size()) {
       sum = parts[n].front();
       for (const Source& source : parts[n].subspan(1)) {
-        sum = {hull(sum.box, source.box), sum.length + source.length, sum.area + source.area};
+        sum = {hull(sum.box, source.box), sum.length + source.length, sum.area + source.area, sum.along + source.along};
       }
       if (parts[n].size() > 1) {
         far_square = kFar * square_of_size(sum.box);
+        sum = seen_from_afar(sum);
         child = static_cast<std::uint32_t>(nodes_.size());
         nodes_.emplace_back();
-        build(child, parts[n]);
+        std::vector<std::span<Source>> below;
+        halve(parts[n], 3, below);
+        build(child, below);
       }
     }
     ChangeNode& here = nodes_[node];

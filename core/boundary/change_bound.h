@@ -17,7 +17,8 @@ namespace raycone {
 // its loops do. By the law of Biot and Savart a piece of an edge, of length L, adds at most L / (4 pi d^2) to the
 // length of the gradient at a distance d. A loop with caps of area A adds at most the integral of the gradients of
 // dipoles, 2 A / (4 pi d^3), d being the distance from the caps: less, if it is narrow. Derivatives of order k, along
-// any direction, are at most k! L / (4 pi d^(k+1)) and (k+1)! A / (4 pi d^(k+2)). A tree gathers all. Thread-safe.
+// any direction, are at most k! L / (4 pi d^(k+1)) and (k+1)! A / (4 pi d^(k+2)). A tree gathers all; from afar, pieces
+// that lead there and back cancel but for how far they are apart. Thread-safe.
 class ChangeBound {
  public:
   // Of a mesh in scale: coordinates of at most 1, lest squares overflow.
@@ -38,13 +39,14 @@ class ChangeBound {
   struct Source {
     Box box;
     double length, area;  // L and 2 A, over 4 pi
+    Vec3 along;           // the sum of the pieces from end to end, over 4 pi
   };
   void add_edges(const std::vector<DirectedEdge>& edges);
   void add_narrow(const Caps& caps);
   void add_wide(const Caps& caps);
-  void cut(const std::array<Vec3, 3>& cap, const Vec3& a, const Vec3& b, const Vec3& c, int depth);
+  static Source seen_from_afar(const Source& cluster);
   void halve(std::span<Source> sources, int times, std::vector<std::span<Source>>& parts);
-  void build(std::uint32_t node, std::span<Source> sources);
+  void build(std::uint32_t node, const std::vector<std::span<Source>>& parts);
 
   double piece_ = 0, place_error_ = 0;  // length of pieces, and how far they may be from where they are, at most
   std::vector<Source> sources_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/mesh/weld.h"
 #include "tests/support/direct_winding_number.h"
@@ -53,6 +54,19 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
   for (std::size_t order = 1; order <= kChangeOrders; ++order) {
     EXPECT_GT(tried[order - 1], 50) << "order " << order;
     EXPECT_GT(largest[order - 1], 0.02) << "the bound of order " << order << " is far off";
+  }
+}
+
+// The four edges of length 1 around an opening.
+TEST(ChangeBound, KnowsThatALoopCancelsFromAfar) {
+  const ChangeBound bound(make_caps(Boundary(test::open_box()), 0.0));
+  const double length = 4.0;
+  for (const double distance : {8.0, 64.0, 512.0}) {
+    const Vec3 q{distance, 0.5, 0.5};
+    const double of_edges = length / (4 * std::numbers::pi * distance * distance);
+    const double gradient = bound.gradient_in({q, q}, 1.0);
+    EXPECT_LT(gradient, 4 / distance * of_edges);
+    EXPECT_GT(gradient, 0.25 / distance * of_edges);  // a dipole, not nothing
   }
 }
 

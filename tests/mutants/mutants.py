@@ -359,6 +359,9 @@ MUTANTS = [
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",
          "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), hn::Mul(hn::Set(d, 3.0), square));")]),
+    Mutant("loops_cancel_wholly", "pieces that lead there and back cancel but for how far they are apart", [
+        ("core/boundary/change_bound.cpp", "moved.area += std::sqrt(square_of_size(cluster.box)) * cluster.length;",
+         "moved.area += 0.0;")]),
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
         ("core/boundary/change_kernel.cpp", "hn::IfThenElseZero(taken, hn::Add(of_length, of_area))",
          "hn::IfThenElseZero(taken, hn::Add(of_length, hn::Mul(hn::Zero(d), of_area)))")]),

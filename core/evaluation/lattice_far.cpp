@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "core/evaluation/lattice_tile.h"
 
@@ -99,6 +100,14 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
          mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
 }
 
+bool blocks_take_less(const ScaledMesh& mesh, const LatticeAxes& axes, double part) {
+  double samples = 1.0;
+  for (const std::vector<double>& axis : axes) samples *= static_cast<double>(axis.size());
+  const FarField* const far = mesh.far_field();
+  const double one_by_one = far ? kFarEdge * far->cost() : direct_cost(mesh);
+  return blocks_cost(mesh, axes) * samples + kFit < part * one_by_one * samples;
+}
+
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
   constexpr double kUnit = 2.5e-9;
@@ -122,14 +131,12 @@ namespace {
 // What a block's sums become.
 class BlockValues {
  public:
-  BlockValues(const ScaledMesh& mesh, const LatticeAxes& axes, std::span<double> values)
-      : mesh_(mesh), axes_(axes), values_(values), doubt_(mesh.doubt_of_blocks()) {}
+  BlockValues(const ScaledMesh& mesh, const LatticeAxes& axes)
+      : mesh_(mesh), axes_(axes), doubt_(mesh.doubt_of_blocks()) {}
 
-  // The samples from (x, y, z) on, all with the same crossings, less those of the caps; `first` is the first one's
-  // value.
-  void set(std::size_t first, const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,
-           double cap_crossings) const {
-    const std::span<double> values = values_.subspan(first, sums.size());
+  // Sets the values of samples of a row from `sample` on, all with the same crossings, less those of the caps.
+  void set(const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,
+           double cap_crossings, std::span<double> values) const {
     const double whole = crossings - cap_crossings;
     double least = 1.0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -151,29 +158,29 @@ class BlockValues {
 
   const ScaledMesh& mesh_;
   const LatticeAxes& axes_;
-  std::span<double> values_;
   double doubt_;
 };
 
 }  // namespace
 
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, const RowSink& sink,
                      std::atomic<std::uint64_t>* done) {
   std::array<SampleRange, 3> part;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto begin = static_cast<std::uint32_t>(block.first[a] - lattice.index_min[a]);
     part[a] = {begin, begin + static_cast<std::uint32_t>(block.counts[a])};
   }
-  const BlockValues of_block(mesh, axes, values);
+  const BlockValues of_block(mesh, axes);
   mesh.blocks().sums.for_each_row(
       axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
         const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
-        const std::size_t start = row * part[0].size();  // of the row's values
         const std::size_t in_row = x - part[0].begin;
+        std::vector<double> values(sums.size());
         const auto set = [&](std::size_t begin, std::size_t end, double n, double caps) {
-          of_block.set(start + begin, {part[0].begin + begin, y, z}, sums.subspan(begin - in_row, end - begin), n,
-                       caps);
+          const std::size_t first = begin - in_row, count = end - begin;
+          of_block.set({part[0].begin + begin, y, z}, sums.subspan(first, count), n, caps,
+                       std::span(values).subspan(first, count));
           return true;
         };
         if (mesh.counts_crossings()) {
@@ -185,6 +192,7 @@ void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Latt
         } else {
           set(in_row, in_row + sums.size(), 0.0, 0.0);
         }
+        sink(row * part[0].size() + in_row, values);
         if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
       });
 }

@@ -23,6 +23,10 @@ namespace raycone {
 // samples were declared (Accuracy::samples), not of the part at hand.
 [[nodiscard]] bool takes_far_field_on_lattice(const ScaledMesh& mesh);
 
+// Whether blocks of all samples of the lattice, with the coordinates `axes`, take less time than this part of its
+// samples one by one, where others are known to be on one side of a rule.
+[[nodiscard]] bool blocks_take_less(const ScaledMesh& mesh, const LatticeAxes& axes, double part);
+
 // What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
 // goes about it. Seconds of a machine that docs/benchmarks.md describes. `by_far_field`: whether blocks and far field
 // are looked at, which takes their trees; without, what a direct sum takes.
@@ -33,13 +37,17 @@ struct CrossingsOfRow {
   RowRuns mesh, caps;
 };
 
-// Sets `values` of the samples of `block`, x fastest, to winding numbers within the tolerance. `crossings` is asked for
-// each row, several times and by several threads; never where values do not depend on crossings. It may read
-// `values` of a row only where they have not been set yet. A value that may be a half-integer, where rules have their
+// The winding numbers of samples that follow one another along a row of a block, the first one number `index` of the
+// block's samples, x fastest.
+using RowSink = std::function<void(std::size_t index, std::span<const double> values)>;
+
+// Hands the winding numbers of the samples of `block`, within the tolerance, to `sink`, each once, from several
+// threads. `crossings` is asked for each row, several times and by several threads, before its samples are handed over;
+// never where values do not depend on crossings. A value that may be a half-integer, where rules have their
 // thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs
 // DefaultFloatingPoint.
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, const RowSink& sink,
                      std::atomic<std::uint64_t>* done);
 
 }  // namespace raycone

@@ -84,7 +84,7 @@ MUTANTS = [
     Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
         ("core/evaluation/gradient.cpp", "fits ? sum_in_scale(point)", "true || fits ? sum_in_scale(point)")]),
     Mutant("changes_out_of_scale", "squares of gaps overflow in a mesh that cannot be scaled", [
-        ("core/evaluation/sides.cpp", "mesh.is_in_scale() && ", "")]),
+        ("core/evaluation/sides.cpp", "!mesh.is_in_scale() || ", "")]),
     Mutant("source_areas_vanish", "squares of areas underflow", [
         ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
     Mutant("cap_areas_vanish", "squares of areas underflow", [
@@ -365,6 +365,9 @@ MUTANTS = [
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
         ("core/boundary/change_kernel.cpp", "hn::IfThenElseZero(taken, hn::Add(of_length, of_area))",
          "hn::IfThenElseZero(taken, hn::Add(of_length, hn::Mul(hn::Zero(d), of_area)))")]),
+    Mutant("blocks_set_other_sides", "sides by blocks of a lattice are those of the row's samples", [
+        ("core/evaluation/sides.cpp", "side(row.query(index % rows.xs.size() + i), values[i])",
+         "side(row.query(index % rows.xs.size() + i), values[0])")]),
     Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [
         ("core/boundary/flat_piece.cpp", "> reach + kPlaneError", "> 0.5 * reach + kPlaneError")]),
     Mutant("planes_are_exact", "normals and differences round", [

@@ -32,9 +32,13 @@ CutBlocks::Columns CutBlocks::by_column(std::span<const FlatPiece> pieces) const
     return std::array{(std::max<std::size_t>(first, 1) - 1) / kSides[axis],
                       std::min(last, all.size() - 1) / kSides[axis]};
   };
+  const auto overlaps = [&](std::size_t axis, double lower, double upper) {
+    return lower <= rows_.along(axis).back() && upper >= rows_.along(axis).front();
+  };
   Columns columns(counts_[1] * counts_[2]);
   for (std::uint32_t number = 0; number < pieces.size(); ++number) {
     const Box& box = pieces[number].box();
+    if (!overlaps(1, box.lower.y, box.upper.y) || !overlaps(2, box.lower.z, box.upper.z)) continue;
     const auto [y_first, y_last] = range(1, box.lower.y, box.upper.y);
     const auto [z_first, z_last] = range(2, box.lower.z, box.upper.z);
     for (std::size_t z = z_first; z <= z_last; ++z) {

@@ -12,15 +12,16 @@ namespace raycone {
 
 class VertexFaces {
  public:
-  explicit VertexFaces(const TriangleMesh& mesh) : begin_(mesh.vertices.size() + 1, 0) {
+  explicit VertexFaces(const TriangleMesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
     for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t corner : t) ++begin_[corner + 1];
+      for (const std::uint32_t corner : t) ++begin_[corner + std::size_t{2}];
     }
-    for (std::size_t vertex = 1; vertex < begin_.size(); ++vertex) begin_[vertex] += begin_[vertex - 1];
+    for (std::size_t vertex = 2; vertex < begin_.size(); ++vertex) begin_[vertex] += begin_[vertex - 1];
     faces_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    // One place behind, where the next face goes; at last, where the next vertex begins.
     for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
-      for (const std::uint32_t corner : mesh.triangles[face]) faces_[next[corner]++] = static_cast<std::uint32_t>(face);
+      for (const std::uint32_t corner : mesh.triangles[face])
+        faces_[begin_[corner + std::size_t{1}]++] = static_cast<std::uint32_t>(face);
     }
   }
 

@@ -195,4 +195,19 @@ std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates
   return nearest.point();
 }
 
+CreasesHere::Ends CreasesHere::ends_within(const Vec3& lower, const Vec3& upper, double off) {
+  const Vec3 by{off, off, off};
+  const Box around{lower - by, upper + by}, within{lower + by, upper - by};
+  Ends ends;
+  for (const Crease& crease : all()) {
+    if (!meets(crease, around.lower, around.upper)) continue;
+    for (const Vec3& end : {crease.from, crease.to}) {
+      if (!holds(around, end)) continue;
+      if (!holds(within, end) || (ends.one && *ends.one != end)) return {std::nullopt, true};
+      ends.one = end;
+    }
+  }
+  return ends;
+}
+
 }  // namespace raycone

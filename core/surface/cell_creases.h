@@ -64,6 +64,13 @@ class CreasesHere {
   [[nodiscard]] std::optional<Vec3> nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
                                                        double margin);
 
+  // The point where creases end in a box: none, one, or many. A point nearer than `off` to the border counts as many.
+  struct Ends {
+    std::optional<Vec3> one;
+    bool many = false;
+  };
+  [[nodiscard]] Ends ends_within(const Vec3& lower, const Vec3& upper, double off);
+
  private:
   using Crease = CellCreases::Crease;
   [[nodiscard]] const std::vector<Crease>& all() {

@@ -11,6 +11,8 @@
 #include "core/exact/predicates.h"
 #include "core/intersections/vertex_graph.h"
 #include "core/machine/buckets.h"
+#include "core/machine/first_touch.h"
+#include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 #include "core/mesh/edge_uses.h"
 #include "core/mesh/exterior_edges.h"
@@ -153,7 +155,7 @@ void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const L
   for (const std::uint32_t face : change.faces) {
     if (!is_gone(mesh.triangles[face])) cells.insert(box_of_triangle(mesh, face));
   }
-  std::vector<std::uint8_t> is_near(mesh.triangles.size());
+  auto is_near = sized_on_all_threads<std::uint8_t>(mesh.triangles.size());
   parallel_for(is_near.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (auto face = static_cast<std::uint32_t>(begin); face < end; ++face)
       is_near[face] = !is_gone(mesh.triangles[face]) && cells.meets(box_of_triangle(mesh, face)) ? 1 : 0;
@@ -162,11 +164,11 @@ void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const L
   for (const std::uint32_t face : change.faces) {
     if (is_near[face] != 0) is_near[face] = kChanged;
   }
-  for (std::uint32_t face = 0; face < is_near.size(); ++face) {
-    if (is_near[face] == 0) continue;
-    part.faces.push_back(face);
-    part.changed.push_back(is_near[face] == kChanged ? 1 : 0);
-  }
+  part.faces = numbers_where(is_near.size(), [&](std::uint32_t face) { return is_near[face] != 0; });
+  part.changed.resize(part.faces.size());
+  parallel_for(part.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) part.changed[n] = is_near[part.faces[n]] == kChanged ? 1 : 0;
+  });
 }
 
 // The vertices that some faces have, in increasing order. Sets their places there in `number`.
@@ -179,13 +181,11 @@ std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const std::vect
         std::atomic_ref(used[corner]).store(1, std::memory_order_relaxed);
     }
   });
-  std::vector<std::uint32_t> vertices;
-  number.resize(mesh.vertices.size());
-  for (std::uint32_t v = 0; v < used.size(); ++v) {
-    if (used[v] == 0) continue;
-    number[v] = static_cast<std::uint32_t>(vertices.size());
-    vertices.push_back(v);
-  }
+  std::vector<std::uint32_t> vertices = numbers_where(used.size(), [&](std::uint32_t v) { return used[v] != 0; });
+  resize_on_all_threads(number, mesh.vertices.size());
+  parallel_for(vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) number[vertices[n]] = static_cast<std::uint32_t>(n);
+  });
   return vertices;
 }
 
@@ -195,8 +195,8 @@ MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const La
   add_faces_near(mesh, change, lattice, part);
   std::vector<std::uint32_t> number;
   part.vertices = vertices_of(mesh, part.faces, number);
-  part.mesh.vertices.resize(part.vertices.size());
-  part.mesh.triangles.resize(part.faces.size());
+  resize_on_all_threads(part.mesh.vertices, part.vertices.size());
+  resize_on_all_threads(part.mesh.triangles, part.faces.size());
   parallel_for(part.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) part.mesh.vertices[n] = mesh.vertices[part.vertices[n]];
   });

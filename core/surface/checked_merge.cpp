@@ -21,6 +21,7 @@ namespace {
 
 // Near faults, vertices are kept for these many rounds; then, as the last resort, far around them.
 constexpr int kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
+constexpr double kFirstReach = 0.25;  // voxels; then 1, 2, 4, ...
 
 // The nodes that are at most `reach` from one of `nodes` along an axis, too. Where merging moves an edge of the surface
 // over a node that it leads through, it does so at any other node that the edge leads through.
@@ -86,10 +87,10 @@ class CheckedMerger {
 
   // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
   // as well as that have faults, they are merged where they agree better. None where faults are left even so.
-  std::optional<SurfaceMesh> merge() {
+  std::optional<SurfaceMesh> merge(bool once) {
     constexpr double kWell = 2.5, kBetter = 0.25;
     std::optional<SurfaceMesh> result = merged_within(kWell, false);
-    if (!result && !is_wrong_) result = merged_within(kBetter, true);
+    if (!result && !is_wrong_ && !once) result = merged_within(kBetter, true);
     return result;
   }
 
@@ -121,7 +122,7 @@ class CheckedMerger {
       if ((no_better || round == kRounds) && !is_right()) return std::nullopt;
       faults_before = count;
       if (round < kRounds) {
-        keep_near(merged, faults, misplaced, std::exp2(round));
+        keep_near(merged, faults, misplaced, round == 0 ? kFirstReach : std::exp2(round - 1));
       } else {
         keep_around(merged, faults, misplaced, round - kRounds);
       }
@@ -215,8 +216,9 @@ class CheckedMerger {
 }  // namespace
 
 std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
-                                         double margin, bool single_precision, const std::function<bool()>& is_right) {
-  return CheckedMerger(surface, input, inside, margin, single_precision, is_right).merge();
+                                         double margin, bool single_precision, const std::function<bool()>& is_right,
+                                         bool once) {
+  return CheckedMerger(surface, input, inside, margin, single_precision, is_right).merge(once);
 }
 
 }  // namespace raycone

@@ -18,6 +18,6 @@ namespace raycone {
 // number of threads.
 [[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
                                                        const NodeSet& inside, double margin, bool single_precision,
-                                                       const std::function<bool()>& is_right);
+                                                       const std::function<bool()>& is_right, bool once = false);
 
 }  // namespace raycone

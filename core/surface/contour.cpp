@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
+#include "core/surface/cell_polygons.h"
 #include "core/surface/planes_point.h"
 
 namespace raycone {
@@ -33,25 +37,59 @@ struct ContourPart {
   std::vector<std::int32_t> sources;
   std::vector<Vec3> apexes;
   std::vector<std::uint64_t> tetrahedra;  // of them
+  std::vector<std::uint32_t> polygon_corners;
+  struct Polygon {
+    std::int32_t source;
+    std::uint32_t size;
+  };
+  std::vector<Polygon> polygons;
+  std::uint64_t full_triangles = 0;  // that would be in their place
 };
 constexpr std::uint32_t kFirstApex = 0x80000000;
+
+// The points that no triangle has.
+struct SparePoints {
+  // Of edges that are diagonals of cells' faces: the polygons of either cell, and whether both can do without.
+  static constexpr unsigned kAbove = 1, kBelow = 2, kInline = 4, kWithinCell = 8;
+
+  std::vector<std::uint8_t> edges, faces;
+
+  // On any thread.
+  void mark_edge(std::uint32_t edge, unsigned bits) {
+    std::atomic_ref(edges[edge]).fetch_or(static_cast<std::uint8_t>(bits), std::memory_order_relaxed);
+  }
+  [[nodiscard]] static bool is_spare(std::uint8_t edge) {
+    return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;
+  }
+};
+
+double least_spacing(const Lattice& lattice) {
+  return std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
+}
 
 class CellContour {
  public:
   CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-              const CellCreases& creases, double tolerance, double margin, ContourPart& part)
+              const CellCreases& creases, double tolerance, double margin, ContourPart& part, SparePoints* spare)
       : cells_(cells),
         edge_points_(edge_points),
         face_points_(face_points),
         creases_(creases),
+        corner_cells_(cells),
+        polygons_(cells, edge_points, face_points, creases_, corner_cells_, margin * least_spacing(cells.lattice())),
+        spare_(spare),
         tolerance_(tolerance),
         margin_(margin),
         part_(part) {}
 
   void add(std::uint32_t cell) {
     cell_ = cell;
-    corner_cells_.fill(kUnknown);
+    corner_cells_.enter(cell);
     creases_.enter(cell);
+    if (spare_ && polygons_.find(cell)) {
+      add_polygons();
+      return;
+    }
     for (std::size_t n = 0; n < kuhn::kTetrahedra.size(); ++n) {
       const Loop loop = loop_of(kuhn::kTetrahedra[n]);
       if (loop.size > 0) fill(loop, n);
@@ -59,7 +97,6 @@ class CellContour {
   }
 
  private:
-  static constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
   using Corners = std::array<Vec3, 4>;
   struct Apex {
     Vec3 position;
@@ -67,10 +104,7 @@ class CellContour {
   };
 
   [[nodiscard]] bool is_inside(unsigned corner) const { return cells_.cells()[cell_].is_inside(corner); }
-  [[nodiscard]] std::uint32_t cell_of(unsigned corner) {
-    if (corner_cells_[corner] == kUnknown) corner_cells_[corner] = cells_.cell_at(cell_, corner);
-    return corner_cells_[corner];
-  }
+  [[nodiscard]] std::uint32_t cell_of(unsigned corner) { return corner_cells_.of(corner); }
   void add_edge(Loop& loop, unsigned a, unsigned b) {
     const unsigned low = std::min(a, b), high = std::max(a, b);
     const std::uint32_t edge = cells_.cells()[cell_of(low)].edge(high ^ low);
@@ -86,6 +120,8 @@ class CellContour {
     loop.has_face_point = true;
   }
 
+  void add_polygons();
+  [[nodiscard]] std::uint64_t triangles_of_tetrahedra();
   [[nodiscard]] Loop loop_of(const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
     return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
@@ -104,11 +140,55 @@ class CellContour {
   std::span<const EdgePoint> edge_points_;
   const FacePoints& face_points_;
   CreasesHere creases_;
+  CornerCells corner_cells_;
+  CellPolygons polygons_;
+  SparePoints* spare_;
   double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
-  std::array<std::uint32_t, kuhn::kCorners> corner_cells_{};
 };
+
+void CellContour::add_polygons() {
+  const SurfaceCell& cell = cells_.cells()[cell_];
+  if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1))
+    spare_->mark_edge(cell.edge(kuhn::kCorners - 1), SparePoints::kWithinCell);
+  for (const DiagonalPoint& point : polygons_.diagonals()) {
+    const unsigned side = point.is_above ? SparePoints::kAbove : SparePoints::kBelow;
+    spare_->mark_edge(point.edge, side | (point.is_inline ? SparePoints::kInline : 0U));
+  }
+  for (const std::uint32_t face : polygons_.spare_points()) spare_->faces[face] = 1;
+  std::uint32_t apex = 0;
+  for (const PlanePolygon& polygon : polygons_.polygons()) {
+    part_.polygons.push_back({polygon.source, static_cast<std::uint32_t>(polygon.size)});
+    for (std::size_t n = 0; n < polygon.size; ++n) {
+      std::uint32_t corner = polygon.corners[n];
+      if (corner == CellPolygons::kApex) {
+        if (apex == 0) {
+          apex = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
+          part_.apexes.push_back(polygons_.apex());
+          part_.tetrahedra.push_back(kWholeCell | cell_);
+        }
+        corner = apex;
+      }
+      part_.polygon_corners.push_back(corner);
+    }
+  }
+  part_.full_triangles += triangles_of_tetrahedra();
+}
+
+std::uint64_t CellContour::triangles_of_tetrahedra() {
+  std::uint64_t count = 0;
+  for (const kuhn::Tetrahedron& tetrahedron : kuhn::kTetrahedra) {
+    if (polygons_.has_face_points()) {
+      const Loop loop = loop_of(tetrahedron);
+      if (loop.size > 0) count += loop.has_face_point ? loop.size : loop.size - 2;
+      continue;
+    }
+    const auto inside = std::ranges::count_if(tetrahedron.corners, [&](unsigned c) { return is_inside(c); });
+    count += inside == 2 ? 2 : inside % 2;
+  }
+  return count;
+}
 
 // Corners are reordered by transpositions, each of which turns the loop around.
 Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
@@ -248,6 +328,49 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   return {corners[0] + (meets ? *meeting : within.moved_within(target, margin_)), on_mesh};
 }
 
+// Cuts the polygons of a part into triangles, without the points that are spare.
+class FanCutter {
+ public:
+  FanCutter(std::span<const EdgePoint> edge_points, std::span<const Vec3> face_points,
+            const std::vector<std::uint8_t>& spare_edges)
+      : edge_points_(edge_points), face_points_(face_points), spare_edges_(spare_edges) {}
+
+  void cut(ContourPart& part) {
+    std::size_t first = 0;
+    for (const ContourPart::Polygon& polygon : part.polygons) {
+      corners_.clear();
+      positions_.clear();
+      for (std::size_t n = first; n < first + polygon.size; ++n) {
+        const std::uint32_t corner = part.polygon_corners[n];
+        if (corner < edge_points_.size() && SparePoints::is_spare(spare_edges_[corner])) continue;
+        corners_.push_back(corner);
+        positions_.push_back(position(part, corner));
+      }
+      first += polygon.size;
+      const std::size_t from = corners_.size() == 3 ? 0 : best_fan(positions_), size = corners_.size();
+      for (std::size_t n = 1; n + 1 < size; ++n) {
+        part.triangles.push_back({corners_[from], corners_[(from + n) % size], corners_[(from + n + 1) % size]});
+        part.sources.push_back(polygon.source);
+      }
+    }
+    part.polygons = {};
+    part.polygon_corners = {};
+  }
+
+ private:
+  [[nodiscard]] const Vec3& position(const ContourPart& part, std::uint32_t corner) const {
+    if (corner >= kFirstApex) return part.apexes[corner - kFirstApex];
+    if (corner >= edge_points_.size()) return face_points_[corner - edge_points_.size()];
+    return edge_points_[corner].position;
+  }
+
+  std::span<const EdgePoint> edge_points_;
+  std::span<const Vec3> face_points_;
+  const std::vector<std::uint8_t>& spare_edges_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<Vec3> positions_;
+};
+
 // Where what a part has goes in the whole.
 struct PartPlace {
   std::size_t triangles = 0, apexes = 0;
@@ -292,12 +415,12 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
       for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
     });
   };
-  mesh.triangles.resize(end.triangles);
+  resize_on_all_threads(mesh.triangles, end.triangles);
   for_each_part(
       [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, first_apex, mesh.triangles); });
-  sources.resize(end.triangles);
+  resize_on_all_threads(sources, end.triangles);
   for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
-  mesh.vertices.resize(all_vertices);
+  resize_on_all_threads(mesh.vertices, all_vertices);
   parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t last) {
     for (std::size_t n = begin; n < last; ++n) mesh.vertices[n] = edge_points[n].position;
   });
@@ -314,19 +437,42 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
 
 ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
                          const FacePoints& face_points, const CellCreases& creases, double tolerance,
-                         const SurfaceMargins& margins) {
+                         const SurfaceMargins& margins, ContourCells kind) {
   const std::size_t count = cells.cells().size();
   constexpr std::size_t kCellsPerPart = 512;
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
+  SparePoints spare;
+  if (kind == ContourCells::kPolygons) {
+    spare.edges.resize(edge_points.size());
+    spare.faces.resize(face_points.positions().size());
+  }
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {
-      CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part]);
+      CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part],
+                          kind == ContourCells::kPolygons ? &spare : nullptr);
       for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
         contour.add(static_cast<std::uint32_t>(cell));
       }
     }
   });
-  return joined(parts, edge_points, face_points.positions());
+  if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions());
+  std::uint64_t full = 0, cut = 0;
+  for (const ContourPart& part : parts) {
+    full += part.full_triangles;
+    cut -= part.triangles.size();
+  }
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    FanCutter cutter(edge_points, face_points.positions(), spare.edges);
+    for (std::size_t part = begin; part < end; ++part) cutter.cut(parts[part]);
+  });
+  for (const ContourPart& part : parts) cut += part.triangles.size();
+  ContouredSurface contoured = joined(parts, edge_points, face_points.positions());
+  contoured.fewer = full - std::min(full, cut);
+  contoured.spare.resize(contoured.surface.mesh.vertices.size());
+  for (std::size_t n = 0; n < spare.edges.size(); ++n)
+    contoured.spare[n] = SparePoints::is_spare(spare.edges[n]) ? 1 : 0;
+  std::ranges::copy(spare.faces, contoured.spare.begin() + static_cast<std::ptrdiff_t>(spare.edges.size()));
+  return contoured;
 }
 
 }  // namespace raycone

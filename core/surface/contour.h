@@ -20,7 +20,17 @@ struct SurfaceMesh {
 struct ContouredSurface {
   SurfaceMesh surface;
   std::vector<std::uint64_t> tetrahedra;  // of each apex: 6 * cell + the place in kuhn::kTetrahedra
+  std::vector<std::uint8_t> spare;        // of each vertex: whether no triangle has it; empty where each is of one
+  std::uint64_t fewer = 0;                // triangles in planes than there would be without polygons
 };
+
+enum class ContourCells : std::uint8_t {
+  kTetrahedra,  // all of them are cut into tetrahedra
+  kPolygons,    // not those that CellPolygons finds polygons in
+};
+
+// In the place of a tetrahedron: any in the cell.
+inline constexpr std::uint64_t kWholeCell = std::uint64_t{1} << 63;
 
 // In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.
 // Without face points the loop is filled by one or two triangles, else by a cone from a point within the tetrahedron:
@@ -31,6 +41,6 @@ struct ContouredSurface {
 // shared vertices and edges.
 [[nodiscard]] ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
                                        const FacePoints& face_points, const CellCreases& creases, double tolerance,
-                                       const SurfaceMargins& margins);
+                                       const SurfaceMargins& margins, ContourCells kind = ContourCells::kTetrahedra);
 
 }  // namespace raycone

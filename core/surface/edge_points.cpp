@@ -7,6 +7,7 @@
 #include <mutex>
 #include <span>
 
+#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_roots.h"
@@ -29,7 +30,12 @@ class EdgePointFinder {
  public:
   EdgePointFinder(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells,
                   const CellTriangles& triangles, double margin)
-      : mesh_(mesh), rule_(rule), cells_(cells), triangles_(triangles), margin_(margin), points_(cells.edges()) {}
+      : mesh_(mesh),
+        rule_(rule),
+        cells_(cells),
+        triangles_(triangles),
+        margin_(margin),
+        points_(sized_on_all_threads<EdgePoint>(cells.edges())) {}
 
   std::vector<EdgePoint> find() {
     find_hits();

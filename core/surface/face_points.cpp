@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -135,15 +136,23 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
       }
     }
   });
-  std::vector<std::uint64_t> faces;
-  std::vector<Vec3> positions;
-  for (std::vector<FacePoint>& part : parts) {
-    for (const FacePoint& point : part) {
-      faces.push_back(point.face);
-      positions.push_back(point.position);
-    }
-    part = {};
+  std::vector<std::size_t> places;
+  std::size_t count = 0;
+  for (const std::vector<FacePoint>& part : parts) {
+    places.push_back(count);
+    count += part.size();
   }
+  auto faces = sized_on_all_threads<std::uint64_t>(count);
+  auto positions = sized_on_all_threads<Vec3>(count);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      for (std::size_t i = 0; i < parts[n].size(); ++i) {
+        faces[places[n] + i] = parts[n][i].face;
+        positions[places[n] + i] = parts[n][i].position;
+      }
+      parts[n] = {};
+    }
+  });
   *this = FacePoints(std::move(faces), std::move(positions));
 }
 
@@ -151,16 +160,19 @@ FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> posit
     : faces_(std::move(faces)), positions_(std::move(positions)) {
   const std::size_t cells = faces_.empty() ? 0 : faces_.back() / 16 + 1;
   first_of_cell_.resize(cells + 1, 0);
-  for (const std::uint64_t face : faces_) ++first_of_cell_[face / 16 + 1];
+  faces_of_cell_.resize(cells, 0);
+  for (const std::uint64_t face : faces_) {
+    ++first_of_cell_[face / 16 + 1];
+    faces_of_cell_[face / 16] = static_cast<std::uint16_t>(faces_of_cell_[face / 16] | 1U << face % 16);
+  }
   for (std::size_t cell = 0; cell < cells; ++cell) first_of_cell_[cell + 1] += first_of_cell_[cell];
 }
 
 std::optional<std::uint32_t> FacePoints::find(std::uint32_t cell, std::size_t face) const {
-  if (cell + std::size_t{1} >= first_of_cell_.size()) return std::nullopt;
-  for (std::uint32_t n = first_of_cell_[cell]; n < first_of_cell_[cell + std::size_t{1}]; ++n) {
-    if (faces_[n] % 16 == face) return n;
-  }
-  return std::nullopt;
+  if (cell >= faces_of_cell_.size() || (faces_of_cell_[cell] >> face & 1U) == 0) return std::nullopt;
+  std::uint32_t n = first_of_cell_[cell];
+  while (faces_[n] % 16 != face) ++n;
+  return n;
 }
 
 FacePoints FacePoints::without(const std::vector<bool>& dropped) const {

@@ -42,6 +42,7 @@ class FacePoints {
   std::vector<std::uint64_t> faces_;  // 16 * cell + face, increasing
   std::vector<Vec3> positions_;
   std::vector<std::uint32_t> first_of_cell_;  // up to the last cell that has any; one more at the end
+  std::vector<std::uint16_t> faces_of_cell_;  // likewise, a bit for each
 };
 
 }  // namespace raycone

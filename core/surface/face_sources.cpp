@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 #include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
@@ -62,11 +63,7 @@ std::vector<std::uint32_t> doubtful_faces(const TriangleMesh& input, double off,
       doubtful[face] = may_be_of(corners_of(surface.mesh, face), point, normals.of(source), off) ? 0 : 1;
     }
   });
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t face = 0; face < doubtful.size(); ++face) {
-    if (doubtful[face] != 0) faces.push_back(face);
-  }
-  return faces;
+  return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
 }
 
 // Faces beside one that closes a hole, and in line with it, close it too, if they are on no triangle: at a rim all of

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 #include "core/surface/surface_edit.h"
 
@@ -17,13 +18,6 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF, kUnmet = 0xFFFFFFFE;
 constexpr std::size_t kFacesPerTask = 4096;
-
-// The numbers of faces by brick, and of each vertex the brick that has all of its faces.
-struct Bricks {
-  std::vector<std::uint32_t> faces;
-  std::vector<std::size_t> begin;    // of each brick's in `faces`; one more at the end
-  std::vector<std::uint32_t> owner;  // kNone where several bricks have faces there; kUnmet where none has
-};
 
 // Sorts many numbers digit by digit, the lowest first, which is sooner than by comparisons; few by comparisons.
 void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t>& spare) {
@@ -45,6 +39,13 @@ void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t
 
 }  // namespace
 
+// The numbers of faces by brick, and of each vertex the brick that has all of its faces.
+struct PlaneMerger::Bricks {
+  std::vector<std::uint32_t> faces;
+  std::vector<std::size_t> begin;    // of each brick's in `faces`; one more at the end
+  std::vector<std::uint32_t> owner;  // kNone where several bricks have faces there; kUnmet where none has
+};
+
 // What faces and vertices are so far.
 struct PlaneMerger::Work {
   std::vector<Triangle>& triangles;  // those that are gone have three equal corners
@@ -59,14 +60,38 @@ class BrickMerger {
               const std::vector<bool>& kept, const MergeLimits& limits, PlaneMerger::Work work)
       : vertices_(vertices), input_(input), lattice_(lattice), kept_(kept), limits_(limits), work_(work) {}
 
-  void merge_bricks(double shift) { merge_all(bricks(shift)); }
+  using Bricks = PlaneMerger::Bricks;
+
+  // A face is in the brick of its first corner. Bricks are in the order of their first faces.
+  [[nodiscard]] Bricks bricks(double shift) const {
+    auto brick_of = sized_on_all_threads<std::uint32_t>(work_.triangles.size());
+    parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t face = begin; face < end; ++face) {
+        brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift);
+      }
+    });
+    std::vector<std::uint32_t> numbers(static_cast<std::size_t>(bricks_along(0) * bricks_along(1) * bricks_along(2)),
+                                       kNone);
+    std::uint32_t count = 0;
+    for (std::uint32_t& brick : brick_of) {
+      std::uint32_t& number = numbers[brick];
+      if (number == kNone) number = count++;
+      brick = number;
+    }
+    return sorted(brick_of, count);
+  }
+
+  void merge_all(const Bricks& bricks) {
+    local_.assign(vertices_.size(), kNone);
+    parallel_for(bricks.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+      for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
+    });
+  }
   void merge_whole() { merge_all(sorted(std::vector<std::uint32_t>(work_.triangles.size(), 0), 1)); }
 
-  // Those bricks alone that have a vertex of `changed`, from `first` on, as merge_bricks() would: a vertex that is kept
-  // or is no longer so matters to the one brick that has all of its faces.
-  void merge_bricks_again(const std::vector<std::uint32_t>& changed, const std::vector<Triangle>& first) {
-    std::vector<Triangle> merged = std::exchange(work_.triangles, first);  // bricks are those of then
-    const Bricks all = bricks(0.0);
+  // Those bricks alone that have a vertex of `changed`, from `first` on, as merge_all() would: a vertex that is kept or
+  // is no longer so matters to the one brick that has all of its faces.
+  void merge_again(const Bricks& all, const std::vector<std::uint32_t>& changed, const std::vector<Triangle>& first) {
     std::vector<std::uint8_t> again(all.begin.size() - 1, 0);
     for (const std::uint32_t v : changed) {
       if (all.owner[v] < again.size()) again[all.owner[v]] = 1;
@@ -78,9 +103,8 @@ class BrickMerger {
     }
     for (std::size_t brick = 0; brick < again.size(); ++brick) {
       for (std::size_t n = all.begin[brick]; n < all.begin[brick + 1] && again[brick] != 0; ++n)
-        merged[all.faces[n]] = first[all.faces[n]];
+        work_.triangles[all.faces[n]] = first[all.faces[n]];
     }
-    work_.triangles = std::move(merged);
     local_.assign(vertices_.size(), kNone);
     parallel_for(again.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) {
@@ -109,25 +133,6 @@ class BrickMerger {
     return static_cast<std::uint32_t>(place);
   }
 
-  // A face is in the brick of its first corner. Bricks are in the order of their first faces.
-  [[nodiscard]] Bricks bricks(double shift) const {
-    std::vector<std::uint32_t> brick_of(work_.triangles.size());
-    parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t face = begin; face < end; ++face) {
-        brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift);
-      }
-    });
-    std::vector<std::uint32_t> numbers(static_cast<std::size_t>(bricks_along(0) * bricks_along(1) * bricks_along(2)),
-                                       kNone);
-    std::uint32_t count = 0;
-    for (std::uint32_t& brick : brick_of) {
-      std::uint32_t& number = numbers[brick];
-      if (number == kNone) number = count++;
-      brick = number;
-    }
-    return sorted(brick_of, count);
-  }
-
   [[nodiscard]] Bricks sorted(const std::vector<std::uint32_t>& brick_of, std::size_t count) const {
     Bricks result{std::vector<std::uint32_t>(brick_of.size()), std::vector<std::size_t>(count + 1, 0),
                   std::vector<std::uint32_t>(vertices_.size(), kUnmet)};
@@ -151,13 +156,6 @@ class BrickMerger {
           if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);
         }
       }
-    });
-  }
-
-  void merge_all(const Bricks& bricks) {
-    local_.assign(vertices_.size(), kNone);
-    parallel_for(bricks.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
-      for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
     });
   }
 
@@ -271,7 +269,7 @@ MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
   BrickMerger merger(surface_.mesh.vertices, input_, lattice_, kept, limits_,
                      {merged.triangles, merged.sources, merged.into, settled});
   constexpr double kHalf = 0.5;
-  merger.merge_bricks(kHalf);
+  merger.merge_all(merger.bricks(kHalf));
   drop_gone(merged);
   merger.merge_whole();
   drop_gone(merged);
@@ -289,13 +287,14 @@ void PlaneMerger::merge_first_bricks(const std::vector<bool>& kept) {
     settled_.assign(vertices.size(), 0);
     into_.resize(vertices.size());
     std::iota(into_.begin(), into_.end(), 0U);
-    merger.merge_bricks(0.0);
+    bricks_ = std::make_shared<const Bricks>(merger.bricks(0.0));
+    merger.merge_all(*bricks_);
   } else {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t v = 0; v < kept.size(); ++v) {
       if (kept[v] != kept_[v]) changed.push_back(v);
     }
-    merger.merge_bricks_again(changed, surface_.mesh.triangles);
+    merger.merge_again(*bricks_, changed, surface_.mesh.triangles);
   }
   kept_ = kept;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/data/lattice.h"
@@ -34,6 +35,7 @@ class PlaneMerger {
  private:
   friend class BrickMerger;
   struct Work;
+  struct Bricks;
   void merge_first_bricks(const std::vector<bool>& kept);
 
   const SurfaceMesh& surface_;
@@ -41,6 +43,7 @@ class PlaneMerger {
   const Lattice& lattice_;
   MergeLimits limits_;
   // Of the last call, when each brick was merged by itself; nothing before the first one.
+  std::shared_ptr<const Bricks> bricks_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> into_;
   std::vector<std::uint8_t> settled_;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/machine/first_touch.h"
+#include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
@@ -16,7 +18,7 @@ namespace raycone {
 
 Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits)
     : vertices_(surface.mesh.vertices), input_(input), limits_(limits) {
-  std::vector<Placed> of_all(surface.mesh.triangles.size());
+  auto of_all = sized_on_all_threads<Placed>(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
     TriangleNormals normals(input_);
     for (std::size_t face = begin; face < end; ++face)
@@ -44,17 +46,22 @@ Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, Tria
 void Sharpener::find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all) {
   const std::vector<Triangle>& triangles = surface.mesh.triangles;
   place_.assign(vertices_.size(), kNoPlace);
-  for (std::size_t face = 0; face < of_all.size(); ++face) {
-    if (of_all[face] == Placed::kAcross) add_to_strips(triangles[face]);
-  }
+  const auto is_across = [&](std::uint32_t face) { return of_all[face] == Placed::kAcross; };
+  for (const std::uint32_t face : numbers_where(of_all.size(), is_across)) add_to_strips(triangles[face]);
   extend_strips(triangles, of_all);
-  std::vector<std::uint32_t> part = find_parts(triangles);
+  const auto is_at_strip = [&](std::uint32_t face) {
+    return std::ranges::any_of(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; });
+  };
+  std::vector<std::uint32_t> at_strips = numbers_where(of_all.size(), is_at_strip);
+  std::vector<std::uint32_t> part = find_parts(triangles, at_strips);
   // Whether it is planes that the mesh is made of. Of CAD parts 75 to 99 per cent of the faces are in one, of scans
   // less than 70; there, strips are looked at one by one.
-  if (4 * std::ranges::count(of_all, Placed::kInPlane) < 3 * std::ssize(of_all)) drop_parts(triangles, of_all, part);
+  const auto in_planes = static_cast<std::uint64_t>(std::ranges::count(of_all, Placed::kInPlane));
+  if (4 * (in_planes + limits_.fewer) < 3 * (of_all.size() + limits_.fewer))
+    drop_parts(triangles, of_all, at_strips, part);
   if (strip_vertices_.empty()) return;
-  number_vertices(part, triangles, of_all, surface.mesh.vertices);
-  add_faces(surface, of_all);
+  number_vertices(part, triangles, of_all, at_strips, surface.mesh.vertices);
+  add_faces(surface, of_all, at_strips);
   for (const std::uint32_t vertex : strip_vertices_) {
     first_.into.push_back(place_[vertex]);
     first_.places.push_back(vertices_[vertex]);
@@ -74,10 +81,8 @@ void Sharpener::add_to_strips(const Triangle& t) {
 // such ones; gaps do not reach far there.
 void Sharpener::extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all) {
   constexpr int kRings = 4;
-  std::vector<std::uint32_t> off;
-  for (std::uint32_t face = 0; face < of_all.size(); ++face) {
-    if (of_all[face] == Placed::kOff) off.push_back(face);
-  }
+  std::vector<std::uint32_t> off =
+      numbers_where(of_all.size(), [&](std::uint32_t face) { return of_all[face] == Placed::kOff; });
   for (int ring = 0; ring < kRings; ++ring) {
     const auto is_beside = [&](std::uint32_t face) {
       return std::ranges::count_if(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; }) >= 2;
@@ -89,16 +94,17 @@ void Sharpener::extend_strips(const std::vector<Triangle>& triangles, const std:
 }
 
 // Vertices with a face in common are of one part. Returns the part of each vertex of strips.
-std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& triangles) {
+std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& triangles,
+                                                 const std::vector<std::uint32_t>& at_strips) {
   std::vector<std::uint32_t> root(strip_vertices_.size());
   std::iota(root.begin(), root.end(), 0U);
   const auto root_of = [&](std::uint32_t v) {
     while (root[v] != v) v = root[v] = root[root[v]];
     return v;
   };
-  for (const Triangle& t : triangles) {
+  for (const std::uint32_t face : at_strips) {
     std::uint32_t known = kNoPlace;
-    for (const std::uint32_t corner : t) {
+    for (const std::uint32_t corner : triangles[face]) {
       if (place_[corner] == kNoPlace) continue;
       const std::uint32_t here = root_of(place_[corner]);
       if (known != kNoPlace) root[std::max(known, here)] = std::min(known, here);
@@ -120,11 +126,10 @@ std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& tr
 
 // Those where more than one of three faces is in no plane: much of what is pulled there would not pass the check.
 void Sharpener::drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
-                           std::vector<std::uint32_t>& part) {
+                           std::vector<std::uint32_t>& at_strips, std::vector<std::uint32_t>& part) {
   std::vector<std::int64_t> surplus(parts_.size(), 0);  // of faces in planes, which count half as much as others
-  for (std::size_t face = 0; face < of_all.size(); ++face) {
+  for (const std::uint32_t face : at_strips) {
     const auto corner = std::ranges::find_if(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; });
-    if (corner == triangles[face].end()) continue;
     surplus[part[place_[*corner]]] += of_all[face] == Placed::kInPlane ? 1 : -2;
   }
   std::vector<std::uint32_t> number(parts_.size(), kNoPlace);
@@ -143,13 +148,17 @@ void Sharpener::drop_parts(const std::vector<Triangle>& triangles, const std::ve
     strip_vertices_.push_back(vertices[v]);
     part.push_back(number[before[v]]);
   }
+  std::erase_if(at_strips, [&](std::uint32_t face) {
+    return std::ranges::all_of(triangles[face], [&](std::uint32_t v) { return place_[v] == kNoPlace; });
+  });
 }
 
 // Vertices are numbered anew, part by part, with spare ones behind those of each. Most gaps have two faces and more,
 // and one corner of the mesh at most.
 void Sharpener::number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
-                                const std::vector<Placed>& of_all, std::vector<Vec3>& vertices) {
-  for (std::size_t face = 0; face < of_all.size(); ++face) {
+                                const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips,
+                                std::vector<Vec3>& vertices) {
+  for (const std::uint32_t face : at_strips) {
     const std::uint32_t first = place_[triangles[face][0]];
     if (of_all[face] == Placed::kAcross && first != kNoPlace) ++parts_[part[first]].spares;
   }
@@ -189,14 +198,9 @@ std::uint32_t Sharpener::part_of_face(const Triangle& t) const {
   return kNoPlace;
 }
 
-void Sharpener::add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all) {
-  std::vector<std::uint32_t> at_strips;
-  for (std::uint32_t face = 0; face < of_all.size(); ++face) {
-    const std::uint32_t part = part_of_face(surface.mesh.triangles[face]);
-    if (part == kNoPlace) continue;
-    at_strips.push_back(face);
-    ++parts_[part].faces;
-  }
+void Sharpener::add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all,
+                          const std::vector<std::uint32_t>& at_strips) {
+  for (const std::uint32_t face : at_strips) ++parts_[part_of_face(surface.mesh.triangles[face])].faces;
   std::vector<std::uint32_t> next;
   std::uint32_t count = 0;
   for (Part& each : parts_) {
@@ -281,6 +285,12 @@ bool Sharpener::has_changed(const Part& part, const State& before) const {
     if (before.triangles[face] != now_.triangles[face]) return true;
   }
   return false;
+}
+
+SurfaceEdit Sharpener::changes() const {
+  std::vector<std::uint32_t> all(parts_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return changes_of(all, first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
 }
 
 SurfaceEdit Sharpener::undo() {

@@ -19,6 +19,7 @@ struct SharpenLimits {
   double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
   double reach = 0.0;  // how far a vertex is pulled at most, likewise
   bool single_precision = false;  // vertices are rounded to float
+  std::uint64_t fewer = 0;        // faces in planes than there would be without polygons
 };
 
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
@@ -42,6 +43,8 @@ class Sharpener {
   // not turn over. Numbers of other vertices are ignored. The edit has the faces at `vertices` in any case, so that
   // faults there are looked for again. Takes time in proportion to these strips.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
+  // All that has changed since the surface was as at first.
+  [[nodiscard]] SurfaceEdit changes() const;
   // Back to the surface as it was at first.
   SurfaceEdit undo();
 
@@ -83,12 +86,14 @@ class Sharpener {
   void find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all);
   void add_to_strips(const Triangle& t);
   void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);
-  std::vector<std::uint32_t> find_parts(const std::vector<Triangle>& triangles);
+  std::vector<std::uint32_t> find_parts(const std::vector<Triangle>& triangles,
+                                        const std::vector<std::uint32_t>& at_strips);
   void drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
-                  std::vector<std::uint32_t>& part);
+                  std::vector<std::uint32_t>& at_strips, std::vector<std::uint32_t>& part);
   void number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
-                       const std::vector<Placed>& of_all, std::vector<Vec3>& vertices);
-  void add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all);
+                       const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips,
+                       std::vector<Vec3>& vertices);
+  void add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
   [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
   [[nodiscard]] SurfaceEdit pull_parts(const std::vector<std::uint32_t>& parts);
   void pull(const std::vector<std::uint32_t>& parts);

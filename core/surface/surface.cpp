@@ -11,6 +11,7 @@
 #include "core/distance/distance.h"
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
+#include "core/machine/threads.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/face_sources.h"
@@ -55,6 +56,10 @@ class SurfaceMaker {
                     : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
       FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
+        if (may_use_polygons()) {
+          if (std::optional<FinishedSurface> made = attempt(sharp, margins, true, ContourCells::kPolygons))
+            return std::move(*made);
+        }
         if (std::optional<FinishedSurface> made = attempt(sharp, margins, true)) return std::move(*made);
         // Faults are looked for in what contour() made, which has vertices of known numbers.
         if (is_sharpened_) {
@@ -70,27 +75,34 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4;
 
+  // What thickens has points off the mesh. Without merging, the surface is told in all of its triangles.
+  [[nodiscard]] bool may_use_polygons() const { return options_.merge_planes && !(options_.thickness > 0.0); }
+
   void enter(const char* stage) const {
     if (options_.at_stage) options_.at_stage(stage);
   }
 
   // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
   // has, or nothing is merged.
-  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens) {
+  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
+                                         ContourCells kind = ContourCells::kTetrahedra) {
     enter("joining them by triangles");
-    auto [surface, tetrahedra] = contour(cells_, points_, sharp, creases_, tolerance_, margins);
+    auto [surface, tetrahedra, spare, fewer] = contour(cells_, points_, sharp, creases_, tolerance_, margins, kind);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
     is_sharpened_ = false;
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
-    // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no area
-    // of theirs.
+    if (!spare.empty()) drop_spare(surface.mesh, spare);
+    spare = {};
+    // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
+    // area of theirs.
     settle_sources(mesh_, farthest_source(), surface);
-    if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins);
+    if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins, fewer);
     if (is_sharpened_) settle_sources(mesh_, farthest_source(), surface);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
-    if (options_.merge_planes) made.merged = merge(made.surface, margins);
+    if (options_.merge_planes) made.merged = merge(made.surface, margins, kind);
+    if (!made.merged && kind == ContourCells::kPolygons) return std::nullopt;
     if (!is_right_.value_or(true) || (!made.merged && !is_right(made.surface, places))) return std::nullopt;
     if (options_.simplify > 0.0) {
       const double most = farthest_pull(margins);
@@ -111,18 +123,18 @@ class SurfaceMaker {
     return *is_right_;
   }
 
-  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins) {
+  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind) {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0); };
-    std::optional<SurfaceMesh> result =
-        checked_merge(surface, mesh_, inside_, margins.inner, options_.single_precision, is_right_unmerged);
+    std::optional<SurfaceMesh> result = checked_merge(surface, mesh_, inside_, margins.inner, options_.single_precision,
+                                                      is_right_unmerged, kind == ContourCells::kPolygons);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells. Around faults
   // nothing is pulled; where that does not help, nothing at all.
-  void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins) {
+  void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     constexpr int kPartialRounds = 6, kSharpeningRounds = 11;
     const Vec3& h = inside_.lattice().spacing;
@@ -133,7 +145,8 @@ class SurfaceMaker {
       surface.mesh.triangles.resize(faces);
       surface.sources.resize(faces);
     };
-    Sharpener sharpener(surface, mesh_, {kOff * margins.inner * most, kReach * least, options_.single_precision});
+    Sharpener sharpener(surface, mesh_,
+                        {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
     SurfaceEdit change = sharpener.sharpen();
     if (sharpener.pulls() == 0) return drop_spares();
     NodeSet misplaced(inside_.lattice());
@@ -141,6 +154,9 @@ class SurfaceMaker {
       change.apply(surface.mesh);
       NearFaults near = faults_near(surface.mesh, change, inside_.lattice());
       misplaced.flip(changed_nodes(surface.mesh, change, inside_.lattice()));
+      // Where the surface overlapped itself on the way, nodes may have flipped once too often.
+      if (near.faults.none() && !misplaced.empty() && round > 0)
+        misplaced = changed_nodes(surface.mesh, sharpener.changes(), inside_.lattice());
       if (near.faults.none() && misplaced.empty()) {
         sharpener.set_sources(surface.sources);
         drop_gone_faces(surface);
@@ -155,6 +171,22 @@ class SurfaceMaker {
     }
     sharpener.undo().apply(surface.mesh);
     drop_spares();
+  }
+
+  static void drop_spare(TriangleMesh& mesh, const std::vector<std::uint8_t>& spare) {
+    std::vector<std::uint32_t> number(spare.size());
+    std::uint32_t count = 0;
+    for (std::size_t v = 0; v < spare.size(); ++v) {
+      number[v] = count;
+      if (spare[v] != 0) continue;
+      mesh.vertices[count++] = mesh.vertices[v];
+    }
+    mesh.vertices.resize(count);
+    parallel_for(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t face = begin; face < end; ++face) {
+        for (std::uint32_t& corner : mesh.triangles[face]) corner = number[corner];
+      }
+    });
   }
 
   static void drop_gone_faces(SurfaceMesh& surface) {

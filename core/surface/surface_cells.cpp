@@ -6,6 +6,9 @@
 #include <cassert>
 #include <stdexcept>
 
+#include "core/machine/first_touch.h"
+#include "core/machine/threads.h"
+
 namespace raycone {
 
 namespace {
@@ -41,35 +44,73 @@ std::uint64_t mixed_cells(const NodeSet& nodes) {
   return count;
 }
 
-SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
-  assert(!nodes.reaches_border());
-  rows_.reserve(static_cast<std::size_t>(lattice_.counts[1] * lattice_.counts[2]) + 1);
-  for (std::int64_t k = 0; k < lattice_.counts[2]; ++k) {
-    for (std::int64_t j = 0; j < lattice_.counts[1]; ++j) {
-      rows_.push_back(static_cast<std::uint32_t>(cells_.size()));
-      if (j + 1 < lattice_.counts[1] && k + 1 < lattice_.counts[2]) add_row(nodes, j, k);
-    }
-  }
-  rows_.push_back(static_cast<std::uint32_t>(cells_.size()));
-}
+// Places of cells and edges are the layer's own.
+struct SurfaceCells::Layer {
+  std::vector<SurfaceCell> cells;
+  std::vector<std::uint32_t> rows;  // where each begins
+  std::uint32_t edges = 0, first_cell = 0, first_edge = 0;
 
-void SurfaceCells::add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
-  constexpr std::uint32_t kMostEdges = 0x7FFFFFF0;
-  const std::array rows = rows_around(nodes, j, k);
+  void add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k);
+};
+
+void SurfaceCells::Layer::add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
+  const std::array around = rows_around(nodes, j, k);
   const std::int64_t words = nodes.words_per_row();
   for (std::int64_t word = 0; word < words; ++word) {
-    for (std::uint64_t left = mixed_among(rows, word, words); left != 0; left &= left - 1) {
+    for (std::uint64_t left = mixed_among(around, word, words); left != 0; left &= left - 1) {
       const std::int64_t i = word * 64 + std::countr_zero(left);
-      SurfaceCell cell{{i, j, k}, 0, edges_};
+      SurfaceCell cell{{i, j, k}, 0, edges};
       for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
         const auto [x, y, z] = node_at(cell, corner);
-        if (x < lattice_.counts[0] && nodes.holds(x, y, z)) cell.inside |= static_cast<std::uint8_t>(1U << corner);
+        if (x < nodes.count(0) && nodes.holds(x, y, z)) cell.inside |= static_cast<std::uint8_t>(1U << corner);
       }
-      cells_.push_back(cell);
-      edges_ += static_cast<std::uint32_t>(std::popcount(cell.mixed_directions()));
-      if (edges_ > kMostEdges) throw std::length_error("raycone: a surface of more than 2147483632 lattice edges");
+      cells.push_back(cell);
+      edges += static_cast<std::uint32_t>(std::popcount(cell.mixed_directions()));
     }
   }
+}
+
+SurfaceCells::Layer SurfaceCells::layer_of(const NodeSet& nodes, std::int64_t k) {
+  Layer layer;
+  for (std::int64_t j = 0; j < nodes.count(1); ++j) {
+    layer.rows.push_back(static_cast<std::uint32_t>(layer.cells.size()));
+    if (j + 1 < nodes.count(1) && k + 1 < nodes.count(2)) layer.add_row(nodes, j, k);
+  }
+  return layer;
+}
+
+SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
+  assert(!nodes.reaches_border());
+  constexpr std::uint64_t kMostEdges = 0x7FFFFFF0;
+  std::vector<Layer> layers(static_cast<std::size_t>(lattice_.counts[2]));
+  const auto for_each_layer = [&](const auto& visit) {
+    parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) visit(k);
+    });
+  };
+  for_each_layer([&](std::size_t k) { layers[k] = layer_of(nodes, static_cast<std::int64_t>(k)); });
+  std::uint64_t cells = 0, edges = 0;
+  for (Layer& layer : layers) {
+    layer.first_cell = static_cast<std::uint32_t>(cells);
+    layer.first_edge = static_cast<std::uint32_t>(edges);
+    cells += layer.cells.size();
+    edges += layer.edges;
+    if (edges > kMostEdges) throw std::length_error("raycone: a surface of more than 2147483632 lattice edges");
+  }
+  edges_ = static_cast<std::uint32_t>(edges);
+  resize_on_all_threads(cells_, cells);
+  const auto rows = static_cast<std::size_t>(lattice_.counts[1]);
+  rows_.resize(rows * layers.size() + 1, static_cast<std::uint32_t>(cells));
+  for_each_layer([&](std::size_t k) {
+    Layer& layer = layers[k];
+    for (std::size_t j = 0; j < rows; ++j) rows_[k * rows + j] = layer.first_cell + layer.rows[j];
+    for (std::size_t n = 0; n < layer.cells.size(); ++n) {
+      SurfaceCell& cell = cells_[layer.first_cell + n];
+      cell = layer.cells[n];
+      cell.first_edge += layer.first_edge;
+    }
+    layer = {};
+  });
 }
 
 Vec3 SurfaceCells::position(const std::array<std::int64_t, 3>& node) const {

@@ -59,7 +59,8 @@ class SurfaceCells {
   [[nodiscard]] std::size_t row_number(std::int64_t j, std::int64_t k) const {
     return static_cast<std::size_t>(k * lattice_.counts[1] + j);
   }
-  void add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k);
+  struct Layer;
+  [[nodiscard]] static Layer layer_of(const NodeSet& nodes, std::int64_t k);
 
   Lattice lattice_;
   std::vector<SurfaceCell> cells_;

@@ -1,11 +1,13 @@
 #include "core/surface/vertex_places.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 
 #include "core/machine/threads.h"
+#include "core/surface/contour.h"
 
 namespace raycone {
 namespace {
@@ -29,6 +31,13 @@ class ChainPlace {
       reached = corner;
     }
     return last >= margin_ / 2 && all_at(at, kuhn::kCorners - 1 - reached, 0.0);
+  }
+
+  [[nodiscard]] bool holds(const Vec3& p, const SurfaceCell& cell) const {
+    const Vec3 low = cells_.corner(cell, 0);
+    const Vec3& h = cells_.lattice().spacing;
+    const std::array<double, 3> at{(p.x - low.x) / h.x, (p.y - low.y) / h.y, (p.z - low.z) / h.z};
+    return std::ranges::all_of(at, [&](double x) { return x >= margin_ / 2 && x <= 1.0 - margin_ / 2; });
   }
 
  private:
@@ -76,6 +85,8 @@ std::uint64_t misplaced_vertices(std::span<const Vec3> vertices, const SurfaceCe
   };
   const std::size_t first_apex = cells.edges() + face_points.faces().size();
   const auto at_apex = [&](std::size_t n) {
+    if ((tetrahedra[n] & kWholeCell) != 0)
+      return place.holds(vertices[first_apex + n], cells.cells()[tetrahedra[n] & ~kWholeCell]) ? 0U : 1U;
     const kuhn::Tetrahedron& tetrahedron = kuhn::kTetrahedra[tetrahedra[n] % kuhn::kTetrahedra.size()];
     const SurfaceCell& cell = cells.cells()[tetrahedra[n] / kuhn::kTetrahedra.size()];
     return place.holds(vertices[first_apex + n], cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;

@@ -107,7 +107,7 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   const SurfaceCells cells(nodes);
   const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
   const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-  const auto [surface, tetrahedra] = contour(cells, points, face_points, {}, 0.0, kMargins);
+  const auto [surface, tetrahedra, spare, fewer] = contour(cells, points, face_points, {}, 0.0, kMargins);
   SurfaceFaults faults = faults_of(surface.mesh, nodes);
   faults.places = misplaced_vertices(surface.mesh.vertices, cells, face_points, tetrahedra, kMargins);
   return faults;
@@ -259,7 +259,7 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
   const SurfaceCells cells(nodes);
   const FacePoints face_points = random_face_points(cells, random);
-  const auto [surface, tetrahedra] =
+  const auto [surface, tetrahedra, spare, fewer] =
       contour(cells, random_edge_points(cells, random, false), face_points, {}, 0.0, kMargins);
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, tetrahedra, kMargins), 0U);

@@ -461,6 +461,13 @@ MUTANTS = [
         ("core/surface/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
     Mutant("surface_turned", "loops around three inside nodes run the other way", [
         ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
+    Mutant("surface_polygons_turned", "polygons in cells have what is inside behind their fronts", [
+        ("core/surface/cell_polygons.cpp", "return outward * turn < 0;", "return outward * turn > 0;")]),
+    Mutant("surface_polygons_open", "a point is left out where neither cell needs it", [
+        ("core/surface/contour.cpp", "return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;",
+         "return (edge & kInline) != 0 || edge == kWithinCell;")]),
+    Mutant("surface_polygons_without_corners", "polygons in cells meet in corners of the mesh", [
+        ("core/surface/cell_polygons.cpp", "has_apex_ = ends.one.has_value();", "has_apex_ = false;")]),
     Mutant("surface_places_on_border", "a vertex on the border of its edge, face or cell is out of place", [
         ("core/surface/vertex_places.cpp", "!(last - here >= margin_ / 2)", "!(last - here >= 0.0)")]),
     Mutant("surface_places_off_faces", "a vertex beside its edge or face is out of place", [

@@ -157,8 +157,10 @@ const FarField* ScaledMesh::far_field() const {
 
 bool ScaledMesh::has_far_field() const {
   const bool forced = options_.summation == Summation::kFarField;
-  const double source_directly = counts_crossings() ? 1.0 : kTriangleSummed;
-  return (forced || far_field_may_pay(options_.accuracy.samples, source_directly)) && far_field() != nullptr;
+  const bool caps = counts_crossings();
+  const double sources = static_cast<double>(caps ? boundary_.exterior_edges() : mesh_.triangles.size());
+  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangleSummed)) &&
+         far_field() != nullptr;
 }
 
 // Where nobody knows how many samples certificates leave, they are counted: so many take about as long as the tree.

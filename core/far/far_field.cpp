@@ -10,10 +10,10 @@
 
 namespace raycone {
 
-bool far_field_may_pay(double samples, double direct) {
+bool far_field_may_pay(double samples, double sources, double direct) {
   constexpr double kPreparation = 4500;  // of a source, in units of an exterior edge at a sample
-  constexpr double kSmallPart = 0.04;
-  return kPreparation < kSmallPart * samples * direct;
+  const double small_part = std::clamp(sources / 40'000, 0.04, 0.25);
+  return kPreparation < small_part * samples * direct;
 }
 
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,

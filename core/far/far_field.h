@@ -22,8 +22,9 @@ namespace raycone {
 enum class FarSources { kTriangles, kCaps };
 
 // Whether preparing a far field takes no more than a small part of what direct sums at so many samples take: then its
-// cost() can be looked at. `direct`: what a source takes there, in units of an exterior edge.
-[[nodiscard]] bool far_field_may_pay(double samples, double direct);
+// cost() can be looked at. `direct`: what a source takes there, in units of an exterior edge. The part is larger where
+// there are many sources, as a far field saves more of them.
+[[nodiscard]] bool far_field_may_pay(double samples, double sources, double direct);
 
 class FarField final : public BoundaryTerm {
  public:

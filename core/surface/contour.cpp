@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
-#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 #include "core/surface/cell_polygons.h"
+#include "core/surface/contour_parts.h"
 #include "core/surface/planes_point.h"
 
 namespace raycone {
@@ -29,38 +27,6 @@ struct Loop {
   bool has_face_point = false;
 
   void add(std::uint32_t vertex, const EdgePoint* point) { corners[size++] = {vertex, point}; }
-};
-
-// What some cells contribute. Apexes are numbered from kFirstApex on, until all parts are joined.
-struct ContourPart {
-  std::vector<Triangle> triangles;
-  std::vector<std::int32_t> sources;
-  std::vector<Vec3> apexes;
-  std::vector<std::uint64_t> tetrahedra;  // of them
-  std::vector<std::uint32_t> polygon_corners;
-  struct Polygon {
-    std::int32_t source;
-    std::uint32_t size;
-  };
-  std::vector<Polygon> polygons;
-  std::uint64_t full_triangles = 0;  // that would be in their place
-};
-constexpr std::uint32_t kFirstApex = 0x80000000;
-
-// The points that no triangle has.
-struct SparePoints {
-  // Of edges that are diagonals of cells' faces: the polygons of either cell, and whether both can do without.
-  static constexpr unsigned kAbove = 1, kBelow = 2, kInline = 4, kWithinCell = 8;
-
-  std::vector<std::uint8_t> edges, faces;
-
-  // On any thread.
-  void mark_edge(std::uint32_t edge, unsigned bits) {
-    std::atomic_ref(edges[edge]).fetch_or(static_cast<std::uint8_t>(bits), std::memory_order_relaxed);
-  }
-  [[nodiscard]] static bool is_spare(std::uint8_t edge) {
-    return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;
-  }
 };
 
 double least_spacing(const Lattice& lattice) {
@@ -328,111 +294,6 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   return {corners[0] + (meets ? *meeting : within.moved_within(target, margin_)), on_mesh};
 }
 
-// Cuts the polygons of a part into triangles, without the points that are spare.
-class FanCutter {
- public:
-  FanCutter(std::span<const EdgePoint> edge_points, std::span<const Vec3> face_points,
-            const std::vector<std::uint8_t>& spare_edges)
-      : edge_points_(edge_points), face_points_(face_points), spare_edges_(spare_edges) {}
-
-  void cut(ContourPart& part) {
-    std::size_t first = 0;
-    for (const ContourPart::Polygon& polygon : part.polygons) {
-      corners_.clear();
-      positions_.clear();
-      for (std::size_t n = first; n < first + polygon.size; ++n) {
-        const std::uint32_t corner = part.polygon_corners[n];
-        if (corner < edge_points_.size() && SparePoints::is_spare(spare_edges_[corner])) continue;
-        corners_.push_back(corner);
-        positions_.push_back(position(part, corner));
-      }
-      first += polygon.size;
-      const std::size_t from = corners_.size() == 3 ? 0 : best_fan(positions_), size = corners_.size();
-      for (std::size_t n = 1; n + 1 < size; ++n) {
-        part.triangles.push_back({corners_[from], corners_[(from + n) % size], corners_[(from + n + 1) % size]});
-        part.sources.push_back(polygon.source);
-      }
-    }
-    part.polygons = {};
-    part.polygon_corners = {};
-  }
-
- private:
-  [[nodiscard]] const Vec3& position(const ContourPart& part, std::uint32_t corner) const {
-    if (corner >= kFirstApex) return part.apexes[corner - kFirstApex];
-    if (corner >= edge_points_.size()) return face_points_[corner - edge_points_.size()];
-    return edge_points_[corner].position;
-  }
-
-  std::span<const EdgePoint> edge_points_;
-  std::span<const Vec3> face_points_;
-  const std::vector<std::uint8_t>& spare_edges_;
-  std::vector<std::uint32_t> corners_;
-  std::vector<Vec3> positions_;
-};
-
-// Where what a part has goes in the whole.
-struct PartPlace {
-  std::size_t triangles = 0, apexes = 0;
-};
-
-void join_triangles(ContourPart& part, const PartPlace& place, std::size_t first_apex, std::vector<Triangle>& all) {
-  for (std::size_t i = 0; i < part.triangles.size(); ++i) {
-    Triangle triangle = part.triangles[i];
-    for (std::uint32_t& corner : triangle) {
-      if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex + place.apexes);
-    }
-    all[place.triangles + i] = triangle;
-  }
-  part.triangles = {};
-}
-
-template <class Item>
-void join_items(std::vector<Item>& part, std::size_t place, std::vector<Item>& all) {
-  std::ranges::copy(part, all.begin() + static_cast<std::ptrdiff_t>(place));
-  part = {};
-}
-
-// One kind of items after the other: the memory of parts is given back before the next one needs some.
-ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
-                        std::span<const Vec3> face_points) {
-  std::vector<PartPlace> places;
-  PartPlace end;
-  for (const ContourPart& part : parts) {
-    places.push_back(end);
-    end.triangles += part.triangles.size();
-    end.apexes += part.apexes.size();
-  }
-  const std::size_t first_apex = edge_points.size() + face_points.size(), all_vertices = first_apex + end.apexes;
-  if (all_vertices > kFirstApex || end.triangles > kMaxTriangles)
-    throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
-
-  ContouredSurface contoured;
-  TriangleMesh& mesh = contoured.surface.mesh;
-  std::vector<std::int32_t>& sources = contoured.surface.sources;
-  const auto for_each_part = [&](const auto& join) {
-    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
-      for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
-    });
-  };
-  resize_on_all_threads(mesh.triangles, end.triangles);
-  for_each_part(
-      [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, first_apex, mesh.triangles); });
-  resize_on_all_threads(sources, end.triangles);
-  for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
-  resize_on_all_threads(mesh.vertices, all_vertices);
-  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t last) {
-    for (std::size_t n = begin; n < last; ++n) mesh.vertices[n] = edge_points[n].position;
-  });
-  std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
-  contoured.tetrahedra.resize(end.apexes);
-  for_each_part([&](ContourPart& part, const PartPlace& place) {
-    join_items(part.apexes, first_apex + place.apexes, mesh.vertices);
-    join_items(part.tetrahedra, place.apexes, contoured.tetrahedra);
-  });
-  return contoured;
-}
-
 }  // namespace
 
 ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
@@ -456,18 +317,9 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
     }
   });
   if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions());
-  std::uint64_t full = 0, cut = 0;
-  for (const ContourPart& part : parts) {
-    full += part.full_triangles;
-    cut -= part.triangles.size();
-  }
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    FanCutter cutter(edge_points, face_points.positions(), spare.edges);
-    for (std::size_t part = begin; part < end; ++part) cutter.cut(parts[part]);
-  });
-  for (const ContourPart& part : parts) cut += part.triangles.size();
+  const std::uint64_t fewer = cut_polygons(parts, edge_points, face_points.positions(), spare);
   ContouredSurface contoured = joined(parts, edge_points, face_points.positions());
-  contoured.fewer = full - std::min(full, cut);
+  contoured.fewer = fewer;
   contoured.spare.resize(contoured.surface.mesh.vertices.size());
   for (std::size_t n = 0; n < spare.edges.size(); ++n)
     contoured.spare[n] = SparePoints::is_spare(spare.edges[n]) ? 1 : 0;

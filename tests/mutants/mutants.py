@@ -464,7 +464,7 @@ MUTANTS = [
     Mutant("surface_polygons_turned", "polygons in cells have what is inside behind their fronts", [
         ("core/surface/cell_polygons.cpp", "return outward * turn < 0;", "return outward * turn > 0;")]),
     Mutant("surface_polygons_open", "a point is left out where neither cell needs it", [
-        ("core/surface/contour.cpp", "return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;",
+        ("core/surface/contour_parts.h", "return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;",
          "return (edge & kInline) != 0 || edge == kWithinCell;")]),
     Mutant("surface_polygons_without_corners", "polygons in cells meet in corners of the mesh", [
         ("core/surface/cell_polygons.cpp", "has_apex_ = ends.one.has_value();", "has_apex_ = false;")]),

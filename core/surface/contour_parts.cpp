@@ -1,0 +1,136 @@
+#include "core/surface/contour_parts.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "core/machine/first_touch.h"
+#include "core/machine/threads.h"
+#include "core/surface/cell_polygons.h"
+
+namespace raycone {
+namespace {
+
+// Cuts the polygons of a part into triangles, without the points that are spare.
+class FanCutter {
+ public:
+  FanCutter(std::span<const EdgePoint> edge_points, std::span<const Vec3> face_points,
+            const std::vector<std::uint8_t>& spare_edges)
+      : edge_points_(edge_points), face_points_(face_points), spare_edges_(spare_edges) {}
+
+  void cut(ContourPart& part) {
+    std::size_t first = 0;
+    for (const ContourPart::Polygon& polygon : part.polygons) {
+      corners_.clear();
+      positions_.clear();
+      for (std::size_t n = first; n < first + polygon.size; ++n) {
+        const std::uint32_t corner = part.polygon_corners[n];
+        if (corner < edge_points_.size() && SparePoints::is_spare(spare_edges_[corner])) continue;
+        corners_.push_back(corner);
+        positions_.push_back(position(part, corner));
+      }
+      first += polygon.size;
+      const std::size_t from = corners_.size() == 3 ? 0 : best_fan(positions_), size = corners_.size();
+      for (std::size_t n = 1; n + 1 < size; ++n) {
+        part.triangles.push_back({corners_[from], corners_[(from + n) % size], corners_[(from + n + 1) % size]});
+        part.sources.push_back(polygon.source);
+      }
+    }
+    part.polygons = {};
+    part.polygon_corners = {};
+  }
+
+ private:
+  [[nodiscard]] const Vec3& position(const ContourPart& part, std::uint32_t corner) const {
+    if (corner >= kFirstApex) return part.apexes[corner - kFirstApex];
+    if (corner >= edge_points_.size()) return face_points_[corner - edge_points_.size()];
+    return edge_points_[corner].position;
+  }
+
+  std::span<const EdgePoint> edge_points_;
+  std::span<const Vec3> face_points_;
+  const std::vector<std::uint8_t>& spare_edges_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<Vec3> positions_;
+};
+
+// Where what a part has goes in the whole.
+struct PartPlace {
+  std::size_t triangles = 0, apexes = 0;
+};
+
+void join_triangles(ContourPart& part, const PartPlace& place, std::size_t first_apex, std::vector<Triangle>& all) {
+  for (std::size_t i = 0; i < part.triangles.size(); ++i) {
+    Triangle triangle = part.triangles[i];
+    for (std::uint32_t& corner : triangle) {
+      if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex + place.apexes);
+    }
+    all[place.triangles + i] = triangle;
+  }
+  part.triangles = {};
+}
+
+template <class Item>
+void join_items(std::vector<Item>& part, std::size_t place, std::vector<Item>& all) {
+  std::ranges::copy(part, all.begin() + static_cast<std::ptrdiff_t>(place));
+  part = {};
+}
+
+}  // namespace
+
+std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
+                           std::span<const Vec3> face_points, const SparePoints& spare) {
+  std::uint64_t full = 0, cut = 0;
+  for (const ContourPart& part : parts) {
+    full += part.full_triangles;
+    cut -= part.triangles.size();
+  }
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    FanCutter cutter(edge_points, face_points, spare.edges);
+    for (std::size_t part = begin; part < end; ++part) cutter.cut(parts[part]);
+  });
+  for (const ContourPart& part : parts) cut += part.triangles.size();
+  return full - std::min(full, cut);
+}
+
+// One kind of items after the other: the memory of parts is given back before the next one needs some.
+ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
+                        std::span<const Vec3> face_points) {
+  std::vector<PartPlace> places;
+  PartPlace end;
+  for (const ContourPart& part : parts) {
+    places.push_back(end);
+    end.triangles += part.triangles.size();
+    end.apexes += part.apexes.size();
+  }
+  const std::size_t first_apex = edge_points.size() + face_points.size(), all_vertices = first_apex + end.apexes;
+  if (all_vertices > kFirstApex || end.triangles > kMaxTriangles)
+    throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
+
+  ContouredSurface contoured;
+  TriangleMesh& mesh = contoured.surface.mesh;
+  std::vector<std::int32_t>& sources = contoured.surface.sources;
+  const auto for_each_part = [&](const auto& join) {
+    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
+      for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
+    });
+  };
+  resize_on_all_threads(mesh.triangles, end.triangles);
+  for_each_part(
+      [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, first_apex, mesh.triangles); });
+  resize_on_all_threads(sources, end.triangles);
+  for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
+  resize_on_all_threads(mesh.vertices, all_vertices);
+  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t last) {
+    for (std::size_t n = begin; n < last; ++n) mesh.vertices[n] = edge_points[n].position;
+  });
+  std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
+  contoured.tetrahedra.resize(end.apexes);
+  for_each_part([&](ContourPart& part, const PartPlace& place) {
+    join_items(part.apexes, first_apex + place.apexes, mesh.vertices);
+    join_items(part.tetrahedra, place.apexes, contoured.tetrahedra);
+  });
+  return contoured;
+}
+
+}  // namespace raycone

@@ -15,8 +15,27 @@ constexpr DoubleDouble kZero{0.0}, kOne{1.0};
 
 // An edge that short is a point: beyond, products would underflow.
 constexpr double kPoint = 1e-250;
+// An edge from this square on is measured in double first.
+constexpr double kMeasurable = 1e-200;
 // A triangle that thin beside its longest edge, 2^-56, is the segments of its edges.
 constexpr double kThin = 0x1p-112;
+
+// What doubles may be off by, of the sum of the lengths of a query and an edge, both from one corner.
+constexpr double kOff = 64 * 0x1p-53;
+
+double sum_of_lengths(const Vec3& query, const Vec3& edge) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) sum += std::abs(query[axis]) + std::abs(edge[axis]);
+  return sum;
+}
+
+// The segment from the origin along `edge` is not nearer to `query` than this.
+double least_distance(const Vec3& query, const Vec3& edge) {
+  const double edge_square = square(edge);
+  if (!(edge_square > kMeasurable)) return 0.0;
+  const double along = std::clamp(dot(query, edge) / edge_square, 0.0, 1.0);
+  return std::max(norm(query - along * edge) - kOff * sum_of_lengths(query, edge), 0.0);
+}
 
 }  // namespace
 
@@ -44,9 +63,19 @@ double AccurateTriangle::square_to_segment(const DoubleDoubleVec3& to_query, std
   return square((to_query - along * edges_[edge]).rounded());
 }
 
+// Whether doubles are sure that the plane's closest point is on the other side of the longest edge than the triangle,
+// or beyond its apex.
+bool AccurateTriangle::is_beside(const Vec3& to_query) const {
+  const Vec3 edge = edges_[longest_].rounded(), height = height_.rounded();
+  const Vec3 beside = to_query - (dot(to_query, edge) / square(edge)) * edge;
+  const double up = dot(beside, height) / square(height);
+  const double off = kOff * sum_of_lengths(to_query, edge) / norm(height);
+  return up < -off || up > 1.0 + off;
+}
+
 // Of the triangle's plane; infinity where its closest point is outside of the triangle.
 double AccurateTriangle::square_to_plane(const Edges& to_query) const {
-  if (is_thin_) return HUGE_VAL;
+  if (is_thin_ || is_beside(to_query[longest_].rounded())) return HUGE_VAL;
   const DoubleDoubleVec3& edge = edges_[longest_];
   const DoubleDouble along = dot(to_query[longest_], edge) / edge_squares_[longest_];
   const DoubleDoubleVec3 beside = to_query[longest_] - along * edge;
@@ -59,8 +88,15 @@ double AccurateTriangle::squared_distance(const Vec3& p) const {
   const Edges to_query{exact_difference(p, corners_[0]), exact_difference(p, corners_[1]),
                        exact_difference(p, corners_[2])};
   double least = square_to_plane(to_query);
-  if (least == HUGE_VAL) {
-    for (std::size_t i = 0; i < 3; ++i) least = std::min(least, square_to_segment(to_query[i], i));
+  if (least != HUGE_VAL) return least;
+  std::array<double, 3> from{};
+  for (std::size_t i = 0; i < 3; ++i) from[i] = least_distance(to_query[i].rounded(), edges_[i].rounded());
+  const auto first = static_cast<std::size_t>(std::ranges::min_element(from) - from.begin());
+  least = square_to_segment(to_query[first], first);
+  // The others, unless they are farther than rounding could hide.
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (i != first && !(from[i] * from[i] > least * (1 + 1e-12)))
+      least = std::min(least, square_to_segment(to_query[i], i));
   }
   return least;
 }

@@ -359,6 +359,10 @@ MUTANTS = [
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",
          "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), hn::Mul(hn::Set(d, 3.0), square));")]),
+    Mutant("edges_left_out", "an edge of a needle is left out only where it is farther than rounding could hide", [
+        ("core/distance/accurate_distance.cpp", "> least * (1 + 1e-12)", "> least * 0.5")]),
+    Mutant("planes_left_out", "a needle's plane is left out only where its closest point is surely outside", [
+        ("core/distance/accurate_distance.cpp", "up > 1.0 + off", "up > 0.5 + off")]),
     Mutant("loops_cancel_wholly", "pieces that lead there and back cancel but for how far they are apart", [
         ("core/boundary/change_bound.cpp", "moved.area += std::sqrt(square_of_size(cluster.box)) * cluster.length;",
          "moved.area += 0.0;")]),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/boundary/change_bound.h"
+#include "core/data/even_places.h"
 #include "core/evaluation/cut_blocks.h"
 #include "core/evaluation/lattice_polynomial.h"
 #include "core/evaluation/lattice_tile.h"
@@ -259,15 +260,14 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
 
 double undecided_part(const ScaledMesh& mesh, const LatticeRows& rows) {
   constexpr std::size_t kPlaces = 256;
-  constexpr std::array kSteps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // of an even sequence
-  constexpr double kTooMuch = 0.25;                                                         // turns, in a cell
+  constexpr double kTooMuch = 0.25;  // turns, in a cell
   std::size_t undecided = 0;
-  for (std::size_t n = 0; n < kPlaces; ++n) {
+  for (std::size_t n = 1; n <= kPlaces; ++n) {
+    const Vec3 place = even_place(n);
     SampleBox cell{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t cells = std::max<std::size_t>(rows.along(axis).size(), 2) - 1;
-      const double turns = static_cast<double>(n + 1) * kSteps[axis];
-      cell.begin[axis] = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(cells));
+      cell.begin[axis] = static_cast<std::size_t>(place[static_cast<int>(axis)] * static_cast<double>(cells));
       cell.end[axis] = std::min(cell.begin[axis] + 2, rows.along(axis).size());
     }
     const Box box = rows.box_of(cell);

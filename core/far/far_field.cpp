@@ -7,6 +7,7 @@
 
 #include "core/boundary/caps.h"
 #include "core/boundary/solid_angles.h"
+#include "core/data/even_places.h"
 
 namespace raycone {
 
@@ -36,14 +37,13 @@ void FarField::set_costs(const Box& box, double tolerance) {
   constexpr double kTriangle = 2.5;
   const double digits = std::max(2.0, -std::log10(tolerance));  // with which degrees grow
   const double expansion = 2.0 + 0.7 * digits, expansion_on_lattice = 3.0 + 2.0 * digits;
-  constexpr std::array kSteps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // of an even sequence
   SampleTile places;
   places.clear();
   for (std::size_t n = 1; n <= kTile; ++n) {
+    const Vec3 part = even_place(n);
     Vec3 place;
     for (int axis = 0; axis < 3; ++axis) {
-      const double turns = static_cast<double>(n) * kSteps[static_cast<std::size_t>(axis)];
-      place[axis] = box.lower[axis] + (turns - std::floor(turns)) * (box.upper[axis] - box.lower[axis]);
+      place[axis] = box.lower[axis] + part[axis] * (box.upper[axis] - box.lower[axis]);
     }
     places.add(place);
   }

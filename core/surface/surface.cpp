@@ -92,7 +92,7 @@ class SurfaceMaker {
     is_right_.reset();
     is_sharpened_ = false;
     const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
-    if (!spare.empty()) drop_spare(surface.mesh, spare);
+    if (!spare.empty()) drop_vertices(surface.mesh, spare);
     spare = {};
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
@@ -173,7 +173,7 @@ class SurfaceMaker {
     drop_spares();
   }
 
-  static void drop_spare(TriangleMesh& mesh, const std::vector<std::uint8_t>& spare) {
+  static void drop_vertices(TriangleMesh& mesh, const std::vector<std::uint8_t>& spare) {
     std::vector<std::uint32_t> number(spare.size());
     std::uint32_t count = 0;
     for (std::size_t v = 0; v < spare.size(); ++v) {

@@ -8,7 +8,7 @@ namespace raycone {
 namespace {
 
 // In samples: the sides of the largest blocks, and rows that are worth halving no more.
-constexpr std::array<std::size_t, 3> kSides{96, 48, 48};
+constexpr std::array<std::size_t, 3> kSides{64, 64, 64};
 constexpr std::size_t kRow = 32;
 
 }  // namespace

@@ -100,14 +100,6 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
          mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
 }
 
-bool blocks_take_less(const ScaledMesh& mesh, const LatticeAxes& axes, double part) {
-  double samples = 1.0;
-  for (const std::vector<double>& axis : axes) samples *= static_cast<double>(axis.size());
-  const FarField* const far = mesh.far_field();
-  const double one_by_one = far ? kFarEdge * far->cost() : direct_cost(mesh);
-  return blocks_cost(mesh, axes) * samples + kFit < part * one_by_one * samples;
-}
-
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
   constexpr double kUnit = 2.5e-9;

@@ -23,10 +23,6 @@ namespace raycone {
 // samples were declared (Accuracy::samples), not of the part at hand.
 [[nodiscard]] bool takes_far_field_on_lattice(const ScaledMesh& mesh);
 
-// Whether blocks of all samples of the lattice, with the coordinates `axes`, take less time than this part of its
-// samples one by one, where others are known to be on one side of a rule.
-[[nodiscard]] bool blocks_take_less(const ScaledMesh& mesh, const LatticeAxes& axes, double part);
-
 // What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
 // goes about it. Seconds of a machine that docs/benchmarks.md describes. `by_far_field`: whether blocks and far field
 // are looked at, which takes their trees; without, what a direct sum takes.

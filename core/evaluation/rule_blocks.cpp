@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/boundary/change_bound.h"
-#include "core/data/even_places.h"
 #include "core/evaluation/cut_blocks.h"
 #include "core/evaluation/lattice_polynomial.h"
 #include "core/evaluation/lattice_tile.h"
 #include "core/evaluation/node_choice.h"
+#include "core/evaluation/rough_sides.h"
 #include "core/evaluation/side_samples.h"
 #include "core/far/matrix_kernel.h"
 #include "core/machine/threads.h"
@@ -21,8 +21,10 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kFew = 4;              // samples: no certificate is sought for blocks of so few
-constexpr std::size_t kHopeless = 8 * kFew;  // where certificates failed: parts are as few as that
+// Blocks of so few samples that have no certificate are not divided: rough sums do then or, where there are none, the
+// samples' own values.
+constexpr std::size_t kFewForRoughSums = 0x1p12;
+constexpr std::size_t kFew = 32;
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 
 // All points from which a ray meets an exterior edge.
@@ -70,6 +72,7 @@ class RuleBlocks {
         mesh_(samples.mesh()),
         changes_(mesh_.changes().bound),
         matrices_(matrix_kernel(mesh_.options().level)),
+        has_rough_sums_(mesh_.has_blocks()),
         blocks_(rows_, changes_.wide_caps(), cones_of(mesh_.boundary())) {}
 
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
@@ -81,8 +84,11 @@ class RuleBlocks {
   std::size_t apply(std::size_t n, bool by_certificates);
 
  private:
+  [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
   void look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
-               std::vector<SampleBox>& undecided) const;
+               std::vector<SampleBox>& left) const;
+  void find_certificates(CutBlock whole, std::vector<SampleBox>& left, std::vector<SampleBox>& undecided) const;
+  void divide(CutBlock block, std::vector<CutBlock>& parts, std::vector<SampleBox>& left) const;
   [[nodiscard]] Candidate candidate_of(CutBlock block, const Box& box) const;
   void evaluate(std::span<Candidate> candidates) const;
   [[nodiscard]] bool decide(const Candidate& candidate) const;
@@ -96,48 +102,63 @@ class RuleBlocks {
   const ScaledMesh& mesh_;
   const ChangeBound& changes_;
   const MatrixKernel matrices_;
+  const bool has_rough_sums_;
   const CutBlocks blocks_;
   std::atomic<std::size_t> tried_ = 0, in_vain_ = 0;  // samples
 };
 
 std::size_t RuleBlocks::apply(std::size_t n, bool by_certificates) {
   constexpr std::size_t kFewBlocks = 64;
-  std::vector<CutBlock> blocks{blocks_[n]};
-  const SampleBox whole = blocks.front().samples;
-  if (!by_certificates && n % kFewBlocks != 0) {
+  CutBlock block = blocks_[n];
+  const SampleBox whole = block.samples;
+  std::vector<SampleBox> left, undecided;  // blocks without certificate, and runs of samples
+  if (by_certificates || n % kFewBlocks == 0) {
+    find_certificates(std::move(block), left, undecided);
+    tried_ += whole.size();
+    for (const std::vector<SampleBox>* boxes : {&left, &undecided}) {
+      for (const SampleBox& box : *boxes) in_vain_ += box.size();
+    }
+  } else if (has_rough_sums_) {
+    left.push_back(whole);
+  } else {
     samples_.evaluate_rows(whole);
-    return whole.size();
   }
-  std::vector<SampleBox> undecided;
+  if (has_rough_sums_ && !left.empty() && mesh_.blocks().are_sound) {
+    set_sides_roughly(samples_, left, undecided);
+  } else {
+    undecided.insert(undecided.end(), left.begin(), left.end());
+  }
+  samples_.evaluate_each(undecided);
+  return whole.size();
+}
+
+// Sets what is certain. Adds the other samples to `left`, where blocks have no certificate, or to `undecided`, where
+// interpolation does not tell.
+void RuleBlocks::find_certificates(CutBlock whole, std::vector<SampleBox>& left,
+                                   std::vector<SampleBox>& undecided) const {
+  std::vector<CutBlock> blocks{std::move(whole)};
   while (!blocks.empty()) {
     std::vector<Candidate> candidates, interpolated;
     std::vector<CutBlock> parts;
-    for (CutBlock& block : blocks) look_at(std::move(block), candidates, parts, undecided);
+    for (CutBlock& block : blocks) look_at(std::move(block), candidates, parts, left);
     evaluate(candidates);
     for (Candidate& candidate : candidates) {
       if (decide(candidate)) continue;
       if (choose_nodes(candidate)) {
         interpolated.push_back(std::move(candidate));
-      } else if (candidate.block.samples.size() <= kHopeless) {
-        undecided.push_back(candidate.block.samples);
       } else {
-        blocks_.divide(std::move(candidate.block), parts);
+        divide(std::move(candidate.block), parts, left);
       }
     }
     evaluate(interpolated);
     for (const Candidate& candidate : interpolated) interpolate(candidate, undecided);
     blocks = std::move(parts);
   }
-  samples_.evaluate_each(undecided);
-  tried_ += whole.size();
-  for (const SampleBox& box : undecided) in_vain_ += box.size();
-  return whole.size();
 }
 
 // Makes it a candidate, or divides it, or gives it up.
 void RuleBlocks::look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
-                         std::vector<SampleBox>& undecided) const {
-  if (block.samples.size() <= kFew) return undecided.push_back(block.samples);
+                         std::vector<SampleBox>& left) const {
   const Box box = rows_.box_of(block.samples);
   blocks_.forget_others(block, box);
   if (!block.is_cut()) {
@@ -145,7 +166,11 @@ void RuleBlocks::look_at(CutBlock block, std::vector<Candidate>& candidates, std
     if (candidate.change <= kMostChange) return candidates.push_back(std::move(candidate));
     block = std::move(candidate.block);
   }
-  if (block.samples.size() <= 2 * kFew) return undecided.push_back(block.samples);  // its parts would be few
+  divide(std::move(block), parts, left);
+}
+
+void RuleBlocks::divide(CutBlock block, std::vector<CutBlock>& parts, std::vector<SampleBox>& left) const {
+  if (block.samples.size() <= few()) return left.push_back(block.samples);
   blocks_.divide(std::move(block), parts);
 }
 
@@ -256,25 +281,6 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
       }
     });
   }
-}
-
-double undecided_part(const ScaledMesh& mesh, const LatticeRows& rows) {
-  constexpr std::size_t kPlaces = 256;
-  constexpr double kTooMuch = 0.25;  // turns, in a cell
-  std::size_t undecided = 0;
-  for (std::size_t n = 1; n <= kPlaces; ++n) {
-    const Vec3 place = even_place(n);
-    SampleBox cell{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t cells = std::max<std::size_t>(rows.along(axis).size(), 2) - 1;
-      cell.begin[axis] = static_cast<std::size_t>(place[static_cast<int>(axis)] * static_cast<double>(cells));
-      cell.end[axis] = std::min(cell.begin[axis] + 2, rows.along(axis).size());
-    }
-    const Box box = rows.box_of(cell);
-    const double most = kTooMuch / norm(box.upper - box.lower);
-    if (mesh.changes().bound.gradient_in(box, most) > most) ++undecided;
-  }
-  return static_cast<double>(undecided) / kPlaces;
 }
 
 }  // namespace raycone

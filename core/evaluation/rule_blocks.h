@@ -19,8 +19,4 @@ namespace raycone {
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
                const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done);
 
-// What part of the samples set_sides() evaluates one by one, about: boundary edges are too near, or too many. Counted
-// at some places of the block.
-[[nodiscard]] double undecided_part(const ScaledMesh& mesh, const LatticeRows& rows);
-
 }  // namespace raycone

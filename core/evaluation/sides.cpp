@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/crossings/lattice_rows.h"
 #include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
-#include "core/evaluation/lattice_far.h"
 #include "core/evaluation/row_crossings.h"
 #include "core/evaluation/rows.h"
 #include "core/evaluation/rule_blocks.h"
@@ -63,44 +61,12 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
   return tally;
 }
 
-// The same by blocks of samples, whose values are not kept.
-void set_sides_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Rule& rule, const Lattice& lattice,
-                         const LatticeBlock& block, const LatticeRows& rows, const LatticeSums& crossings,
-                         const LatticeSums& of_caps, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
-  const SideOf side(mesh, rule);
-  const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
-    return {crossings.runs(row), of_caps.runs(row)};
-  };
-  const auto set = [&](std::size_t index, std::span<const double> values) {
-    const Row row = rows.row(index / rows.xs.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      sides[index + i] = side(row.query(index % rows.xs.size() + i), values[i]);
-    }
-  };
-  evaluate_blocks(mesh, axes, lattice, block, crossings_of_row, set, done);
-}
-
-// How sides of an open mesh are found: from the winding number of each sample, by blocks of the lattice, or, with
-// neither, by certificates.
-struct Way {
-  bool by_values = false;
-  std::optional<LatticeAxes> axes;
-};
-
-// That of the least time. Soups have hardly a block that is decided; caps and their tree take about as long as so many
-// edges at samples.
-Way cheapest_way(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block, const LatticeRows& rows) {
+// Whether certificates do not pay. Soups have hardly a block that is decided; caps and their tree take about as long as
+// so many edges at samples.
+bool takes_values(const ScaledMesh& mesh, const LatticeBlock& block) {
   constexpr double kWorthCaps = 0x1p20;
-  constexpr double kLeastPart = 0.2;  // that are undecided: blocks take no less than a fifth of what samples take alone
-  constexpr double kInVain = 0.9;
-  const bool forced = mesh.options().summation == Summation::kBlocks;
   const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
-  if (!mesh.is_in_scale() || !mesh.counts_crossings() || work <= kWorthCaps) return {true, {}};
-  const double part = undecided_part(mesh, rows);
-  if (part < kLeastPart && !forced) return {};
-  std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice);
-  if (axes && (forced || blocks_take_less(mesh, *axes, part))) return {false, std::move(axes)};
-  return {part > kInVain && takes_far_field_on_lattice(mesh), {}};
+  return !mesh.is_in_scale() || !mesh.counts_crossings() || work <= kWorthCaps;
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
@@ -108,8 +74,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
                     std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
   const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
-  const Way way = mesh.is_closed() ? Way() : cheapest_way(mesh, lattice, block, rows);
-  if (way.by_values) {
+  if (!mesh.is_closed() && takes_values(mesh, block)) {
     return sides_by_values(meshes, mesh, rule, lattice, block, rows, sides, done);
   }
   LatticeSums crossings(rows.size(), rows.xs.size());
@@ -123,11 +88,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
   scan_triangles(mesh.changes().caps.mesh, rows, std::nullopt, of_caps);
   of_caps.arrange();
   finish_all(rows, of_caps);
-  if (way.axes) {
-    set_sides_by_blocks(mesh, *way.axes, rule, lattice, block, rows, crossings, of_caps, sides, done);
-  } else {
-    set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
-  }
+  set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
   return tally;
 }
 

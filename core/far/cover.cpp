@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 namespace raycone {
 namespace {
@@ -65,6 +69,94 @@ Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles,
     while (degree > 1 && SourceTree::error(node, degree - 1, distance) <= budget) --degree;
     return degree <= node.order ? degree : 0;
   });
+}
+
+namespace {
+
+constexpr double kInverse = (1 + 0x1p-30) / (4 * std::numbers::pi);  // of 4 pi
+
+// Makes one rough cover.
+class RoughWalk {
+ public:
+  RoughWalk(std::span<const TriangleExtent> extents, const Box& box, const Interpolation& interpolation, double each)
+      : extents_(extents), box_(box), interpolation_(interpolation), each_(each) {}
+
+  // Whether the node is taken as a whole.
+  bool take(const SourceNode& node, std::uint32_t number) {
+    constexpr double kMuch = 2.0;  // of what is near, an expansion must spare that times its cost
+    const double distance = distance_from(box_, node.centre), gap = distance - node.radius;
+    if (!(gap > 0.0)) return false;
+    const double bend = bend_of(node.area, gap * gap);
+    const bool smooth = bend <= each_;
+    const auto cut = SourceTree::least_cut(node, distance, smooth ? each_ / interpolation_.growth : each_);
+    if (!cut) return false;
+    if (cut->degree == 0) {
+      result_.error += cut->error;
+      return true;
+    }
+    const double cost = expansion_cost(cut->degree), triangles = static_cast<double>(node.triangles());
+    if (!(smooth ? cost < triangles : kMuch * cost < triangles && node.own_end == node.end)) return false;
+    if (!smooth) result_.near.cost += cost;
+    (smooth ? result_.smooth : result_.near).expansions.push_back({number, cut->degree});
+    result_.error += smooth ? bend + interpolation_.growth * cut->error : cut->error;
+    return true;
+  }
+
+  void take_triangle(std::uint32_t number) {
+    constexpr double kOfTriangle = 0.25;  // what is spared is less than for a node
+    const TriangleExtent& triangle = extents_[number];
+    const double square = square_of_gap(box_, triangle.box) * (1 - 0x1p-40);
+    const double solid_angle = kInverse * triangle.area / square, bend = bend_of(triangle.area, square);
+    if (square > kLeastSquare && solid_angle <= kOfTriangle * each_) {
+      result_.error += solid_angle;
+    } else if (bend <= kOfTriangle * each_) {
+      result_.smooth.triangles.push_back(number);
+      result_.error += bend;
+    } else {
+      result_.near.triangles.push_back(number);
+      result_.near.cost += 1.0;
+    }
+  }
+
+  RoughCover finish() {
+    result_.error *= 1 + 0x1p-20;  // of sums
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kLeastSquare = 0x1p-200;  // of less, powers and areas may underflow
+
+  // By how much interpolation is off because of triangles of this area, as far away as the root of `square`: their
+  // derivatives of order k, over the factorial of k, are at most (k + 1) A / (4 pi d^(k + 2)).
+  [[nodiscard]] double bend_of(double area, double square) const {
+    static_assert(Interpolation::kOrder == 4);
+    if (!(square > kLeastSquare)) return std::numeric_limits<double>::infinity();
+    return interpolation_.bend * (Interpolation::kOrder + 1) * kInverse * area / (square * square * square);
+  }
+
+  std::span<const TriangleExtent> extents_;
+  const Box& box_;
+  const Interpolation& interpolation_;
+  double each_;
+  RoughCover result_;
+};
+
+}  // namespace
+
+RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
+                          const Interpolation& interpolation, double each) {
+  RoughWalk walk(extents, box, interpolation, each);
+  const std::span<const SourceNode> nodes = tree.nodes();
+  for (std::uint32_t n = 0; n < nodes.size();) {
+    const SourceNode& node = nodes[n];
+    if (walk.take(node, n)) {
+      n = node.next;
+      continue;
+    }
+    for (std::uint32_t i = node.begin; i < node.own_end; ++i) walk.take_triangle(i);
+    ++n;
+  }
+  return walk.finish();
 }
 
 }  // namespace raycone

@@ -35,6 +35,33 @@ struct Cover {
 [[nodiscard]] Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box,
                              double tolerance, double triangle_cost = 1.0);
 
+// Where a triangle is, and how large.
+struct TriangleExtent {
+  Box box;
+  double area;  // NaN where it is not known: such a triangle is near everywhere
+};
+
+// What interpolation between nodes in a box makes of a function: where its derivatives of order kInterpolated along any
+// axis are at most D times the factorial of that, it is off by at most bend D, and values at nodes that are off by e
+// make it off by at most growth e.
+struct Interpolation {
+  static constexpr int kOrder = 4;
+  double bend, growth;
+};
+
+// A cover of all triangles in two parts, and how far what it sums to is off at most.
+struct RoughCover {
+  Cover smooth;  // to be interpolated
+  Cover near;    // to be summed at each point
+  double error = 0.0;
+};
+
+// Nodes as expansions, and triangles, or nothing in their place, each of which is off by `each` at most in all points
+// of the box. `extents`: of the tree's triangles. How far all are off together is known afterwards only: for who is
+// content with most samples.
+[[nodiscard]] RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
+                                        const Interpolation& interpolation, double each);
+
 struct CoverKernels {
   SharedCornersKernel shared_corners;
   ConeKernel cone;

@@ -17,10 +17,7 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
       level_(level) {
   sources_.reserve(tree_.triangles().size());
   for (const SolidTriangle& t : tree_.triangles()) {
-    Source source;
-    source.box = box_of(t.a, t.b, t.c);
-    source.area = safe_norm(t.normal) / 2 * (1 + 0x1p-40);
-    sources_.push_back(source);
+    sources_.push_back({box_of(t.a, t.b, t.c), safe_norm(t.normal) / 2 * (1 + 0x1p-40)});
   }
   if (near == Near::kBoundary) edges_.emplace(tree_.triangles());
 }
@@ -98,6 +95,11 @@ void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<Sampl
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) of_part.divide_and_evaluate(std::move(blocks[n]));
   });
+}
+
+void LatticeBlocks::count_terms(const Cover& cover, std::size_t samples) const {
+  near_terms_.fetch_add(samples * cover.triangles.size(), std::memory_order_relaxed);
+  far_terms_.fetch_add(samples * cover.expansions.size(), std::memory_order_relaxed);
 }
 
 // A triangle rounds by 3 2^-41 turns at most, as in other sums; at nodes fits multiply that. Values at nodes, of half a

@@ -13,15 +13,14 @@
 #include "core/boundary/solid_angle_kernel.h"
 #include "core/crossings/row.h"
 #include "core/data/triangle_mesh.h"
+#include "core/far/cover.h"
 #include "core/far/harmonic_polynomial.h"
+#include "core/far/lattice_axes.h"
 #include "core/far/shared_edges.h"
 #include "core/far/source_tree.h"
 #include "core/machine/simd.h"
 
 namespace raycone {
-
-// The coordinates of a lattice along each axis, ascending.
-using LatticeAxes = std::array<std::vector<double>, 3>;
 
 // A bounded engine: sums are within `tolerance`, and rounding, of the sums of the solid angles of the triangles in
 // turns. Blocks of samples are divided in two along their longer axes, again and again. A triangle that is far enough
@@ -48,26 +47,29 @@ class LatticeBlocks {
   // How long one sample of the lattice takes, about; in units of a triangle's solid angle there.
   [[nodiscard]] double cost(const LatticeAxes& axes) const;
 
-  // Pairs that for_each_row() has summed so far: of a sample with a triangle; of a sample with a multipole or with the
+  // Pairs that have been summed so far: of a sample with a triangle; of a sample with a multipole or with the
   // polynomial of its block. What is summed at nodes of fits counts too.
   [[nodiscard]] std::uint64_t near_terms() const { return near_terms_; }
   [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
 
+  // Counts what `cover` sums at so many samples among them.
+  void count_terms(const Cover& cover, std::size_t samples) const;
+
   [[nodiscard]] SimdLevel level() const { return level_; }
+  [[nodiscard]] const SourceTree& tree() const { return tree_; }
+  [[nodiscard]] std::span<const TriangleExtent> extents() const { return sources_; }  // of the tree's triangles
+  // Of the tree's triangles, where what is near may be summed by its boundary; else null.
+  [[nodiscard]] const SharedEdges* edges() const { return edges_ ? &*edges_ : nullptr; }
 
   // No sum over so many triangles is off by more, rounding included.
   [[nodiscard]] static double doubt(double tolerance, double triangles);
 
  private:
   friend class LatticeBlocksWalk;
-  struct Source {
-    Box box;
-    double area;  // NaN where it is not known: such a triangle is near everywhere
-  };
 
   SourceTree tree_;
-  std::vector<Source> sources_;       // the triangles of the tree
-  std::optional<SharedEdges> edges_;  // likewise, where boundaries are asked for
+  std::vector<TriangleExtent> sources_;  // the triangles of the tree
+  std::optional<SharedEdges> edges_;     // likewise, where boundaries are asked for
   double tolerance_;
   SimdLevel level_;
   mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;

@@ -171,7 +171,7 @@ std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& b
 }
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.
-double LatticeBlocksWalk::error_of(const LatticeBlocks::Source& source, const Cube& cube) {
+double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) {
   constexpr double kLeastHalf = 0x1p-400;  // squares of less lose bits, as areas of sources of that size do
   if (cube.half < kLeastHalf) return std::numeric_limits<double>::infinity();
   double distance = 0.0;
@@ -270,11 +270,6 @@ void LatticeBlocksWalk::add_at_nodes(const Cover& far, const Cube& cube, std::si
       values[(begin + i) * HarmonicFit::kTogether + place] = turns + rest;
     });
   }
-}
-
-void LatticeBlocksWalk::count_terms(const Cover& cover, std::size_t samples) const {
-  blocks_.near_terms_.fetch_add(samples * cover.triangles.size(), std::memory_order_relaxed);
-  blocks_.far_terms_.fetch_add(samples * cover.expansions.size(), std::memory_order_relaxed);
 }
 
 void LatticeBlocksWalk::count_polynomials(std::size_t samples) const {

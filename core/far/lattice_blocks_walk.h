@@ -12,9 +12,9 @@
 #include "core/far/far_kernel.h"
 #include "core/far/harmonic_polynomial.h"
 #include "core/far/lattice_blocks.h"
+#include "core/far/lattice_covers.h"
 #include "core/far/matrix_kernel.h"
 #include "core/far/shared_corners.h"
-#include "core/far/shared_edges.h"
 
 namespace raycone {
 
@@ -43,17 +43,6 @@ struct SampleBlock {
   [[nodiscard]] std::size_t count(std::size_t axis) const { return last[axis] - first[axis]; }
   [[nodiscard]] double size() const {
     return static_cast<double>(count(0)) * static_cast<double>(count(1)) * static_cast<double>(count(2));
-  }
-};
-
-// Sums of the samples [first, last) along each axis, in rows of GridValues::row_size().
-struct BlockSums {
-  std::vector<double>& numbers;
-  std::array<std::size_t, 3> first, last;
-
-  [[nodiscard]] std::size_t row_size() const { return GridValues::row_size(last[0] - first[0]); }
-  [[nodiscard]] std::size_t place(std::size_t x, std::size_t y, std::size_t z) const {
-    return ((z - first[2]) * (last[1] - first[1]) + y - first[1]) * row_size() + x - first[0];
   }
 };
 
@@ -92,7 +81,7 @@ class LatticeBlocksWalk {
                                const std::array<std::size_t, 3>& last) const;
   [[nodiscard]] CoverSums sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
                                   const std::array<std::size_t, 3>& last) const;
-  void count_terms(const Cover& cover, std::size_t samples) const;
+  void count_terms(const Cover& cover, std::size_t samples) const { blocks_.count_terms(cover, samples); }
   void count_polynomials(std::size_t samples) const;
 
   // Calls the sink for the rows of the part that are in a block that is not divided.
@@ -120,18 +109,13 @@ class LatticeBlocksWalk {
   void add_child(SampleBlock block, std::span<const std::uint32_t> triangles, Division& division) const;
   [[nodiscard]] std::vector<std::uint32_t> far_triangles(const SampleBlock& block,
                                                          std::span<const std::uint32_t> triangles) const;
-  static double error_of(const LatticeBlocks::Source& source, const Cube& cube);
+  static double error_of(const TriangleExtent& source, const Cube& cube);
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;
-  void set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid, SharedEdges::Boundary* boundary,
-                  const BlockSums& sums) const;
-  void add_near(const SampleBlock& block, const std::array<std::size_t, 3>& begin,
-                const std::array<std::size_t, 3>& end, SharedEdges::Boundary* boundary, const BlockSums& sums) const;
-  void add_at_samples(CoverSums& cover_sums, bool narrow, const std::array<std::size_t, 3>& begin,
-                      const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
-  void add_crossings(std::span<const std::uint32_t> triangles, const std::array<std::size_t, 3>& begin,
-                     const std::array<std::size_t, 3>& end, const BlockSums& sums) const;
+  void set_layers(const SampleBlock& block, std::size_t degree, GridValues& grid, LatticeCovers& covers,
+                  const BoxSums& sums) const;
+  void add_near(const SampleBlock& block, const SampleBox& samples, LatticeCovers& covers, const BoxSums& sums) const;
 
   const LatticeBlocks& blocks_;
   const LatticeAxes& axes_;

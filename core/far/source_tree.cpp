@@ -252,4 +252,22 @@ double SourceTree::error(const SourceNode& node, int p, double distance) {
   return sum * (1 + kRounding);
 }
 
+std::optional<SourceTree::Cut> SourceTree::least_cut(const SourceNode& node, double distance, double most) {
+  if (node.order == 0) return std::nullopt;  // it has no bounds
+  const double rho = node.unit / distance * (1 + kRounding);
+  std::array<double, kOrders + 1> powers, left_out;  // [p]: of all beyond degree p
+  powers[0] = rho;
+  for (std::size_t n = 1; n <= kOrders; ++n) powers[n] = powers[n - 1] * rho;
+  left_out[kOrders] = beyond_multipoles(node.area / node.unit / node.unit, node.radius / node.unit, rho);
+  for (std::size_t n = kOrders; n > 0; --n) left_out[n - 1] = left_out[n] + powers[n] * node.bounds.size[n];
+  double evaluated = 0.0;
+  for (int p = 0; p <= node.order; ++p) {
+    const auto n = static_cast<std::size_t>(p);
+    if (p > 0) evaluated += powers[n] * node.bounds.evaluation[n];
+    const double error = (evaluated + left_out[n]) * (1 + kRounding);
+    if (error <= most) return Cut{p, error};
+  }
+  return std::nullopt;
+}
+
 }  // namespace raycone

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,14 @@ class SourceTree {
 
   // How far the expansion of `node` cut off behind degree p is off at most at a distance from its centre.
   [[nodiscard]] static double error(const SourceNode& node, int p, double distance);
+
+  // The least degree behind which it is off by no more than `most`, none above the node's order, and that error; 0: the
+  // node need not be summed at all. Nothing for a node without expansion.
+  struct Cut {
+    int degree;
+    double error;
+  };
+  [[nodiscard]] static std::optional<Cut> least_cut(const SourceNode& node, double distance, double most);
 
  private:
   struct PlacedTriangle;

@@ -42,7 +42,7 @@ class Cover {
 TEST(CutBlocks, AreTheLattice) {
   const LatticeRows rows = unit_rows(100, 60, 97);
   const CutBlocks blocks(rows, {}, {});
-  EXPECT_EQ(blocks.size(), 2U * 2 * 3);
+  EXPECT_EQ(blocks.size(), 2U * 1 * 2);
   Cover cover(rows);
   for (std::size_t n = 0; n < blocks.size(); ++n) cover.add(blocks[n].samples);
   EXPECT_EQ(cover.count(1), cover.size());

@@ -369,9 +369,18 @@ MUTANTS = [
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
         ("core/boundary/change_kernel.cpp", "hn::IfThenElseZero(taken, hn::Add(of_length, of_area))",
          "hn::IfThenElseZero(taken, hn::Add(of_length, hn::Mul(hn::Zero(d), of_area)))")]),
-    Mutant("blocks_set_other_sides", "sides by blocks of a lattice are those of the row's samples", [
-        ("core/evaluation/sides.cpp", "side(row.query(index % rows.xs.size() + i), values[i])",
-         "side(row.query(index % rows.xs.size() + i), values[0])")]),
+    Mutant("rough_sums_are_close", "rough sums decide only what they are not off by", [
+        ("core/evaluation/rough_sides.cpp", "sums.row(j, k), off, left)", "sums.row(j, k), 0 * off, left)")]),
+    Mutant("rough_ranges_are_narrow", "sums are within a range that is wider than that of values at nodes", [
+        ("core/evaluation/rough_sums.cpp", "nodes_->growth() * (most / 2 - least / 2)", "0 * (most / 2 - least / 2)")]),
+    Mutant("smooth_nodes_do_not_bend", "interpolation of expansions is off by their derivatives", [
+        ("core/far/cover.cpp", "smooth ? bend + interpolation_.growth * cut->error", "smooth ? interpolation_.growth * cut->error")]),
+    Mutant("smooth_triangles_do_not_bend", "interpolation of triangles is off by their derivatives", [
+        ("core/far/cover.cpp", "result_.error += bend;", "result_.error += 0 * bend;")]),
+    Mutant("small_triangles_are_nothing", "what is left out is part of the error", [
+        ("core/far/cover.cpp", "result_.error += solid_angle;", "result_.error += 0 * solid_angle;")]),
+    Mutant("nodes_without_expansion_are_nothing", "a node without expansion has no bounds", [
+        ("core/far/source_tree.cpp", "if (node.order == 0) return std::nullopt;", "if (node.order < 0) return std::nullopt;")]),
     Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [
         ("core/boundary/flat_piece.cpp", "> reach + kPlaneError", "> 0.5 * reach + kPlaneError")]),
     Mutant("planes_are_exact", "normals and differences round", [
@@ -577,7 +586,7 @@ MUTANTS = [
         ("core/far/lattice_blocks_walk.h", "axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1]",
          "axes_[axis][last - 1]")]),
     Mutant("patches_without_crossings", "a patch that is summed by its boundary has the crossings of its triangles, too", [
-        ("core/far/lattice_blocks_samples.cpp", "if (by_boundary) add_crossings(cover.triangles, begin, end, sums);", "")]),
+        ("core/far/lattice_covers.cpp", "if (by_boundary) add_crossings(cover.triangles, samples, sums);", "")]),
     Mutant("boundaries_without_orientation", "edges that triangles run along in opposite directions cancel", [
         ("core/far/shared_edges.cpp", "multiplicity += side.reversed ? -1 : 1;", "multiplicity += 1;")]),
     Mutant("rows_of_a_tile_alike", "each row of a tile has its own projections", [

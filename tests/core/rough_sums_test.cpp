@@ -1,0 +1,174 @@
+// Rough sums of solid angles against direct ones: nothing is off by more than what is said, wherever boxes lie.
+#include "core/evaluation/rough_sums.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "core/boundary/solid_angles.h"
+#include "core/far/lattice_blocks.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+
+LatticeRows rows_of(std::size_t nx, std::size_t ny, std::size_t nz, const Vec3& origin, const Vec3& spacing) {
+  LatticeRows rows;
+  const auto fill = [](std::vector<double>& along, std::size_t count, double from, double step) {
+    for (std::size_t i = 0; i < count; ++i) along.push_back(from + static_cast<double>(i) * step);
+  };
+  fill(rows.xs, nx, origin.x, spacing.x);
+  fill(rows.ys, ny, origin.y, spacing.y);
+  fill(rows.zs, nz, origin.z, spacing.z);
+  return rows;
+}
+
+double direct_sum(std::span<const SolidTriangle> triangles, const Vec3& q) {
+  SampleTile tile;
+  tile.clear();
+  tile.add(q);
+  tile.fill_up();
+  ProductTile products;
+  solid_angle_kernel(SimdLevel::kBest)(triangles, tile, products);
+  return static_cast<double>(products.turns(0)) + products.argument[0];
+}
+
+// What boxes of a lattice have shown.
+struct Seen {
+  double closest = 0.0;  // error over what it may be, at most
+  double largest = 0.0;  // that any sum may be off by
+  int with_range = 0, without_range = 0;
+};
+
+void look_at_box(std::span<const SolidTriangle> triangles, const LatticeRows& rows, RoughSums& sums,
+                 const SampleBox& box, double each, Seen& seen) {
+  sums.look_at(box, each);
+  const std::optional<RoughSums::Range> range = sums.range();
+  ++(range ? seen.with_range : seen.without_range);
+  std::vector<double> numbers;
+  const double off = sums.evaluate(numbers);
+  const BoxSums of_box{numbers, box};
+  seen.largest = std::max(seen.largest, off);
+  for (std::size_t z = box.begin[2]; z < box.end[2]; ++z) {
+    for (std::size_t y = box.begin[1]; y < box.end[1]; ++y) {
+      for (std::size_t x = box.begin[0]; x < box.end[0]; ++x) {
+        const double w = direct_sum(triangles, rows.query({x, y, z}));
+        const double error = std::abs(of_box.row(y, z)[x - box.begin[0]] - w);
+        ASSERT_LE(error, off) << x << ' ' << y << ' ' << z;
+        seen.closest = std::max(seen.closest, error / off);
+        if (range) {
+          ASSERT_LE(std::abs(w - range->middle), range->off) << x << " " << y << " " << z;
+        }
+      }
+    }
+  }
+}
+
+// Boxes of up to 16 samples along each axis, some of them of one, at random.
+Seen look_at_boxes(const TriangleMesh& mesh, const LatticeRows& rows, double each, int boxes) {
+  const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
+  const LatticeBlocks blocks(triangles, 1e-6, SimdLevel::kBest, LatticeBlocks::Near::kBoundary);
+  RoughSums sums(blocks, rows);
+  Random random(7);
+  Seen seen;
+  for (int n = 0; n < boxes && !testing::Test::HasFatalFailure(); ++n) {
+    SampleBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t all = rows.along(axis).size(), side = 1 + random() % std::min<std::size_t>(all, 16);
+      box.begin[axis] = random() % (all - side + 1);
+      box.end[axis] = box.begin[axis] + side;
+    }
+    look_at_box(triangles, rows, sums, box, each, seen);
+  }
+  return seen;
+}
+
+// Three quarters of a sphere, with slivers around its opening and a long needle through it.
+TriangleMesh scraps() {
+  TriangleMesh mesh = test::moved(test::sphere(16), {0.4, 0.4, 0.4}, {0.01, 0.02, 0.03});
+  mesh.triangles.resize(mesh.triangles.size() * 3 / 4);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {{-0.5, 0.1, 0.1}, {0.5, 0.11, 0.1}, {0.5, 0.12, 0.11}});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  return mesh;
+}
+
+TEST(RoughSumsTest, AreOffByNoMoreThanTheySay) {
+  const LatticeRows rows = rows_of(48, 40, 44, {-0.6, -0.5, -0.55}, {0.025, 0.025, 0.025});
+  for (const double each : {0.1, 4e-3, 1e-4, 1e-7}) {
+    const Seen seen = look_at_boxes(scraps(), rows, each, 60);
+    EXPECT_GT(seen.closest, 1e-4) << each << ": bounds that nothing comes near are of no use";
+    EXPECT_LT(seen.largest, 100 * each);
+    EXPECT_GT(seen.without_range, 0);
+  }
+}
+
+TEST(RoughSumsTest, OfLatticesThatAreFlatOrStretched) {
+  const TriangleMesh mesh = scraps();
+  for (const LatticeRows& rows : {rows_of(60, 60, 1, {-0.7, -0.7, 0.05}, {0.025, 0.025, 1}),
+                                  rows_of(1, 50, 60, {0.1, -0.6, -0.7}, {1, 0.025, 0.025}),
+                                  rows_of(30, 90, 20, {-0.6, -0.5, -0.6}, {0.04, 0.01, 0.06})}) {
+    (void)look_at_boxes(mesh, rows, 4e-3, 60);
+  }
+}
+
+// Samples on vertices, edges and faces of a mesh, and level with them.
+TEST(RoughSumsTest, OfLatticesThatAreFullOfTies) {
+  TriangleMesh box = test::moved(test::open_box(), {0.5, 0.5, 0.5}, {0, 0, 0});
+  (void)look_at_boxes(box, rows_of(49, 49, 49, {-0.75, -0.75, -0.75}, {0.03125, 0.03125, 0.03125}), 4e-3, 120);
+}
+
+// From farther and farther away: interpolation, and leaving out, take over from sums at each sample.
+TEST(RoughSumsTest, OfOneTriangleFromAfar) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.01, 0, 0.002}, {0, 0.01, 0.001}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
+  const LatticeBlocks blocks(triangles, 1e-6, SimdLevel::kBest);
+  Seen seen;
+  for (int step = 0; step < 60; ++step) {
+    const double away = 0.005 * std::pow(1.07, step);
+    const LatticeRows rows = rows_of(8, 8, 8, {-0.02, -0.02, away}, {0.006, 0.006, 0.006});
+    RoughSums sums(blocks, rows);
+    for (const double each : {1e-2, 1e-4, 1e-6}) {
+      look_at_box(triangles, rows, sums, {{0, 0, 0}, {8, 8, 8}}, each, seen);
+    }
+  }
+  EXPECT_GT(seen.with_range, 20);
+  EXPECT_GT(seen.without_range, 20);
+  EXPECT_GT(seen.closest, 0.05);
+}
+
+TEST(RoughSumsTest, LeastCutIsTheLeastThatErrsByNoMore) {
+  const SourceTree tree(solid_faces(scraps()).triangles, 1e-6);
+  const SourceNode& root = tree.nodes().front();
+  int nothing = 0, cut_off = 0, none = 0;
+  for (double distance = 1.01 * root.radius; distance < 1e5; distance *= 1.5) {
+    for (const double most : {1e-1, 1e-4, 1e-8, 1e-13}) {
+      const auto cut = SourceTree::least_cut(root, distance, most);
+      if (!cut) {
+        EXPECT_GT(SourceTree::error(root, root.order, distance), most * (1 - 1e-9));
+        ++none;
+        continue;
+      }
+      ++(cut->degree == 0 ? nothing : cut_off);
+      EXPECT_LE(cut->error, most);
+      EXPECT_NEAR(cut->error, SourceTree::error(root, cut->degree, distance), 1e-9 * cut->error);
+      if (cut->degree > 0) {
+        EXPECT_GT(SourceTree::error(root, cut->degree - 1, distance), most * (1 - 1e-9));
+      }
+    }
+  }
+  EXPECT_GT(nothing, 0);
+  EXPECT_GT(cut_off, 0);
+  EXPECT_GT(none, 0);
+}
+
+}  // namespace
+}  // namespace raycone

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace raycone {
 namespace {
@@ -88,6 +89,31 @@ double NodeGrid::at(std::span<const double> values, const std::array<std::size_t
     sum += along_[2].weights(k)[sample[2] - begin_[2]] * layer;
   }
   return sum;
+}
+
+// One axis after the other: `below` numbers side by side are of one node along the axis.
+std::vector<double> NodeGrid::at_nodes_of(const NodeGrid& part, std::span<const double> values) const {
+  std::vector<double> numbers(values.begin(), values.end()), next;
+  std::size_t below = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t nodes = size(axis), above = numbers.size() / (nodes * below);
+    const std::span<const std::size_t> of_part = part.along_[axis].nodes();
+    next.assign(above * of_part.size() * below, 0.0);
+    for (std::size_t n = 0; n < of_part.size(); ++n) {
+      const std::size_t sample = part.begin_[axis] + of_part[n] - begin_[axis];
+      for (std::size_t node = 0; node < nodes; ++node) {
+        const double weight = along_[axis].weights(node)[sample];
+        for (std::size_t a = 0; a < above; ++a) {
+          const double* const from = &numbers[(a * nodes + node) * below];
+          double* const to = &next[(a * of_part.size() + n) * below];
+          for (std::size_t i = 0; i < below; ++i) to[i] += weight * from[i];
+        }
+      }
+    }
+    std::swap(numbers, next);
+    below *= of_part.size();
+  }
+  return numbers;
 }
 
 void NodeGrid::interpolate(std::span<const double> values, const SampleBox& part, std::size_t z,

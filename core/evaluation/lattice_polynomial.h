@@ -70,6 +70,9 @@ class NodeGrid {
   // The value at a sample of the box; `values` at nodes.
   [[nodiscard]] double at(std::span<const double> values, const std::array<std::size_t, 3>& sample) const;
 
+  // The values at the nodes of a part of the box, in their order.
+  [[nodiscard]] std::vector<double> at_nodes_of(const NodeGrid& part, std::span<const double> values) const;
+
   // Sets out.values to those of the samples (x, y, z) of `part`, row by row. The part begins a multiple of 8 samples
   // behind the box along x.
   void interpolate(std::span<const double> values, const SampleBox& part, std::size_t z, const MatrixKernel& matrices,

@@ -10,17 +10,13 @@ namespace {
 
 // What each part of a sum may be off by, turns. Some dozens of parts are off by little as a rule, so that most samples
 // are decided at once; where many are not, they are looked at again.
-constexpr double kRoughly = 4e-3, kCloser = 1e-4;
+constexpr double kRoughly = 2.5e-3, kCloser = 1e-4;
 constexpr std::size_t kMany = 32;  // samples
 
-// In units of a triangle's solid angle at a sample: of looking at a box. Boxes are divided where that takes less.
-constexpr double kLook = 1.2e4;
+// In units of a triangle's solid angle at a sample: of looking at a box, and of each part of it that is not smooth in
+// the box around. Boxes are divided where that takes less.
+constexpr double kLook = 5e3, kListed = 10.0;
 constexpr std::size_t kLeastSide = 8;  // samples: of the parts of boxes
-
-struct Task {
-  SampleBox box;
-  double each;
-};
 
 // Cut near the middles of its longer sides, at multiples of the least side from its beginning. One part where it is
 // small.
@@ -51,40 +47,66 @@ SampleBox hull_of(std::span<const SampleBox> boxes) {
   return hull;
 }
 
+// The parts of boxes that are in `whole`.
+std::vector<SampleBox> parts_in(const SampleBox& whole, std::span<const SampleBox> boxes) {
+  std::vector<SampleBox> parts;
+  for (SampleBox box : boxes) {
+    bool meets = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.begin[axis] = std::max(box.begin[axis], whole.begin[axis]);
+      box.end[axis] = std::min(box.end[axis], whole.end[axis]);
+      meets = meets && box.begin[axis] < box.end[axis];
+    }
+    if (meets) parts.push_back(box);
+  }
+  return parts;
+}
+
 class RoughSides {
  public:
-  explicit RoughSides(const SideSamples& samples)
-      : samples_(samples), sums_(samples.mesh().blocks().sums, samples.rows()) {}
+  RoughSides(const SideSamples& samples, std::vector<SampleBox>& undecided)
+      : samples_(samples), sums_(samples.mesh().blocks().sums, samples.rows()), undecided_(undecided) {}
 
-  // Sets what can be set, or adds what is to be done in its place, to `tasks` or to `undecided`.
-  void set(const Task& task, std::vector<Task>& tasks, std::vector<SampleBox>& undecided) {
-    sums_.look_at(task.box, task.each);
-    const auto range = sums_.range();
-    if (range && samples_.decide(task.box, Crossings::kClosed, range->middle, range->off)) return;
-    const std::vector<SampleBox> parts = parts_of(task.box);
-    if (parts.size() > 1 && sums_.cost() > kLook * static_cast<double>(parts.size())) {
-      for (const SampleBox& part : parts) tasks.push_back({part, task.each});
-      return;
+  // Of the samples of `wanted`, and maybe of others of `box`, which has them all.
+  void set(const SampleBox& box, std::span<const SampleBox> wanted, const RoughBox* around) {
+    const RoughBox here = sums_.look_at(box, kRoughly, around);
+    if (here.is_smooth()) {
+      const auto [middle, off] = RoughSums::range(here);
+      if (samples_.decide(box, Crossings::kClosed, middle, off)) return;
     }
-    std::vector<SampleBox> left = undecided_of(task.box);
-    std::size_t count = 0;
-    for (const SampleBox& run : left) count += run.size();
-    if (count >= kMany && task.each > kCloser) {
-      tasks.push_back({hull_of(left), kCloser});
-    } else {
-      undecided.insert(undecided.end(), left.begin(), left.end());
+    const std::vector<SampleBox> parts = parts_of(box);
+    if (box.size() <= RoughSums::kLargest && (parts.size() < 2 || !pays(here, parts.size()))) return evaluate(here);
+    for (const SampleBox& part : parts) {
+      const std::vector<SampleBox> of_part = parts_in(part, wanted);
+      if (!of_part.empty()) set(part, of_part, &here);
     }
   }
 
  private:
-  // Sets the other samples of the box.
-  [[nodiscard]] std::vector<SampleBox> undecided_of(const SampleBox& box) {
-    const double off = sums_.evaluate(numbers_);
-    const BoxSums sums{numbers_, box};
+  [[nodiscard]] static bool pays(const RoughBox& box, std::size_t parts) {
+    const RoughCover& cover = box.cover;
+    const auto not_smooth = static_cast<double>(cover.near.triangles.size() + cover.near.expansions.size());
+    return RoughSums::cost(box) > (kLook + kListed * not_smooth) * static_cast<double>(parts);
+  }
+
+  void evaluate(const RoughBox& box) {
+    const std::vector<SampleBox> left = undecided_of(box);
+    std::size_t count = 0;
+    for (const SampleBox& run : left) count += run.size();
+    const std::vector<SampleBox> still =
+        count < kMany ? left : undecided_of(sums_.look_at(hull_of(left), kCloser, nullptr));
+    undecided_.insert(undecided_.end(), still.begin(), still.end());
+  }
+
+  // In runs. Sets the other samples of the box.
+  [[nodiscard]] std::vector<SampleBox> undecided_of(const RoughBox& box) {
+    const double off = sums_.evaluate(box, numbers_);
+    const SampleBox& samples = box.samples;
+    const BoxSums sums{numbers_, samples};
     std::vector<SampleBox> left;
-    for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
-      for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
-        samples_.decide_row({box.begin[0], j, k}, Crossings::kClosed, sums.row(j, k), off, left);
+    for (std::size_t k = samples.begin[2]; k < samples.end[2]; ++k) {
+      for (std::size_t j = samples.begin[1]; j < samples.end[1]; ++j) {
+        samples_.decide_row({samples.begin[0], j, k}, Crossings::kClosed, sums.row(j, k), off, left);
       }
     }
     return left;
@@ -92,6 +114,7 @@ class RoughSides {
 
   const SideSamples& samples_;
   RoughSums sums_;
+  std::vector<SampleBox>& undecided_;
   std::vector<double> numbers_;
 };
 
@@ -99,15 +122,7 @@ class RoughSides {
 
 void set_sides_roughly(const SideSamples& samples, std::span<const SampleBox> boxes,
                        std::vector<SampleBox>& undecided) {
-  if (boxes.empty()) return;
-  RoughSides sides(samples);
-  std::vector<Task> tasks;
-  for (const SampleBox& box : boxes) tasks.push_back({box, kRoughly});
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    sides.set(task, tasks, undecided);
-  }
+  if (!boxes.empty()) RoughSides(samples, undecided).set(hull_of(boxes), boxes, nullptr);
 }
 
 }  // namespace raycone

@@ -16,6 +16,12 @@ static_assert(kNodes * kNodes * kNodes <= kTile);
 constexpr double kInterpolation = 4.0;  // at a sample, in units of a triangle's solid angle
 constexpr double kSumsRound = 1e-12;    // of sums and products of some numbers, relative to their magnitudes
 
+NodeGrid nodes_of(const LatticeRows& rows, const SampleBox& samples) {
+  constexpr std::array<std::size_t, 3> kDegrees{kNodes - 1, kNodes - 1, kNodes - 1};
+  constexpr std::array<double, kNodes> kUnit{1.0, 1.0, 1.0, 1.0};  // derivatives, of which bends are multiples
+  return {rows, samples, kDegrees, kUnit};
+}
+
 }  // namespace
 
 RoughSums::RoughSums(const LatticeBlocks& blocks, const LatticeRows& rows)
@@ -27,63 +33,59 @@ RoughSums::RoughSums(const LatticeBlocks& blocks, const LatticeRows& rows)
       doubt_(doubt_of_factors(3 * static_cast<double>(blocks.tree().triangles().size()))),
       covers_(blocks.tree(), axes_, kernels_, blocks.edges()) {}
 
-void RoughSums::look_at(const SampleBox& box, double each) {
-  constexpr std::array<std::size_t, 3> kDegrees{kNodes - 1, kNodes - 1, kNodes - 1};
-  constexpr std::array<double, kNodes> kUnit{1.0, 1.0, 1.0, 1.0};  // derivatives, of which bends are multiples
-  box_ = box;
-  nodes_.emplace(rows_, box, kDegrees, kUnit);
-  cover_ =
-      rough_cover_in(blocks_.tree(), blocks_.extents(), rows_.box_of(box), {nodes_->bend(), nodes_->growth()}, each);
-  summed_ = false;
+RoughBox RoughSums::look_at(const SampleBox& samples, double each, const RoughBox* around) const {
+  RoughBox box{samples, nodes_of(rows_, samples)};
+  const SmallNodes small = samples.size() > kLargest ? SmallNodes::kUnopened : SmallNodes::kOpened;
+  box.cover = rough_cover_in(blocks_.tree(), blocks_.extents(), rows_.box_of(samples),
+                             {box.nodes.bend(), box.nodes.growth()}, each, small, around ? &around->cover : nullptr);
+  add_at_nodes(box, around);
+  return box;
 }
 
-double RoughSums::cost() const { return (cover_.near.cost + kInterpolation) * static_cast<double>(box_.size()); }
-
-std::optional<RoughSums::Range> RoughSums::range() {
-  if (cover_.near.cost > 0.0) return std::nullopt;
-  sum_at_nodes();
-  const auto [least, most] = std::ranges::minmax(std::span(at_nodes_).first(nodes_->size()));
-  return Range{least / 2 + most / 2, nodes_->growth() * (most / 2 - least / 2) + largest_error()};
-}
-
-double RoughSums::evaluate(std::vector<double>& numbers) {
-  const BoxSums sums{numbers, box_};
-  numbers.resize(sums.size());
-  sum_at_nodes();
-  interpolate(sums);
-  covers_.add(cover_.near, rows_.box_of(box_), box_, sums);
-  blocks_.count_terms(cover_.near, box_.size());
-  return largest_error();
-}
-
-void RoughSums::sum_at_nodes() {
-  if (summed_) return;
-  summed_ = true;
-  at_nodes_.fill(0.0);
+// What `around` interpolates is a polynomial of the same degrees, which the nodes take over as it is.
+void RoughSums::add_at_nodes(RoughBox& box, const RoughBox* around) const {
   SampleTile tile;
   tile.clear();
-  for (const std::array<std::size_t, 3>& node : nodes_->nodes()) tile.add(rows_.query(node));
-  const auto set = [&](std::size_t n, double turns, double rest) { at_nodes_[n] = turns + rest; };
-  CoverSums(blocks_.tree(), cover_.smooth, rows_.box_of(box_), kernels_).evaluate(tile, TileShape::kScattered, set);
-  blocks_.count_terms(cover_.smooth, nodes_->size());
+  const std::vector<std::array<std::size_t, 3>> samples = box.nodes.nodes();
+  for (const std::array<std::size_t, 3>& node : samples) tile.add(rows_.query(node));
+  const auto set = [&](std::size_t n, double turns, double rest) { box.at_nodes[n] = turns + rest; };
+  CoverSums(blocks_.tree(), box.cover.smooth, rows_.box_of(box.samples), kernels_)
+      .evaluate(tile, TileShape::kScattered, set);
+  blocks_.count_terms(box.cover.smooth, samples.size());
+  if (around) {
+    const std::span values = std::span(around->at_nodes).first(around->nodes.size());
+    const std::vector<double> of_around = around->nodes.at_nodes_of(box.nodes, values);
+    for (std::size_t n = 0; n < samples.size(); ++n) box.at_nodes[n] += of_around[n];
+  }
+  double largest = 0.0;
+  for (const double value : box.at_nodes) largest = std::max(largest, std::abs(value));
+  box.error =
+      (around ? around->error : 0.0) + box.cover.error + box.nodes.growth() * (doubt_ + kSumsRound * (1 + largest));
 }
 
-void RoughSums::interpolate(const BoxSums& sums) {
-  const SampleBox& box = sums.samples;
-  for (std::size_t z = box.begin[2]; z < box.end[2]; ++z) {
-    nodes_->interpolate({at_nodes_.data(), nodes_->size()}, box, z, matrices_, layer_);
-    for (std::size_t y = box.begin[1]; y < box.end[1]; ++y) {
-      const auto row = std::span(layer_.values).subspan((y - box.begin[1]) * layer_.width, box.side(0));
+double RoughSums::cost(const RoughBox& box) {
+  return (box.cover.near.cost + kInterpolation) * static_cast<double>(box.samples.size());
+}
+
+RoughSums::Range RoughSums::range(const RoughBox& box) {
+  const auto [least, most] = std::ranges::minmax(std::span(box.at_nodes).first(box.nodes.size()));
+  return {least / 2 + most / 2, box.nodes.growth() * (most / 2 - least / 2) + box.error};
+}
+
+double RoughSums::evaluate(const RoughBox& box, std::vector<double>& numbers) {
+  const SampleBox& samples = box.samples;
+  const BoxSums sums{numbers, samples};
+  numbers.resize(sums.size());
+  for (std::size_t z = samples.begin[2]; z < samples.end[2]; ++z) {
+    box.nodes.interpolate({box.at_nodes.data(), box.nodes.size()}, samples, z, matrices_, layer_);
+    for (std::size_t y = samples.begin[1]; y < samples.end[1]; ++y) {
+      const auto row = std::span(layer_.values).subspan((y - samples.begin[1]) * layer_.width, samples.side(0));
       std::ranges::copy(row, sums.row(y, z).begin());
     }
   }
-}
-
-// What the cover leaves out, and what sums at nodes, their interpolation and sums of what is near round.
-double RoughSums::largest_error() const {
-  double largest = 0.0;
-  for (const double value : at_nodes_) largest = std::max(largest, std::abs(value));
-  return cover_.error + nodes_->growth() * (2 * doubt_ + kSumsRound * (1 + largest));
+  covers_.add(box.cover.near, rows_.box_of(samples), samples, sums);
+  blocks_.count_terms(box.cover.near, samples.size());
+  return box.error + box.cover.near_error + doubt_;
 }
 
 }  // namespace raycone

@@ -17,33 +17,45 @@
 
 namespace raycone {
 
-// Sums in turns, those of the perturbed queries, box by box. What is not near a box is summed at some of its samples
-// and interpolated. For one thread.
+// A box of samples, and what triangles sum to there: what is smooth in it at some of the samples, between which it is
+// interpolated, and lists of the rest.
+struct RoughBox {
+  SampleBox samples;
+  NodeGrid nodes;
+  std::array<double, kTile> at_nodes{};
+  RoughCover cover{};
+  double error = 0.0;  // of all that is interpolated, rounding included
+
+  // Whether all is interpolated.
+  [[nodiscard]] bool is_smooth() const { return cover.near.cost == 0.0 && cover.unopened.empty(); }
+};
+
+// Sums in turns, those of the perturbed queries. For one thread.
 class RoughSums {
  public:
   // Of all triangles of `blocks`, in the scale of `rows`. Both must outlive this.
   RoughSums(const LatticeBlocks& blocks, const LatticeRows& rows);
 
-  // All that follows is about this box. Each part that its sums are made of, a group of triangles or one, is off by
-  // `each` or so at most; how far they are off together is known when they are made.
-  void look_at(const SampleBox& box, double each);
+  // A box, with what is not smooth in a box `around` it; of all triangles without. Each part that sums are made of, a
+  // group of triangles or one, is off by `each` or so at most. Small boxes may be evaluated, larger ones only divided.
+  static constexpr std::size_t kLargest = 0x1p12;  // samples
+  [[nodiscard]] RoughBox look_at(const SampleBox& samples, double each, const RoughBox* around) const;
 
   // What evaluate() takes, about, in units of a triangle's solid angle at a sample.
-  [[nodiscard]] double cost() const;
+  [[nodiscard]] static double cost(const RoughBox& box);
 
-  // All sums are within `off` of `middle`. Nothing where a triangle is near.
+  // All sums of a box that is smooth are within `off` of `middle`.
   struct Range {
     double middle, off;
   };
-  [[nodiscard]] std::optional<Range> range();
+  [[nodiscard]] static Range range(const RoughBox& box);
 
-  // Sets the sums, BoxSums of the box. Returns how far they are off at most, rounding included.
-  [[nodiscard]] double evaluate(std::vector<double>& sums);
+  // Sets the sums, BoxSums of the box, of kLargest samples at most. Returns how far they are off at most, rounding
+  // included.
+  [[nodiscard]] double evaluate(const RoughBox& box, std::vector<double>& sums);
 
  private:
-  void sum_at_nodes();
-  void interpolate(const BoxSums& sums);
-  [[nodiscard]] double largest_error() const;
+  void add_at_nodes(RoughBox& box, const RoughBox* around) const;
 
   const LatticeBlocks& blocks_;
   const LatticeRows& rows_;
@@ -52,12 +64,6 @@ class RoughSums {
   const MatrixKernel matrices_;
   const double doubt_;  // what a sum of solid angles rounds at most
   LatticeCovers covers_;
-
-  SampleBox box_{};
-  std::optional<NodeGrid> nodes_;  // of the box
-  RoughCover cover_;
-  std::array<double, kTile> at_nodes_{};  // what is interpolated, once it is summed
-  bool summed_ = false;
   LayerValues layer_;
 };
 

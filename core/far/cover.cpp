@@ -78,28 +78,26 @@ constexpr double kInverse = (1 + 0x1p-30) / (4 * std::numbers::pi);  // of 4 pi
 // Makes one rough cover.
 class RoughWalk {
  public:
-  RoughWalk(std::span<const TriangleExtent> extents, const Box& box, const Interpolation& interpolation, double each)
-      : extents_(extents), box_(box), interpolation_(interpolation), each_(each) {}
+  RoughWalk(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
+            const Interpolation& interpolation, double each, SmallNodes small_nodes)
+      : tree_(tree),
+        extents_(extents),
+        box_(box),
+        interpolation_(interpolation),
+        each_(each),
+        small_(small_nodes == SmallNodes::kUnopened ? kSmall * norm(box.upper - box.lower) : 0.0) {}
 
-  // Whether the node is taken as a whole.
-  bool take(const SourceNode& node, std::uint32_t number) {
-    constexpr double kMuch = 2.0;  // of what is near, an expansion must spare that times its cost
-    const double distance = distance_from(box_, node.centre), gap = distance - node.radius;
-    if (!(gap > 0.0)) return false;
-    const double bend = bend_of(node.area, gap * gap);
-    const bool smooth = bend <= each_;
-    const auto cut = SourceTree::least_cut(node, distance, smooth ? each_ / interpolation_.growth : each_);
-    if (!cut) return false;
-    if (cut->degree == 0) {
-      result_.error += cut->error;
-      return true;
+  // With all that is below it.
+  void take_node(std::uint32_t number) {
+    const std::span<const SourceNode> nodes = tree_.nodes();
+    for (std::uint32_t n = number; n < nodes[number].next;) {
+      if (take_whole(n)) {
+        n = nodes[n].next;
+        continue;
+      }
+      for (std::uint32_t i = nodes[n].begin; i < nodes[n].own_end; ++i) take_triangle(i);
+      ++n;
     }
-    const double cost = expansion_cost(cut->degree), triangles = static_cast<double>(node.triangles());
-    if (!(smooth ? cost < triangles : kMuch * cost < triangles && node.own_end == node.end)) return false;
-    if (!smooth) result_.near.cost += cost;
-    (smooth ? result_.smooth : result_.near).expansions.push_back({number, cut->degree});
-    result_.error += smooth ? bend + interpolation_.growth * cut->error : cut->error;
-    return true;
   }
 
   void take_triangle(std::uint32_t number) {
@@ -119,12 +117,45 @@ class RoughWalk {
   }
 
   RoughCover finish() {
-    result_.error *= 1 + 0x1p-20;  // of sums
+    result_.error *= 1 + kSumsRound;
+    result_.near_error *= 1 + kSumsRound;
     return std::move(result_);
   }
 
  private:
   static constexpr double kLeastSquare = 0x1p-200;  // of less, powers and areas may underflow
+  static constexpr double kSumsRound = 0x1p-20;     // of up to 2^32 numbers
+  static constexpr double kSmall = 0.25;            // radius, as a part of the box's diagonal
+
+  // Whether the node is taken as it is.
+  bool take_whole(std::uint32_t number) {
+    constexpr double kMuch = 2.0;  // of what is near, an expansion must spare that times its cost
+    const SourceNode& node = tree_.nodes()[number];
+    const double distance = distance_from(box_, node.centre), gap = distance - node.radius;
+    if (!(gap > 0.0)) {
+      if (node.radius < small_) result_.unopened.push_back(number);
+      return node.radius < small_;
+    }
+    const double bend = bend_of(node.area, gap * gap);
+    const bool smooth = bend <= each_;
+    const auto cut = SourceTree::least_cut(node, distance, smooth ? each_ / interpolation_.growth : each_);
+    if (!cut) return false;
+    if (cut->degree == 0) {
+      result_.error += cut->error;
+      return true;
+    }
+    const double cost = expansion_cost(cut->degree), triangles = static_cast<double>(node.triangles());
+    if (!(smooth ? cost < triangles : kMuch * cost < triangles && node.own_end == node.end)) return false;
+    if (smooth) {
+      result_.smooth.expansions.push_back({number, cut->degree});
+      result_.error += bend + interpolation_.growth * cut->error;
+    } else {
+      result_.near.expansions.push_back({number, cut->degree});
+      result_.near.cost += cost;
+      result_.near_error += cut->error;
+    }
+    return true;
+  }
 
   // By how much interpolation is off because of triangles of this area, as far away as the root of `square`: their
   // derivatives of order k, over the factorial of k, are at most (k + 1) A / (4 pi d^(k + 2)).
@@ -134,27 +165,26 @@ class RoughWalk {
     return interpolation_.bend * (Interpolation::kOrder + 1) * kInverse * area / (square * square * square);
   }
 
+  const SourceTree& tree_;
   std::span<const TriangleExtent> extents_;
   const Box& box_;
   const Interpolation& interpolation_;
-  double each_;
+  double each_, small_;
   RoughCover result_;
 };
 
 }  // namespace
 
 RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
-                          const Interpolation& interpolation, double each) {
-  RoughWalk walk(extents, box, interpolation, each);
-  const std::span<const SourceNode> nodes = tree.nodes();
-  for (std::uint32_t n = 0; n < nodes.size();) {
-    const SourceNode& node = nodes[n];
-    if (walk.take(node, n)) {
-      n = node.next;
-      continue;
-    }
-    for (std::uint32_t i = node.begin; i < node.own_end; ++i) walk.take_triangle(i);
-    ++n;
+                          const Interpolation& interpolation, double each, SmallNodes small_nodes,
+                          const RoughCover* around) {
+  RoughWalk walk(tree, extents, box, interpolation, each, small_nodes);
+  if (around) {
+    for (const auto& [node, degree] : around->near.expansions) walk.take_node(node);
+    for (const std::uint32_t node : around->unopened) walk.take_node(node);
+    for (const std::uint32_t triangle : around->near.triangles) walk.take_triangle(triangle);
+  } else if (!tree.nodes().empty()) {
+    walk.take_node(0);
   }
   return walk.finish();
 }

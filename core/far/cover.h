@@ -51,16 +51,22 @@ struct Interpolation {
 
 // A cover of all triangles in two parts, and how far what it sums to is off at most.
 struct RoughCover {
-  Cover smooth;  // to be interpolated
-  Cover near;    // to be summed at each point
-  double error = 0.0;
+  Cover smooth;                          // to be interpolated
+  Cover near;                            // to be summed at each point
+  std::vector<std::uint32_t> unopened;   // nodes: for covers of smaller boxes
+  double error = 0.0, near_error = 0.0;  // of `smooth` and what has been left out; of `near`
 };
 
+// How nodes that come into the box and are much smaller are taken.
+enum class SmallNodes { kOpened, kUnopened };
+
 // Nodes as expansions, and triangles, or nothing in their place, each of which is off by `each` at most in all points
-// of the box. `extents`: of the tree's triangles. How far all are off together is known afterwards only: for who is
-// content with most samples.
+// of the box. Of what `around`, the cover of a box around this one, has near or unopened; of all triangles without.
+// `extents`: of the tree's triangles. How far all are off together is known afterwards only: for who is content with
+// most samples.
 [[nodiscard]] RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
-                                        const Interpolation& interpolation, double each);
+                                        const Interpolation& interpolation, double each, SmallNodes small_nodes,
+                                        const RoughCover* around);
 
 struct CoverKernels {
   SharedCornersKernel shared_corners;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/shapes.h"
+
 namespace raycone {
 namespace {
 
@@ -111,6 +113,22 @@ TEST(NodeGrid, IsOffByNoMoreThanItsBend) {
     }
     EXPECT_LE(off, grid.bend());
     EXPECT_GT(off, grid.bend() / 1000);
+  }
+}
+
+TEST(NodeGrid, TellsTheValuesAtTheNodesOfAPart) {
+  const LatticeRows rows = rows_of(30, 20, 10);
+  const std::vector<double> unit(8, 1.0);
+  const NodeGrid grid(rows, {{1, 2, 0}, {30, 20, 10}}, {3, 4, 2}, unit);
+  test::Random random(5);
+  std::vector<double> values(grid.size());
+  for (double& value : values) value = test::uniform(random, -1, 1);
+  for (const SampleBox& box : {SampleBox{{5, 4, 3}, {17, 16, 9}}, SampleBox{{1, 2, 9}, {30, 3, 10}}}) {
+    const NodeGrid part(rows, box, {3, 2, 4}, unit);
+    const std::vector<double> of_part = grid.at_nodes_of(part, values);
+    const auto nodes = part.nodes();
+    ASSERT_EQ(of_part.size(), nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) EXPECT_NEAR(of_part[n], grid.at(values, nodes[n]), 1e-13);
   }
 }
 

@@ -43,16 +43,27 @@ double direct_sum(std::span<const SolidTriangle> triangles, const Vec3& q) {
 struct Seen {
   double closest = 0.0;  // error over what it may be, at most
   double largest = 0.0;  // that any sum may be off by
-  int with_range = 0, without_range = 0;
+  int smooth = 0, not_smooth = 0;
 };
 
-void look_at_box(std::span<const SolidTriangle> triangles, const LatticeRows& rows, RoughSums& sums,
-                 const SampleBox& box, double each, Seen& seen) {
-  sums.look_at(box, each);
-  const std::optional<RoughSums::Range> range = sums.range();
-  ++(range ? seen.with_range : seen.without_range);
+SampleBox random_box(Random& random, const SampleBox& in, std::size_t longest) {
+  SampleBox box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t side = 1 + random() % std::min(in.side(axis), longest);
+    box.begin[axis] = in.begin[axis] + random() % (in.side(axis) - side + 1);
+    box.end[axis] = box.begin[axis] + side;
+  }
+  return box;
+}
+
+// A box that may be evaluated.
+void compare(std::span<const SolidTriangle> triangles, const LatticeRows& rows, RoughSums& sums, const RoughBox& rough,
+             Seen& seen) {
+  const SampleBox& box = rough.samples;
+  const RoughSums::Range range = RoughSums::range(rough);
+  ++(rough.is_smooth() ? seen.smooth : seen.not_smooth);
   std::vector<double> numbers;
-  const double off = sums.evaluate(numbers);
+  const double off = sums.evaluate(rough, numbers);
   const BoxSums of_box{numbers, box};
   seen.largest = std::max(seen.largest, off);
   for (std::size_t z = box.begin[2]; z < box.end[2]; ++z) {
@@ -62,29 +73,29 @@ void look_at_box(std::span<const SolidTriangle> triangles, const LatticeRows& ro
         const double error = std::abs(of_box.row(y, z)[x - box.begin[0]] - w);
         ASSERT_LE(error, off) << x << ' ' << y << ' ' << z;
         seen.closest = std::max(seen.closest, error / off);
-        if (range) {
-          ASSERT_LE(std::abs(w - range->middle), range->off) << x << " " << y << " " << z;
+        if (rough.is_smooth()) {
+          ASSERT_LE(std::abs(w - range.middle), range.off) << x << ' ' << y << ' ' << z;
         }
       }
     }
   }
 }
 
-// Boxes of up to 16 samples along each axis, some of them of one, at random.
+// Boxes of up to 16 samples along each axis, some of them of one, at random: by themselves, and as parts of parts of
+// the lattice.
 Seen look_at_boxes(const TriangleMesh& mesh, const LatticeRows& rows, double each, int boxes) {
   const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
   const LatticeBlocks blocks(triangles, 1e-6, SimdLevel::kBest, LatticeBlocks::Near::kBoundary);
   RoughSums sums(blocks, rows);
   Random random(7);
   Seen seen;
+  const SampleBox lattice{{0, 0, 0}, {rows.xs.size(), rows.ys.size(), rows.zs.size()}};
+  const RoughBox whole = sums.look_at(lattice, each, nullptr);
   for (int n = 0; n < boxes && !testing::Test::HasFatalFailure(); ++n) {
-    SampleBox box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t all = rows.along(axis).size(), side = 1 + random() % std::min<std::size_t>(all, 16);
-      box.begin[axis] = random() % (all - side + 1);
-      box.end[axis] = box.begin[axis] + side;
-    }
-    look_at_box(triangles, rows, sums, box, each, seen);
+    const RoughBox part = sums.look_at(random_box(random, lattice, 40), each, &whole);
+    const RoughBox of_part = sums.look_at(random_box(random, part.samples, 16), each, &part);
+    compare(triangles, rows, sums, of_part, seen);
+    compare(triangles, rows, sums, sums.look_at(of_part.samples, each, nullptr), seen);
   }
   return seen;
 }
@@ -100,12 +111,12 @@ TriangleMesh scraps() {
 }
 
 TEST(RoughSumsTest, AreOffByNoMoreThanTheySay) {
-  const LatticeRows rows = rows_of(48, 40, 44, {-0.6, -0.5, -0.55}, {0.025, 0.025, 0.025});
+  const LatticeRows rows = rows_of(96, 80, 88, {-0.6, -0.5, -0.55}, {0.0125, 0.0125, 0.0125});
   for (const double each : {0.1, 4e-3, 1e-4, 1e-7}) {
     const Seen seen = look_at_boxes(scraps(), rows, each, 60);
     EXPECT_GT(seen.closest, 1e-4) << each << ": bounds that nothing comes near are of no use";
     EXPECT_LT(seen.largest, 100 * each);
-    EXPECT_GT(seen.without_range, 0);
+    EXPECT_GT(seen.not_smooth, 0);
   }
 }
 
@@ -137,11 +148,11 @@ TEST(RoughSumsTest, OfOneTriangleFromAfar) {
     const LatticeRows rows = rows_of(8, 8, 8, {-0.02, -0.02, away}, {0.006, 0.006, 0.006});
     RoughSums sums(blocks, rows);
     for (const double each : {1e-2, 1e-4, 1e-6}) {
-      look_at_box(triangles, rows, sums, {{0, 0, 0}, {8, 8, 8}}, each, seen);
+      compare(triangles, rows, sums, sums.look_at({{0, 0, 0}, {8, 8, 8}}, each, nullptr), seen);
     }
   }
-  EXPECT_GT(seen.with_range, 20);
-  EXPECT_GT(seen.without_range, 20);
+  EXPECT_GT(seen.smooth, 20);
+  EXPECT_GT(seen.not_smooth, 20);
   EXPECT_GT(seen.closest, 0.05);
 }
 

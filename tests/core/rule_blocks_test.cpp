@@ -142,7 +142,7 @@ TEST(Sides, AreSettledWhereTheWindingNumberIsTheThreshold) {
 
 // A sphere full of holes, where certificates decide little.
 TEST(Sides, HoldByRoughSums) {
-  TriangleMesh mesh = test::sphere(12);
+  TriangleMesh mesh = test::sphere(30);
   for (std::size_t n = mesh.triangles.size(); n-- > 0;) {
     if (n % 8 == 3) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(n));
   }

@@ -372,9 +372,14 @@ MUTANTS = [
     Mutant("rough_sums_are_close", "rough sums decide only what they are not off by", [
         ("core/evaluation/rough_sides.cpp", "sums.row(j, k), off, left)", "sums.row(j, k), 0 * off, left)")]),
     Mutant("rough_ranges_are_narrow", "sums are within a range that is wider than that of values at nodes", [
-        ("core/evaluation/rough_sums.cpp", "nodes_->growth() * (most / 2 - least / 2)", "0 * (most / 2 - least / 2)")]),
+        ("core/evaluation/rough_sums.cpp", "box.nodes.growth() * (most / 2 - least / 2)", "0 * (most / 2 - least / 2)")]),
+    Mutant("boxes_around_are_exact", "what a box takes over is off as it was", [
+        ("core/evaluation/rough_sums.cpp", "(around ? around->error : 0.0)", "(around ? 0.0 : 0.0)")]),
+    Mutant("unopened_nodes_are_lost", "parts of a box open the nodes that it has left", [
+        ("core/far/cover.cpp", "for (const std::uint32_t node : around->unopened) walk.take_node(node);", "")]),
     Mutant("smooth_nodes_do_not_bend", "interpolation of expansions is off by their derivatives", [
-        ("core/far/cover.cpp", "smooth ? bend + interpolation_.growth * cut->error", "smooth ? interpolation_.growth * cut->error")]),
+        ("core/far/cover.cpp", "result_.error += bend + interpolation_.growth * cut->error;",
+         "result_.error += interpolation_.growth * cut->error;")]),
     Mutant("smooth_triangles_do_not_bend", "interpolation of triangles is off by their derivatives", [
         ("core/far/cover.cpp", "result_.error += bend;", "result_.error += 0 * bend;")]),
     Mutant("small_triangles_are_nothing", "what is left out is part of the error", [

@@ -107,7 +107,7 @@ void FieldRun::finish(double band_width) {
 
 void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,
                          const RunLimits& limits) {
-  constexpr double kPerTriangle = 128.0;  // of the grid over their projections: surely; 400 are common
+  constexpr double kPerTriangle = 240.0;  // of the grid over their projections: hardly less; 250 to 420 are common
   if (field.engine != RayEngine::kScan) return;
   check_memory(options.path, kPerTriangle * static_cast<double>(triangles), limits.memory());
 }

@@ -141,13 +141,19 @@ Lattice sample(const Box& box, const LatticeRequest& request, std::vector<Warnin
   return sample(box, std::get<VoxelSize>(request.sampling), request.centers);
 }
 
+void add_samples(Lattice& lattice, const Layers& layers) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    lattice.index_min[a] -= layers[a];
+    lattice.counts[a] += 2 * layers[a];
+  }
+}
+
 void add_samples(Lattice& lattice, const VoxelPadding& padding) {
   if (std::abs(static_cast<double>(padding.samples)) > kMaxIndex / 4) {
     throw LimitError("--padding " + std::to_string(padding.samples) + "v: too many samples");
   }
+  add_samples(lattice, Layers{padding.samples, padding.samples, padding.samples});
   for (std::size_t a = 0; a < 3; ++a) {
-    lattice.index_min[a] -= padding.samples;
-    lattice.counts[a] += 2 * padding.samples;
     if (lattice.counts[a] >= 1) continue;
     throw UsageError("--padding " + std::to_string(padding.samples) + "v: leaves no sample along " + "xyz"[a]);
   }
@@ -186,16 +192,17 @@ Box widened(Box box, const WorldPadding& padding) {
   return box;
 }
 
-Lattice with_layers(Lattice lattice, std::int64_t layers) {
-  add_samples(lattice, VoxelPadding{layers});
+Lattice with_layers(Lattice lattice, const Layers& layers) {
+  add_samples(lattice, layers);
   check_finite(lattice);
   return lattice;
 }
 
-std::int64_t layers_around(const std::variant<LatticeRequest, GridReference>& asked) {
+Layers layers_around(const std::variant<LatticeRequest, GridReference>& asked) {
   const auto* const request = std::get_if<LatticeRequest>(&asked);
   const auto* const padding = request ? std::get_if<VoxelPadding>(&request->padding) : nullptr;
-  return padding && padding->samples > 0 ? 0 : 1;
+  const std::int64_t layers = padding && padding->samples > 0 ? 0 : 1;
+  return {layers, layers, layers};
 }
 
 Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::vector<Warning>& warnings) {

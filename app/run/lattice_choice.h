@@ -1,6 +1,7 @@
 // From a box and the lattice options to the lattice. The rules are those of docs/formats.md, "Lattices".
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -19,11 +20,12 @@ namespace raycone {
 [[nodiscard]] Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request,
                                      std::vector<Warning>& warnings);
 
-// With this many samples more at either end of every axis. Throws as choose_lattice().
-[[nodiscard]] Lattice with_layers(Lattice lattice, std::int64_t layers);
+// With this many samples more at either end of an axis. Throws as choose_lattice().
+using Layers = std::array<std::int64_t, 3>;
+[[nodiscard]] Lattice with_layers(Lattice lattice, const Layers& layers);
 
 // The layers that the lattice of a surface has around what is asked for: one, unless that has some by itself.
-[[nodiscard]] std::int64_t layers_around(const std::variant<LatticeRequest, GridReference>& asked);
+[[nodiscard]] Layers layers_around(const std::variant<LatticeRequest, GridReference>& asked);
 
 // Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, const WorldPadding& padding);

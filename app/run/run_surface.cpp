@@ -20,12 +20,16 @@
 namespace raycone {
 namespace {
 
-// That --thicken needs around a mesh.
-std::int64_t layers_of(const SurfaceCommand& command, const Vec3& spacing) {
+// Around what is asked for, with what --thicken needs.
+Layers layers_of(const SurfaceCommand& command, const Vec3& spacing) {
   constexpr double kMost = 1e6;
-  const double layers = std::ceil(command.thickness / std::min({spacing.x, spacing.y, spacing.z}));
-  if (layers <= kMost) return static_cast<std::int64_t>(layers);
-  throw LimitError(command.mesh.path + ": --thicken is more than a million voxels");
+  Layers layers = layers_around(command.lattice);
+  for (std::size_t axis = 0; axis < layers.size(); ++axis) {
+    const double more = std::ceil(command.thickness / spacing[static_cast<int>(axis)]);
+    if (!(more <= kMost)) throw LimitError(command.mesh.path + ": --thicken is more than a million voxels");
+    layers[axis] += static_cast<std::int64_t>(more);
+  }
+  return layers;
 }
 
 // With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
@@ -35,7 +39,7 @@ Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh,
     return choose_lattice(bounding_box(mesh), std::get<LatticeRequest>(command.lattice), warnings);
   };
   const Lattice lattice = grid ? world_lattice_of_grid(*grid, "surface") : choose_for(command.mesh.path, chosen);
-  const std::int64_t layers = layers_around(command.lattice) + layers_of(command, lattice.spacing);
+  const Layers layers = layers_of(command, lattice.spacing);
   return choose_for(grid ? grid->path : command.mesh.path, [&] { return with_layers(lattice, layers); });
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -26,19 +27,22 @@ struct FaceGroups {
 // Bytes of a name that count: else a long name and many short lines could take any amount of memory.
 inline constexpr std::size_t kMostOfName = 255;
 
+// As many bytes of the name as count, without a part of a character of UTF-8 at the end.
+[[nodiscard]] std::string cut_name(std::string_view name);
+
 // Collects groups while a reader meets their faces.
 class GroupCollector {
  public:
   // The triangles from `first` on, which does not decrease, belong to the group of this name.
   void continue_group(const std::string& name, std::size_t first) {
-    const auto known = numbers_.try_emplace(name.substr(0, kMostOfName), static_cast<std::uint32_t>(names_.size()));
+    const auto known = numbers_.try_emplace(cut_name(name), static_cast<std::uint32_t>(names_.size()));
     if (known.second) names_.push_back(known.first->first);
     add_run(first, known.first->second);
   }
 
   // The same, of a group of their own, whatever others are called.
   void start_group(const std::string& name, std::size_t first) {
-    names_.push_back(name.substr(0, kMostOfName));
+    names_.push_back(cut_name(name));
     add_run(first, static_cast<std::uint32_t>(names_.size() - 1));
   }
 

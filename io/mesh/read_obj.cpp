@@ -69,7 +69,7 @@ class ObjReader {
       const std::size_t length = std::min(text_.offset() - start, kMostOfName);
       if (name.size() < kMostOfName) name += (name.empty() ? "" : " ") + std::string(rest.substr(0, length));
     }
-    return name.substr(0, kMostOfName);
+    return cut_name(name);
   }
 
   // A group belongs to its object, and many exporters give both the same name.

@@ -57,7 +57,7 @@ class AsciiStlReader {
 
   static std::string trimmed(std::string_view name) {
     while (!name.empty() && is_space(name.front())) name.remove_prefix(1);
-    return std::string(name.substr(0, kMostOfName));
+    return cut_name(name);
   }
 
   // Names may hold the word "facet", so it takes more than that.

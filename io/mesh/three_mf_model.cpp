@@ -184,7 +184,7 @@ class ModelReader {
     const auto [object, is_new] = model_.objects.try_emplace(id);
     if (!is_new) attributes.fail("a second object " + std::to_string(id));
     object_ = &object->second;
-    object_->name = attributes.find("name").value_or("").substr(0, kMostOfName);
+    object_->name = cut_name(attributes.find("name").value_or(""));
     object_->is_sliced = attributes.find(kSliceStack).has_value();
     object_->is_coarse = attributes.find(kMeshResolution) == "lowres";
   }

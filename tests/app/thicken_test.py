@@ -67,6 +67,14 @@ class Thicken(CommandCase):
             # Roots are good to 2^-34 of an edge, and points keep off nodes by 2^-30 of it: edges are below 0.5.
             self.assertLess(abs(distances - 0.05).max(), 1e-9, mesh)
 
+    def test_each_axis_grows_by_its_own_voxels(self):
+        self.surface("sheet.obj --thicken .1 --voxel-size .05,.2,.01")
+        with open("report.json") as file:
+            lattice = json.load(file)["lattice"]
+        # A layer around the sheet's box, [0, 1] x [0, 1] x 0, and what .1 takes.
+        self.assertEqual(lattice["index_min"], [-3, -2, -11])
+        self.assertEqual(lattice["index_max"], [23, 7, 11])
+
     def test_sheets_survive_that_do_not_without(self):
         words = "surface sheet.obj -o a.ply --resolution 7"
         self.assertEqual(run(words + " --rule abs=.6").returncode, 2)

@@ -57,7 +57,7 @@ Lattice lattice_of(const TriangleMesh& mesh, std::int64_t side) {
   for (int axis = 0; axis < 3; ++axis) {
     lattice.counts[static_cast<std::size_t>(axis)] = 1 + static_cast<std::int64_t>(std::ceil(size[axis] / h));
   }
-  return with_layers(lattice, 4);
+  return with_layers(lattice, {4, 4, 4});
 }
 
 std::vector<Truth> some_truths(const TriangleMesh& mesh, const Lattice& lattice) {

@@ -130,12 +130,12 @@ class BlockValues {
   void set(const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,
            double cap_crossings, std::span<double> values) const {
     const double whole = crossings - cap_crossings;
-    double least = 1.0;
+    int doubtful = 0;  // counted, not asked one by one, so that compilers use lanes
     for (std::size_t i = 0; i < sums.size(); ++i) {
       values[i] = whole + sums[i];
-      least = std::min(least, gap_to_half_integer(values[i]));
+      doubtful |= static_cast<int>(gap_to_half_integer(values[i]) <= doubt_);
     }
-    if (least <= doubt_) sum_doubtful(values, sample, static_cast<std::int64_t>(crossings));
+    if (doubtful != 0) sum_doubtful(values, sample, static_cast<std::int64_t>(crossings));
   }
 
  private:
@@ -156,7 +156,7 @@ class BlockValues {
 }  // namespace
 
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, const RowSink& sink,
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done) {
   std::array<SampleRange, 3> part;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -168,23 +168,22 @@ void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Latt
       axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
         const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
         const std::size_t in_row = x - part[0].begin;
-        std::vector<double> values(sums.size());
+        const std::span<double> of_row = values.subspan(row * part[0].size(), part[0].size());
         const auto set = [&](std::size_t begin, std::size_t end, double n, double caps) {
-          const std::size_t first = begin - in_row, count = end - begin;
-          of_block.set({part[0].begin + begin, y, z}, sums.subspan(first, count), n, caps,
-                       std::span(values).subspan(first, count));
+          of_block.set({part[0].begin + begin, y, z}, sums.subspan(begin - in_row, end - begin), n, caps,
+                       of_row.subspan(begin, end - begin));
           return true;
         };
+        const std::size_t end_in_row = in_row + sums.size();
         if (mesh.counts_crossings()) {
-          const CrossingsOfRow of_row = crossings(row);
-          of_row.mesh.for_each(in_row, in_row + sums.size(), [&](std::size_t begin, std::size_t end, double n) {
-            return of_row.caps.for_each(
+          const CrossingsOfRow n_of_row = crossings(row);
+          n_of_row.mesh.for_each(in_row, end_in_row, [&](std::size_t begin, std::size_t end, double n) {
+            return n_of_row.caps.for_each(
                 begin, end, [&](std::size_t from, std::size_t to, double caps) { return set(from, to, n, caps); });
           });
         } else {
-          set(in_row, in_row + sums.size(), 0.0, 0.0);
+          set(in_row, end_in_row, 0.0, 0.0);
         }
-        sink(row * part[0].size() + in_row, values);
         if (done) done->fetch_add(sums.size(), std::memory_order_relaxed);
       });
 }

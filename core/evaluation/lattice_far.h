@@ -33,17 +33,12 @@ struct CrossingsOfRow {
   RowRuns mesh, caps;
 };
 
-// The winding numbers of samples that follow one another along a row of a block, the first one number `index` of the
-// block's samples, x fastest.
-using RowSink = std::function<void(std::size_t index, std::span<const double> values)>;
-
-// Hands the winding numbers of the samples of `block`, within the tolerance, to `sink`, each once, from several
-// threads. `crossings` is asked for each row, several times and by several threads, before its samples are handed over;
-// never where values do not depend on crossings. A value that may be a half-integer, where rules have their
-// thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs
-// DefaultFloatingPoint.
+// Sets the winding numbers of the samples of `block`, within the tolerance; x fastest. `crossings` is asked for each
+// row, several times and by several threads; never where values do not depend on crossings. Those of a sample may be
+// kept in its value: they are read before. A value that may be a half-integer, where rules have their thresholds, is as
+// ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs DefaultFloatingPoint.
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
-                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, const RowSink& sink,
+                     const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done);
 
 }  // namespace raycone

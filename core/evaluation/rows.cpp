@@ -146,10 +146,7 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
     const std::span<const double> each = values.subspan(row * samples, samples);
     return {diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};
   };
-  const auto set_values = [values](std::size_t index, std::span<const double> of_row) {
-    std::ranges::copy(of_row, values.begin() + static_cast<std::ptrdiff_t>(index));
-  };
-  evaluate_blocks(mesh, axes, lattice, block, crossings_of_row, set_values, done);
+  evaluate_blocks(mesh, axes, lattice, block, crossings_of_row, values, done);
   if (diagnostics) bound_all_errors(mesh, rows, values, *diagnostics);
   return {sums.ties(), on_surface};
 }

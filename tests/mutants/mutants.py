@@ -586,7 +586,7 @@ MUTANTS = [
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
         ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
-        ("core/evaluation/lattice_far.cpp", "if (least <= doubt_)", "if (least < 0.0)")]),
+        ("core/evaluation/lattice_far.cpp", "if (doubtful != 0)", "if (doubtful < 0)")]),
     Mutant("cells_without_their_ends", "the cube of a block of cells has all points in them", [
         ("core/far/lattice_blocks_walk.h", "axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1]",
          "axes_[axis][last - 1]")]),

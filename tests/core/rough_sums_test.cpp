@@ -136,10 +136,7 @@ TEST(RoughSumsTest, OfLatticesThatAreFullOfTies) {
 }
 
 // From farther and farther away: interpolation, and leaving out, take over from sums at each sample.
-TEST(RoughSumsTest, OfOneTriangleFromAfar) {
-  TriangleMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {0.01, 0, 0.002}, {0, 0.01, 0.001}};
-  mesh.triangles = {{0, 1, 2}};
+Seen look_from_afar(const TriangleMesh& mesh) {
   const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
   const LatticeBlocks blocks(triangles, 1e-6, SimdLevel::kBest);
   Seen seen;
@@ -147,13 +144,36 @@ TEST(RoughSumsTest, OfOneTriangleFromAfar) {
     const double away = 0.005 * std::pow(1.07, step);
     const LatticeRows rows = rows_of(8, 8, 8, {-0.02, -0.02, away}, {0.006, 0.006, 0.006});
     RoughSums sums(blocks, rows);
-    for (const double each : {1e-2, 1e-4, 1e-6}) {
+    for (double each = 1e-2; each > 1e-7; each /= 4) {
       compare(triangles, rows, sums, sums.look_at({{0, 0, 0}, {8, 8, 8}}, each, nullptr), seen);
     }
   }
   EXPECT_GT(seen.smooth, 20);
   EXPECT_GT(seen.not_smooth, 20);
-  EXPECT_GT(seen.closest, 0.05);
+  return seen;
+}
+
+TEST(RoughSumsTest, OfOneTriangleFromAfar) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.01, 0, 0.002}, {0, 0.01, 0.001}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_GT(look_from_afar(mesh).closest, 0.05);
+}
+
+// A node of the tree, whose expansion is exact to many digits.
+TEST(RoughSumsTest, OfAPatchFromAfar) {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kSide = 4;
+  for (std::uint32_t i = 0; i <= kSide; ++i) {
+    for (std::uint32_t j = 0; j <= kSide; ++j) mesh.vertices.push_back({0.002 * i, 0.002 * j, 0});
+  }
+  for (std::uint32_t i = 0; i < kSide; ++i) {
+    for (std::uint32_t j = 0; j < kSide; ++j) {
+      const std::uint32_t a = i * (kSide + 1) + j, b = a + kSide + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    }
+  }
+  EXPECT_GT(look_from_afar(mesh).closest, 0.05);
 }
 
 TEST(RoughSumsTest, LeastCutIsTheLeastThatErrsByNoMore) {

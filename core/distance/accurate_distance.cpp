@@ -13,8 +13,6 @@ namespace {
 
 constexpr DoubleDouble kZero{0.0}, kOne{1.0};
 
-// An edge that short is a point: beyond, products would underflow.
-constexpr double kPoint = 1e-250;
 // An edge from this square on is measured in double first.
 constexpr double kMeasurable = 1e-200;
 // A triangle that thin beside its longest edge, 2^-56, is the segments of its edges.
@@ -39,34 +37,39 @@ double least_distance(const Vec3& query, const Vec3& edge) {
 
 }  // namespace
 
-AccurateTriangle::AccurateTriangle(const Vec3& a, const Vec3& b, const Vec3& c)
-    : corners_{a, b, c},
-      edges_{exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)},
-      edge_squares_{dot(edges_[0], edges_[0]), dot(edges_[1], edges_[1]), dot(edges_[2], edges_[2])} {
-  const std::array<double, 3> squares{square(edges_[0].rounded()), square(edges_[1].rounded()),
-                                      square(edges_[2].rounded())};
-  longest_ = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
-  const DoubleDoubleVec3 to_apex = DoubleDouble{-1.0} * edges_[(longest_ + 2) % 3];
-  is_thin_ = edge_squares_[longest_].high < kPoint;
-  if (is_thin_) return;
-  apex_ = dot(to_apex, edges_[longest_]) / edge_squares_[longest_];
-  height_ = to_apex - apex_ * edges_[longest_];
-  height_square_ = dot(height_, height_);
-  is_thin_ = height_square_.high < kThin * edge_squares_[longest_].high;
+AccurateTriangle::AccurateTriangle(const Vec3& a, const Vec3& b, const Vec3& c) : parts_{} {
+  Parts& t = parts_;
+  t.corners = {a, b, c};
+  t.edges = {exact_difference(b, a), exact_difference(c, b), exact_difference(a, c)};
+  std::array<double, 3> squares;
+  for (std::size_t i = 0; i < 3; ++i) {
+    t.edge_squares[i] = dot(t.edges[i], t.edges[i]);
+    squares[i] = square(t.edges[i].rounded());
+  }
+  t.longest = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+  const DoubleDoubleVec3& longest = t.edges[t.longest];
+  const DoubleDouble& longest_square = t.edge_squares[t.longest];
+  const DoubleDoubleVec3 to_apex = DoubleDouble{-1.0} * t.edges[(t.longest + 2) % 3];
+  t.is_thin = longest_square.high < kPoint;
+  if (t.is_thin) return;
+  t.apex = dot(to_apex, longest) / longest_square;
+  t.height = to_apex - t.apex * longest;
+  t.height_square = dot(t.height, t.height);
+  t.is_thin = t.height_square.high < kThin * longest_square.high;
 }
 
 double AccurateTriangle::square_to_segment(const DoubleDoubleVec3& to_query, std::size_t edge) const {
-  if (edge_squares_[edge].high < kPoint) return square(to_query.rounded());
-  DoubleDouble along = dot(to_query, edges_[edge]) / edge_squares_[edge];
+  if (parts_.edge_squares[edge].high < kPoint) return square(to_query.rounded());
+  DoubleDouble along = dot(to_query, parts_.edges[edge]) / parts_.edge_squares[edge];
   if (along < kZero) along = kZero;
   if (kOne < along) along = kOne;
-  return square((to_query - along * edges_[edge]).rounded());
+  return square((to_query - along * parts_.edges[edge]).rounded());
 }
 
 // Whether doubles are sure that the plane's closest point is on the other side of the longest edge than the triangle,
 // or beyond its apex.
 bool AccurateTriangle::is_beside(const Vec3& to_query) const {
-  const Vec3 edge = edges_[longest_].rounded(), height = height_.rounded();
+  const Vec3 edge = parts_.edges[parts_.longest].rounded(), height = parts_.height.rounded();
   const Vec3 beside = to_query - (dot(to_query, edge) / square(edge)) * edge;
   const double up = dot(beside, height) / square(height);
   const double off = kOff * sum_of_lengths(to_query, edge) / norm(height);
@@ -75,22 +78,22 @@ bool AccurateTriangle::is_beside(const Vec3& to_query) const {
 
 // Of the triangle's plane; infinity where its closest point is outside of the triangle.
 double AccurateTriangle::square_to_plane(const Edges& to_query) const {
-  if (is_thin_ || is_beside(to_query[longest_].rounded())) return HUGE_VAL;
-  const DoubleDoubleVec3& edge = edges_[longest_];
-  const DoubleDouble along = dot(to_query[longest_], edge) / edge_squares_[longest_];
-  const DoubleDoubleVec3 beside = to_query[longest_] - along * edge;
-  const DoubleDouble up = dot(beside, height_) / height_square_;
-  const bool inside = !(up < kZero) && !(along < up * apex_) && !(kOne - along < up * (kOne - apex_));
-  return inside ? square((beside - up * height_).rounded()) : HUGE_VAL;
+  if (parts_.is_thin || is_beside(to_query[parts_.longest].rounded())) return HUGE_VAL;
+  const DoubleDoubleVec3& edge = parts_.edges[parts_.longest];
+  const DoubleDouble along = dot(to_query[parts_.longest], edge) / parts_.edge_squares[parts_.longest];
+  const DoubleDoubleVec3 beside = to_query[parts_.longest] - along * edge;
+  const DoubleDouble up = dot(beside, parts_.height) / parts_.height_square;
+  const bool inside = !(up < kZero) && !(along < up * parts_.apex) && !(kOne - along < up * (kOne - parts_.apex));
+  return inside ? square((beside - up * parts_.height).rounded()) : HUGE_VAL;
 }
 
 double AccurateTriangle::squared_distance(const Vec3& p) const {
-  const Edges to_query{exact_difference(p, corners_[0]), exact_difference(p, corners_[1]),
-                       exact_difference(p, corners_[2])};
+  const Edges to_query{exact_difference(p, parts_.corners[0]), exact_difference(p, parts_.corners[1]),
+                       exact_difference(p, parts_.corners[2])};
   double least = square_to_plane(to_query);
   if (least != HUGE_VAL) return least;
   std::array<double, 3> from{};
-  for (std::size_t i = 0; i < 3; ++i) from[i] = least_distance(to_query[i].rounded(), edges_[i].rounded());
+  for (std::size_t i = 0; i < 3; ++i) from[i] = least_distance(to_query[i].rounded(), parts_.edges[i].rounded());
   const auto first = static_cast<std::size_t>(std::ranges::min_element(from) - from.begin());
   least = square_to_segment(to_query[first], first);
   // The others, unless they are farther than rounding could hide.

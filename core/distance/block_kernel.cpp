@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/distance/accurate_lanes-inl.h"
 #include "core/distance/near_triangles-inl.h"
 #include "core/distance/triangle_lanes-inl.h"
 #include "core/machine/simd_kernel.h"
@@ -45,16 +46,30 @@ struct Group {
   }
 };
 
-// Samples for which lanes are not sure.
-void take_care(const TrianglePack& pack, std::size_t slot, std::size_t first, LaneMask sure, Group& group) {
+// A triangle of a block.
+struct PlacedTriangle {
+  const TrianglePack& pack;
+  std::size_t slot, place;
+};
+
+// Samples for which lanes are not sure. Of thin triangles, all of them want the same.
+void take_care(const PlacedTriangle& placed, std::size_t first, LaneMask sure, AccurateTriangles& accurate,
+               Group& group) {
+  if (placed.pack.is_thin(placed.slot)) {
+    const VectorLanes ps{hn::Load(d, &group.x[first]), hn::Load(d, &group.y[first]), hn::Load(d, &group.z[first])};
+    const Lanes least = hn::Load(d, &group.least[first]);
+    const AccurateTriangle& triangle = accurate.at(placed.place, [&] { return placed.pack.accurate(placed.slot); });
+    const Lanes squares = squared_distances(triangle, ps, hn::Not(sure));
+    hn::Store(hn::IfThenElse(sure, least, hn::Min(least, squares)), d, &group.least[first]);
+    return;
+  }
   alignas(64) std::array<double, kWidth> is_sure;
   hn::Store(hn::IfThenElseZero(sure, hn::Set(d, 1.0)), d, is_sure.data());
-  const TriangleDistance triangle = pack.triangle(slot);
-  std::optional<AccurateTriangle> accurate;
+  const TriangleDistance triangle = placed.pack.triangle(placed.slot);
   for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
     if (is_sure[lane] != 0.0) continue;
     const std::size_t n = first + lane;
-    group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}, accurate));
+    group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}));
   }
 }
 
@@ -66,7 +81,9 @@ HWY_INLINE LaneMask is_farther(const TrianglePack& pack, std::size_t slot, Lanes
 }
 
 // Returns the largest of the group's least squares.
-HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& group) {
+HWY_INLINE double lower_to(const PlacedTriangle& placed, AccurateTriangles& accurate, Group& group) {
+  const TrianglePack& pack = placed.pack;
+  const std::size_t slot = placed.slot;
   Lanes largest = hn::Zero(d);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
     const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
@@ -75,7 +92,7 @@ HWY_INLINE double lower_to(const TrianglePack& pack, std::size_t slot, Group& gr
     const Lanes least = hn::IfThenElse(some.sure, hn::Min(before, some.values), before);
     hn::Store(least, d, &group.least[n]);
     const LaneMask settled = hn::Or(some.sure, is_farther(pack, slot, some.values, least));
-    if (!hn::AllTrue(d, settled)) take_care(pack, slot, n, settled, group);
+    if (!hn::AllTrue(d, settled)) take_care(placed, n, settled, accurate, group);
     largest = hn::Max(largest, hn::Load(d, &group.least[n]));
   }
   return hn::GetLane(hn::MaxOfLanes(d, largest));
@@ -177,7 +194,7 @@ void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middl
   Group group(task, box);
   const auto look_at = [&](std::size_t number) {
     const auto place = static_cast<std::size_t>(near.places[number]);
-    return beyond_error(lower_to(scratch.packed[place / kStride], place % kStride, group));
+    return beyond_error(lower_to({scratch.packed[place / kStride], place % kStride, place}, scratch.accurate, group));
   };
   const double slack = slack_of(task.reach * kSlack, middle.radius);
   const FirstLook first = find_bounds(near, middle, here, slack, scratch.bounds);
@@ -229,6 +246,7 @@ void find_triangles(const BlockTask& task, BlockScratch& scratch) {
 
 void fill_block(const BlockTask& task, BlockScratch& scratch) {
   scratch.squares.fill(kNowhere);
+  scratch.accurate.forget_all();
   find_triangles(task, scratch);
   if (scratch.of_block.count == 0) return;
   for_each_part(task.block, kPartSide, [&](const SampleBox& part) {

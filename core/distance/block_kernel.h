@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/crossings/lattice_rows.h"
 #include "core/data/sample_box.h"
+#include "core/distance/accurate_distance.h"
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"
 
@@ -32,11 +34,32 @@ struct NearTriangles {
   std::size_t count = 0;
 };
 
+// Thin triangles of a block that were prepared for more care, by their places; the last ones.
+class AccurateTriangles {
+ public:
+  void forget_all() { places_.fill(kNone); }
+
+  // make() prepares it where it is not there. Valid until the next call.
+  template <class Make>
+  [[nodiscard]] const AccurateTriangle& at(std::size_t place, const Make& make) {
+    const std::size_t n = place % kMost;
+    if (places_[n] != place) triangles_[n].emplace(make()), places_[n] = place;
+    return *triangles_[n];
+  }
+
+ private:
+  static constexpr std::size_t kMost = 61;  // no multiple of the places of a pack
+  static constexpr std::size_t kNone = SIZE_MAX;
+  std::array<std::size_t, kMost> places_{};
+  std::array<std::optional<AccurateTriangle>, kMost> triangles_{};
+};
+
 // What a task keeps from block to block.
 struct BlockScratch {
   std::vector<std::uint32_t> packs;
   NearTriangles of_block, of_part;       // places: in `packed`
   std::vector<TrianglePack> packed;      // those of the block
+  AccurateTriangles accurate;            // likewise
   std::vector<double> bounds;            // below the squares of those of the part, at all samples of a group
   std::vector<std::int64_t> candidates;  // their numbers
   alignas(64) std::array<double, kSamplesOfBlock> squares;  // by index_in_block()

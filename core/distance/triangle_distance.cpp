@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/distance/accurate_distance.h"
 #include "core/exact/double_double.h"
 
 namespace raycone {
@@ -77,11 +78,6 @@ double TriangleDistance::squared_to_edge(std::size_t i, const Vec3& p) const {
 }
 
 double TriangleDistance::squared(const Vec3& p) const {
-  std::optional<AccurateTriangle> accurate;
-  return squared(p, accurate);
-}
-
-double TriangleDistance::squared(const Vec3& p, std::optional<AccurateTriangle>& accurate) const {
   const Vec3 from_a = p - corners_[0];
   const double v = dot(from_a, to_v_), w = dot(from_a, to_w_);
   const bool beyond_ab = w<0.0, beyond_bc = v + w> 1.0, beyond_ca = v < 0.0;
@@ -93,16 +89,15 @@ double TriangleDistance::squared(const Vec3& p, std::optional<AccurateTriangle>&
   if (beyond_ab || all_edges) least = std::min(least, squared_to_edge(0, p));
   if (beyond_bc || all_edges) least = std::min(least, squared_to_edge(1, p));
   if (beyond_ca || all_edges) least = std::min(least, squared_to_edge(2, p));
-  return least >= sure_from_ || least <= sure_up_to_ ? least : squared_with_care(p, accurate);
+  return least >= sure_from_ || least <= sure_up_to_ ? least : squared_with_care(p);
 }
 
-double TriangleDistance::squared_with_care(const Vec3& p, std::optional<AccurateTriangle>& accurate) const {
+double TriangleDistance::squared_with_care(const Vec3& p) const {
   const Vec3 from_a = p - corners_[0];
   const double v = dot(from_a, to_v_), w = dot(from_a, to_w_);
   constexpr double kInside = 0x1p-10;  // far more than v and w are off
   if (shape_ != Shape::kProper || v < kInside || w < kInside || v + w > 1 - kInside) {
-    if (!accurate) accurate.emplace(corners_[0], corners_[1], corners_[2]);
-    return accurate->squared_distance(p);
+    return AccurateTriangle(corners_[0], corners_[1], corners_[2]).squared_distance(p);
   }
   // The rest is known to all digits, and what of it lies in the plane is the error of v and w.
   const Vec3 rest = exact_rest(corners_[0], corners_[1], corners_[2], p, v, w);

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "core/data/vec3.h"
-#include "core/distance/accurate_distance.h"
 
 namespace raycone {
 
@@ -23,8 +21,6 @@ class TriangleDistance {
   // less than 4 u (u = 2^-53) times the largest coordinate of the mesh or p, if the mesh's largest coordinate is in
   // [1/2, 1] and those of p are below 2^400 (docs/method.md, "Distances").
   [[nodiscard]] double squared(const Vec3& p) const;
-  // The same. What more care takes once for many points is kept in `accurate`, empty at first.
-  [[nodiscard]] double squared(const Vec3& p, std::optional<AccurateTriangle>& accurate) const;
 
  private:
   friend struct TrianglePack;  // has the same numbers in columns
@@ -38,7 +34,7 @@ class TriangleDistance {
   // The square of the distance to the edge that starts at corner i.
   [[nodiscard]] double squared_to_edge(std::size_t i, const Vec3& p) const;
   // The same as squared(), for the closest points of which squared() cannot be sure.
-  [[nodiscard]] double squared_with_care(const Vec3& p, std::optional<AccurateTriangle>& accurate) const;
+  [[nodiscard]] double squared_with_care(const Vec3& p) const;
 
   std::array<Vec3, 3> corners_;
   std::array<Vec3, 3> edges_;             // edge i from corner i to the next

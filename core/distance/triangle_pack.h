@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/data/triangle_mesh.h"
+#include "core/distance/accurate_distance.h"
 #include "core/distance/triangle_distance.h"
 
 namespace raycone {
@@ -37,6 +38,11 @@ struct alignas(64) TrianglePack {
   }
   // The same numbers, put together again.
   [[nodiscard]] TriangleDistance triangle(std::size_t slot) const {
+    return {corner(0, slot), corner(1, slot), corner(2, slot)};
+  }
+  // Whether care is accurate()'s, wherever the point is.
+  [[nodiscard]] bool is_thin(std::size_t slot) const { return shape[slot] > 0.0; }
+  [[nodiscard]] AccurateTriangle accurate(std::size_t slot) const {
     return {corner(0, slot), corner(1, slot), corner(2, slot)};
   }
 };

@@ -308,7 +308,7 @@ MUTANTS = [
     Mutant("half_spaces_without_turn", "directions to triangles differ", [
         ("core/distance/near_triangles-inl.h", "hn::Add(within, gained)", "within")]),
     Mutant("lanes_without_care", "lanes that are not sure are evaluated again", [
-        ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, settled)) take_care(pack, slot, n, settled, group);",
+        ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, settled)) take_care(placed, n, settled, accurate, group);",
          "")]),
     Mutant("packs_without_care", "triangles of a pack that are not sure are evaluated again", [
         ("core/distance/tree_kernel.cpp", "if (sure[lane] != 0.0 || squares[i + lane] >= reach) continue;",
@@ -335,7 +335,12 @@ MUTANTS = [
         ("core/distance/triangle_distance.cpp", "return square(rest - dot(rest, to_v_) * edges_[0] + dot(rest, to_w_) * edges_[2]);",
          "return square(rest);")]),
     Mutant("inside_of_two_edges", "a point is inside of a thin triangle within all three edges", [
-        ("core/distance/accurate_distance.cpp", "&& !(along < up * apex_) &&", "&&")]),
+        ("core/distance/accurate_distance.cpp", "&& !(along < up * parts_.apex) &&", "&&")]),
+    Mutant("inside_of_two_edges_in_lanes", "a point is inside of a thin triangle within all three edges, in lanes as well", [
+        ("core/distance/accurate_lanes-inl.h", "hn::Or(along < up * apex, one - along < up * (one - apex))",
+         "along < up * apex")]),
+    Mutant("needles_of_other_blocks", "what is kept of a block's thin triangles is forgotten with it", [
+        ("core/distance/block_kernel.cpp", "  scratch.accurate.forget_all();\n", "")]),
     Mutant("no_segments", "a triangle without height is its edges", [
         ("core/distance/accurate_distance.cpp", "constexpr double kThin = 0x1p-112;", "constexpr double kThin = 0;")]),
 

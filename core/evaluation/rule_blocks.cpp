@@ -23,7 +23,7 @@ namespace {
 
 // Blocks of so few samples that have no certificate are not divided: rough sums do then or, where there are none, the
 // samples' own values.
-constexpr std::size_t kFewForRoughSums = 0x1p12;
+constexpr std::size_t kFewForRoughSums = 512;
 constexpr std::size_t kFew = 32;
 constexpr double kMostChange = 0.5;  // turns, from a sample: more is hardly ever below the distance from a threshold
 

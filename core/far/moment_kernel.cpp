@@ -98,14 +98,16 @@ void shift_here(const DegreeRows& shift, const DegreeRows& part, DegreeRows& sum
       for (int k = 0; k < n; ++k) {
         const auto of_shift = static_cast<std::size_t>(k), of_part = static_cast<std::size_t>(n - k);
         for (int l = std::max(-k, m - (n - k)); l <= k; ++l) {
-          const auto at = static_cast<std::size_t>(kMiddle + l), from = static_cast<std::size_t>(kMiddle + m - l);
+          const int from_middle = kMiddle + l, to_middle = kMiddle + m - l;
+          const auto at = static_cast<std::size_t>(from_middle), from = static_cast<std::size_t>(to_middle);
           const Lanes a_re = hn::Set(d, shift.re[of_shift][at]), a_im = hn::Set(d, shift.im[of_shift][at]);
           const Lanes b_re = hn::LoadU(d, &part.re[of_part][from]), b_im = hn::LoadU(d, &part.im[of_part][from]);
           re = hn::Add(re, hn::Sub(hn::Mul(a_re, b_re), hn::Mul(a_im, b_im)));
           im = hn::Add(im, hn::Add(hn::Mul(a_re, b_im), hn::Mul(a_im, b_re)));
         }
       }
-      const auto degree = static_cast<std::size_t>(n), to = static_cast<std::size_t>(kMiddle + m);
+      const int of_order = kMiddle + m;
+      const auto degree = static_cast<std::size_t>(n), to = static_cast<std::size_t>(of_order);
       hn::Store(re, d, &sums.re[degree][to]);
       hn::Store(im, d, &sums.im[degree][to]);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "core/surface/edge_crossing.h"
@@ -36,14 +37,14 @@ std::vector<SideUse> uses_of(const TriangleMesh& mesh) {
   return uses;
 }
 
-Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
+Vec3 normal_in(const TriangleMesh& mesh, std::uint32_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   return unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
 // Of the angle between two triangles at an edge of both.
 double cosine_at(const TriangleMesh& mesh, const SideUse& a, const SideUse& b) {
-  const double cosine = dot(normal_of(mesh, a.triangle), normal_of(mesh, b.triangle));
+  const double cosine = dot(normal_in(mesh, a.triangle), normal_in(mesh, b.triangle));
   return a.forward == b.forward ? -cosine : cosine;
 }
 
@@ -108,7 +109,12 @@ class Nearest {
 }  // namespace
 
 CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles)
-    : mesh_(&mesh), triangles_(&triangles), sides_(mesh.triangles.size(), 0) {
+    : mesh_(&mesh),
+      triangles_(&triangles),
+      sides_(mesh.triangles.size(), 0),
+      beyond_(mesh.triangles.size()),
+      parts_(mesh.triangles.size()) {
+  std::iota(parts_.begin(), parts_.end(), 0U);
   const std::vector<SideUse> uses = uses_of(mesh);
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     const SideUse& first = uses[begin];
@@ -116,7 +122,10 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
     const double cosine = end - begin == 2 ? cosine_at(mesh, first, uses[begin + 1]) : 0.0;
     const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
     sides_[first.triangle] = static_cast<std::uint8_t>(sides_[first.triangle] | bits << first.side);
+    beyond_[first.triangle][first.side] = end - begin == 2 ? uses[begin + 1].triangle : first.triangle;
+    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);
   }
+  for (std::uint32_t& part : parts_) part = parts_[part];  // lower ones know theirs
 }
 
 void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
@@ -129,10 +138,23 @@ void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
       if ((sides_[triangle] >> side & 1U) == 0) continue;
       const Vec3 &a = mesh_->vertices[t[side]], &b = mesh_->vertices[t[(side + 1) % t.size()]];
       const Box box = box_of(std::array{a, b});
-      found.push_back({a, b, box.lower, box.upper, (sides_[triangle] >> (side + kSharpBit) & 1U) != 0});
+      const bool is_sharp = (sides_[triangle] >> (side + kSharpBit) & 1U) != 0;
+      found.push_back({a, b, box.lower, box.upper, is_sharp, {triangle, beyond_[triangle][side]}});
     }
   }
 }
+
+// Each takes the number of a lower one of its part, until that is its own.
+void CellCreases::unite(std::uint32_t a, std::uint32_t b) {
+  const auto lowest_of = [&](std::uint32_t t) {
+    while (parts_[t] != t) t = parts_[t] = parts_[parts_[t]];
+    return t;
+  };
+  const std::uint32_t of_a = lowest_of(a), of_b = lowest_of(b);
+  parts_[std::max(of_a, of_b)] = std::min(of_a, of_b);
+}
+
+Vec3 CellCreases::normal_of(std::uint32_t triangle) const { return normal_in(*mesh_, triangle); }
 
 // A hit is in the crease's box, but for rounding.
 bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance) {
@@ -162,6 +184,31 @@ std::optional<Vec3> CreasesHere::farthest_hit(const std::array<Vec3, 3>& corners
     farthest = hit;
   }
   return farthest;
+}
+
+// What a flat part that is convex has in common with a plane is a piece of a straight line, with two ends: from the
+// crease where it is entered it leads to one other crease at most.
+CreasesHere::Section CreasesHere::section(const std::array<Vec3, 3>& corners, std::uint32_t from, std::uint32_t to) {
+  const Box box = box_of(corners);
+  hits_.clear();
+  for (const Crease& crease : all()) {
+    if (!meets(crease, box.lower, box.upper)) continue;
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    if (at) hits_.push_back({crease.from + *at * (crease.to - crease.from), crease.triangles});
+  }
+  Section section;
+  for (std::uint32_t here = creases_.part_of(from); here != creases_.part_of(to); ++section.size) {
+    const auto is_of = [&](const CreaseHit& hit) {
+      return std::ranges::any_of(hit.triangles, [&](std::uint32_t t) { return creases_.part_of(t) == here; });
+    };
+    const auto hit = std::ranges::find_if(hits_, is_of);
+    if (section.size == Section::kMost || hit == hits_.end() || std::any_of(hit + 1, hits_.end(), is_of)) return {};
+    const std::uint32_t beyond = hit->triangles[creases_.part_of(hit->triangles[0]) == here ? 1 : 0];
+    section.corners[section.size] = {hit->position, beyond};
+    here = creases_.part_of(beyond);
+    hits_.erase(hit);
+  }
+  return section;
 }
 
 std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& within, const Vec3& near) {

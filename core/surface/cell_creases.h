@@ -27,17 +27,27 @@ class CellCreases {
   struct Crease {
     Vec3 from, to, lower, upper;
     bool is_sharp;
+    std::array<std::uint32_t, 2> triangles;  // that it is of; twice the same one where these are not two
   };
 
   // Sets `found` to each crease with a point in the closed cell, and some more, in the order of triangles.
   void find(std::uint32_t cell, std::vector<Crease>& found) const;
 
+  // Precondition, of these: there are creases.
+  [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
+  // The same for triangles that hang together by edges that are no creases: a flat part of the mesh.
+  [[nodiscard]] std::uint32_t part_of(std::uint32_t triangle) const { return parts_[triangle]; }
+
  private:
   static constexpr unsigned kSharpBit = 4;
+
+  void unite(std::uint32_t a, std::uint32_t b);
 
   const TriangleMesh* mesh_ = nullptr;
   const CellTriangles* triangles_ = nullptr;
   std::vector<std::uint8_t> sides_;  // of each triangle: bits for sides that are creases no lower triangle has
+  std::vector<std::array<std::uint32_t, 3>> beyond_;  // the triangle on the other side of each of these
+  std::vector<std::uint32_t> parts_;                  // of each triangle, the lowest one of its part
 };
 
 // The creases of one cell after the other, looked up when they are first asked for.
@@ -58,6 +68,19 @@ class CreasesHere {
   // triangle.
   [[nodiscard]] std::optional<Vec3> farthest_hit(const std::array<Vec3, 3>& corners, const Vec3& p, const Vec3& q);
 
+  // How the mesh leads from one of its triangles to another one within a triangle of the cell, from flat part to flat
+  // part: the points of the creases in between, and the triangle beyond each of them.
+  struct Section {
+    static constexpr std::size_t kMost = 3;
+    struct Corner {
+      Vec3 position;
+      std::uint32_t beyond;
+    };
+    std::array<Corner, kMost> corners{};
+    std::size_t size = 0;  // 0 where creases do not lead there, or not just one way, or by more than kMost points
+  };
+  [[nodiscard]] Section section(const std::array<Vec3, 3>& corners, std::uint32_t from, std::uint32_t to);
+
   // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
   // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
   [[nodiscard]] std::optional<Vec3> nearest_within(const BarycentricCoordinates& within, const Vec3& near);
@@ -73,6 +96,10 @@ class CreasesHere {
 
  private:
   using Crease = CellCreases::Crease;
+  struct CreaseHit {
+    Vec3 position;
+    std::array<std::uint32_t, 2> triangles;
+  };
   [[nodiscard]] const std::vector<Crease>& all() {
     if (!known_) creases_.find(cell_, found_);
     known_ = true;
@@ -83,6 +110,7 @@ class CreasesHere {
   std::uint32_t cell_ = 0;
   bool known_ = false;
   std::vector<Crease> found_;
+  std::vector<CreaseHit> hits_;  // where section() is looked for
 };
 
 }  // namespace raycone

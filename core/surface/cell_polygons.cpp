@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/machine/threads.h"
+
 namespace raycone {
 namespace {
 
@@ -18,6 +20,7 @@ struct LoopStep {
   std::uint8_t low, direction;  // of the edge
   std::uint8_t face_low, face;  // of the face, as in kuhn::kFaces
   std::uint8_t square;          // that it is half of
+  bool forward;                 // whether the loop meets the points of the face in their order
 };
 struct LoopSteps {
   std::array<LoopStep, 12> steps{};
@@ -96,10 +99,10 @@ LoopSteps loop_around(unsigned inside, const std::array<BorderFace, 12>& faces) 
   std::size_t at = 0;
   do {
     const Edge from = through[at].first, to = through[at].second;
-    loop.steps[loop.size++] = {static_cast<std::uint8_t>(from.first),
-                               static_cast<std::uint8_t>(from.first ^ from.second),
-                               static_cast<std::uint8_t>(of[at]->corners[0]), static_cast<std::uint8_t>(of[at]->face),
-                               static_cast<std::uint8_t>(of[at]->square)};
+    loop.steps[loop.size++] = {
+        static_cast<std::uint8_t>(from.first),         static_cast<std::uint8_t>(from.first ^ from.second),
+        static_cast<std::uint8_t>(of[at]->corners[0]), static_cast<std::uint8_t>(of[at]->face),
+        static_cast<std::uint8_t>(of[at]->square),     from < to};
     at = static_cast<std::size_t>(std::find_if(through.begin(), through.begin() + static_cast<std::ptrdiff_t>(count),
                                                [&](const auto& each) { return each.first == to; }) -
                                   through.begin());
@@ -148,11 +151,16 @@ bool CellPolygons::find_loop() {
     const std::uint32_t edge = cells_.cells()[corners_.of(step.low)].edge(step.direction);
     const EdgePoint& point = edge_points_[edge];
     if (point.source == kHole) return false;
-    loop_[loop_size_++] = {edge, point.position, &point, step.square, step.direction};
-    const auto found = face_points_.find(corners_.of(step.face_low), step.face);
-    if (!found) continue;
-    loop_[loop_size_++] = {cells_.edges() + *found, face_points_.positions()[*found], nullptr, step.square, 0};
-    ++face_count_;
+    const auto [first, count] = face_points_.find(corners_.of(step.face_low), step.face);
+    if (loop_size_ + 1 + count > loop_.size() || face_count_ + count > kMostSteps) return false;
+    loop_[loop_size_++] = {edge, point.position, &point, step.square, step.direction, nullptr};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t number = first + (step.forward ? i : count - 1 - i);
+      const EdgePoint* const piece =
+          i + 1 < count ? &face_points_.piece_behind(step.forward ? number : number - 1) : nullptr;
+      loop_[loop_size_++] = {cells_.edges() + number, face_points_.positions()[number], nullptr, step.square, 0, piece};
+    }
+    face_count_ += count;
   }
   return loop.size > 0;
 }
@@ -177,7 +185,17 @@ bool CellPolygons::is_in_plane(const EdgePoint& plane, const Vec3& p) const {
   return std::abs(dot(plane.normal, p - plane.position)) <= kInPlane * unit_;
 }
 
-// Each is of one source, and in its plane.
+bool CellPolygons::is_near_node(const Vec3& p) const {
+  const SurfaceCell& cell = cells_.cells()[cell_];
+  const Vec3 low = p - cells_.corner(cell, 0), high = p - cells_.corner(cell, kuhn::kCorners - 1);
+  const double least = kNeedle * unit_;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::min(std::abs(low[axis]), std::abs(high[axis])) > least) return false;
+  }
+  return true;
+}
+
+// Each is in the plane of a source. Of several sources, planes through nodes would have them on different sides.
 bool CellPolygons::find_runs() {
   const auto loop = std::span(loop_).first(loop_size_);
   const auto start =
@@ -185,18 +203,17 @@ bool CellPolygons::find_runs() {
                        : static_cast<std::size_t>(std::ranges::find(loop, nullptr, &LoopCorner::point) - loop.begin());
   run_count_ = 0;
   runs_[0].size = 0;
-  runs_[0].plane = nullptr;
+  runs_[0].plane = face_count_ > 0 ? loop_[start].piece : nullptr;
   for (std::size_t n = 0; n < loop_size_; ++n) {
     const std::size_t corner = (start + n) % loop_size_;
     Run& run = runs_[run_count_];
     run.add(corner);
     if (loop_[corner].point) {
       if (!run.plane) run.plane = loop_[corner].point;
-      if (loop_[corner].point->source != run.plane->source) return false;
     } else if (n > 0) {
       Run& next = runs_[++run_count_];
       next.size = 0;
-      next.plane = nullptr;
+      next.plane = loop_[corner].piece;
       next.add(corner);
     }
   }
@@ -205,9 +222,15 @@ bool CellPolygons::find_runs() {
   for (std::size_t n = 0; n < run_count_; ++n) {
     const Run& run = runs_[n];
     planes_[n] = run.plane;
+    bool is_at_node = false, is_of_one = true;
     for (std::size_t i = 0; i < run.size; ++i) {
-      if (!is_in_plane(*run.plane, loop_[run.corners[i]].position)) return false;
+      const LoopCorner& corner = loop_[run.corners[i]];
+      if (!is_in_plane(*run.plane, corner.position)) return false;
+      if (!corner.point) continue;
+      is_at_node = is_at_node || is_near_node(corner.position);
+      is_of_one = is_of_one && corner.point->source == run.plane->source;
     }
+    if (is_at_node && !is_of_one) return false;
   }
   return true;
 }
@@ -230,22 +253,22 @@ bool CellPolygons::holds_diagonal() {
   const SurfaceCell& cell = cells_.cells()[cell_];
   if (cell.is_inside(0) == cell.is_inside(kuhn::kCorners - 1)) return true;
   const EdgePoint& point = edge_points_[cell.edge(kuhn::kCorners - 1)];
-  return std::any_of(
-      planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
-      [&](const EdgePoint* plane) { return plane->source == point.source && is_in_plane(*plane, point.position); });
+  return std::any_of(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
+                     [&](const EdgePoint* plane) { return is_in_plane(*plane, point.position); });
 }
 
 // Those of faces within the cell are where two of the planes meet.
 bool CellPolygons::holds_face_points() {
   constexpr std::size_t kFirstWithin = 6;
   for (std::size_t face = kFirstWithin; face < kuhn::kFaces.size(); ++face) {
-    const auto found = face_points_.find(cell_, face);
-    if (!found) continue;
-    const Vec3& p = face_points_.positions()[*found];
-    const auto planes = std::count_if(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
-                                      [&](const EdgePoint* plane) { return is_in_plane(*plane, p); });
-    if (planes < 2) return false;
-    spare_points_.push_back(*found);
+    const auto [first, count] = face_points_.find(cell_, face);
+    for (std::uint32_t point = first; point < first + count; ++point) {
+      const Vec3& p = face_points_.positions()[point];
+      const auto planes = std::count_if(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
+                                        [&](const EdgePoint* plane) { return is_in_plane(*plane, p); });
+      if (planes < 2) return false;
+      spare_points_.push_back(point);
+    }
   }
   return true;
 }
@@ -320,6 +343,27 @@ void CellPolygons::find_diagonals() {
     const bool is_inline = dot(off, off) <= most * most * dot(along, along);
     diagonals_[diagonal_count_++] = {here.vertex, here.square % 2 == 0, is_inline};
   }
+}
+
+std::vector<std::uint8_t> polygons_at_sections(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                                               const FacePoints& face_points, const CellCreases& creases, double unit) {
+  std::vector<std::uint8_t> found(cells.cells().size(), 0);
+  for (const std::uint64_t face : face_points.section_faces()) {
+    for (const std::uint32_t cell : cells_at_face(cells, static_cast<std::uint32_t>(face / 16), face % 16))
+      found[cell] = 1;
+  }
+  parallel_for(found.size(), 512, [&](std::size_t begin, std::size_t end) {
+    CreasesHere creases_here(creases);
+    CornerCells corners(cells);
+    CellPolygons polygons(cells, edge_points, face_points, creases_here, corners, unit);
+    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+      if (found[cell] == 0) continue;
+      creases_here.enter(cell);
+      corners.enter(cell);
+      found[cell] = polygons.find(cell) ? 1 : 0;
+    }
+  });
+  return found;
 }
 
 std::size_t best_fan(std::span<const Vec3> polygon) {

@@ -91,6 +91,7 @@ class CellPolygons {
     const EdgePoint* point;  // of an edge; none of a face
     unsigned square;         // that the next side is on
     unsigned direction;      // of the edge
+    const EdgePoint* piece;  // of the next side, where that is between two points of a face
   };
   // Of the loop, between two points of faces.
   struct Run {
@@ -103,6 +104,7 @@ class CellPolygons {
 
   bool find_loop();
   [[nodiscard]] bool has_needles() const;
+  [[nodiscard]] bool is_near_node(const Vec3& p) const;
   bool find_runs();
   bool find_ends();
   bool holds_diagonal();
@@ -135,6 +137,13 @@ class CellPolygons {
   std::size_t diagonal_count_ = 0;
   std::vector<std::uint32_t> spare_points_;
 };
+
+// Of each cell at a face with several points, whether the surface is polygons there: 1; 0 for all others. The same for
+// any number of threads.
+[[nodiscard]] std::vector<std::uint8_t> polygons_at_sections(const SurfaceCells& cells,
+                                                             std::span<const EdgePoint> edge_points,
+                                                             const FacePoints& face_points, const CellCreases& creases,
+                                                             double unit);
 
 // A polygon cut into triangles at one corner, of which the worst is best: the number of that corner.
 [[nodiscard]] std::size_t best_fan(std::span<const Vec3> polygon);

@@ -22,7 +22,7 @@ struct LoopCorner {
   const EdgePoint* edge_point;
 };
 struct Loop {
-  std::array<LoopCorner, 8> corners;
+  std::array<LoopCorner, 4 * (1 + CreasesHere::Section::kMost)> corners;
   std::size_t size = 0;
   bool has_face_point = false;
 
@@ -76,14 +76,15 @@ class CellContour {
     const std::uint32_t edge = cells_.cells()[cell_of(low)].edge(high ^ low);
     loop.add(edge, &edge_points_[edge]);
   }
-  void add_face(Loop& loop, unsigned a, unsigned b, unsigned c) {
-    std::array<unsigned, 3> corners{a, b, c};
+  // The points of a face between its edges from `common` to `last` and to `next`.
+  void add_face(Loop& loop, unsigned common, unsigned last, unsigned next) {
+    std::array<unsigned, 3> corners{common, last, next};
     std::ranges::sort(corners);
     const std::size_t face = kuhn::face_number(corners[1] ^ corners[0], corners[2] ^ corners[0]);
-    const auto found = face_points_.find(cell_of(corners[0]), face);
-    if (!found) return;
-    loop.add(cells_.edges() + *found, nullptr);
-    loop.has_face_point = true;
+    const auto [first, count] = face_points_.find(cell_of(corners[0]), face);
+    for (std::uint32_t n = 0; n < count; ++n)
+      loop.add(cells_.edges() + first + (last < next ? n : count - 1 - n), nullptr);
+    loop.has_face_point = loop.has_face_point || count > 0;
   }
 
   void add_polygons();
@@ -91,6 +92,11 @@ class CellContour {
   [[nodiscard]] Loop loop_of(const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
     return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
+  }
+  // What the surface is of between two corners of a loop, one of them a face point.
+  [[nodiscard]] const EdgePoint& piece_between(const LoopCorner& a, const LoopCorner& b) const {
+    if (a.edge_point) return *a.edge_point;
+    return b.edge_point ? *b.edge_point : face_points_.piece_behind(std::min(a.vertex, b.vertex) - cells_.edges());
   }
   void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
@@ -176,11 +182,11 @@ Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
     add_edge(loop, a, c);
     add_face(loop, a, c, d);
     add_edge(loop, a, d);
-    add_face(loop, a, b, d);
+    add_face(loop, d, a, b);
     add_edge(loop, b, d);
-    add_face(loop, b, c, d);
+    add_face(loop, b, d, c);
     add_edge(loop, b, c);
-    add_face(loop, a, b, c);
+    add_face(loop, c, b, a);
   } else {
     const bool lone_inside = inside == 1;
     const auto lone = std::ranges::find_if(corner, [&](unsigned c) { return is_inside(c) == lone_inside; });
@@ -214,8 +220,7 @@ void CellContour::fill(const Loop& loop, std::size_t number) {
   });
   for (std::size_t i = 0; i < loop.size; ++i) {
     const LoopCorner &here = loop.corners[i], &next = loop.corners[(i + 1) % loop.size];
-    const std::int32_t first = (here.edge_point ? here : next).edge_point->source;
-    const std::int32_t second = (next.edge_point ? next : here).edge_point->source;
+    const std::int32_t first = piece_between(here, next).source, second = piece_between(next, here).source;
     add_triangle({here.vertex, next.vertex, vertex}, at_hole && !apex.on_mesh ? kHole : source_of(first, second));
   }
 }
@@ -264,7 +269,7 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
                          [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
-  std::array<PointOnPlane, 4> planes;
+  std::array<PointOnPlane, std::tuple_size_v<decltype(loop.corners)>> planes;
   std::size_t count = 0, face_points = 0;
   Vec3 of_all, of_faces;
   for (std::size_t i = 0; i < loop.size; ++i) {
@@ -274,6 +279,8 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
     if (!corner.edge_point) {
       of_faces = of_faces + from_first;
       ++face_points;
+      const LoopCorner& next = loop.corners[(i + 1) % loop.size];
+      if (!next.edge_point) planes[count++] = {from_first, piece_between(corner, next).normal};
     } else if (corner.edge_point->source != kHole) {
       planes[count++] = {from_first, corner.edge_point->normal};
     }

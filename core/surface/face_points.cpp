@@ -10,9 +10,18 @@
 namespace raycone {
 namespace {
 
-struct FacePoint {
-  std::uint64_t face;
-  Vec3 position;
+constexpr double kBorder = 16.0;  // margins: next to the border a point of an edge is as good, and there are no needles
+
+// Of one face, and the triangles between them.
+struct PointsOfFace {
+  std::array<Vec3, CreasesHere::Section::kMost> positions{};
+  std::array<std::uint32_t, CreasesHere::Section::kMost> beyond{};
+  std::size_t size = 0;
+
+  void add(const Vec3& p, std::uint32_t triangle) {
+    positions[size] = p;
+    beyond[size++] = triangle;
+  }
 };
 
 // The mixed edges of a face: two of its three.
@@ -75,26 +84,59 @@ std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
   return inside_face(face.corners, {1.0 - u - v, u, v}, margin);
 }
 
-// The point of a crease in the face that is farthest from the straight line between the two points.
-std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, double margin) {
+// A point of a crease in the face, if it is not next to the border.
+std::optional<Vec3> within_face(const FaceEdges& face, const Vec3& hit, double margin) {
   const auto& [low, middle, high] = face.corners;
-  const std::optional<Vec3> hit =
-      creases.farthest_hit(face.corners, face.points[0]->position, face.points[1]->position);
-  if (!hit) return std::nullopt;
-  const Vec3 first = middle - low, second = high - low, normal = cross(first, second), from = *hit - low;
+  const Vec3 first = middle - low, second = high - low, normal = cross(first, second), from = hit - low;
   const double size = dot(normal, normal);
   const double u = dot(cross(from, second), normal) / size, v = dot(cross(first, from), normal) / size;
-  // Next to the border a point of an edge is as good, and there are no needles.
-  constexpr double kBorder = 16.0;  // margins
   if (std::min({1.0 - u - v, u, v}) < kBorder * margin) return std::nullopt;
   return inside_face(face.corners, {1.0 - u - v, u, v}, margin);
 }
 
+// Where the mesh leads from one point to the other by way of other triangles: the points of the creases in between.
+// Each must be farther along the straight line between the two than the one before, so that lines between them do not
+// cross.
+PointsOfFace section_points(const FaceEdges& face, CreasesHere& creases, double unit, double margin) {
+  constexpr double kAhead = 32.0;  // units
+  const EdgePoint &p = *face.points[0], &q = *face.points[1];
+  if (p.source == kHole || q.source == kHole) return {};
+  const CreasesHere::Section section =
+      creases.section(face.corners, static_cast<std::uint32_t>(p.source), static_cast<std::uint32_t>(q.source));
+  const Vec3 along = q.position - p.position;
+  const double least = kAhead * unit * std::sqrt(dot(along, along));
+  if (section.size < 2) return {};
+  PointsOfFace points;
+  const Vec3* last = &p.position;
+  for (std::size_t n = 0; n < section.size; ++n) {
+    const std::optional<Vec3> point = within_face(face, section.corners[n].position, margin);
+    if (!point || !(dot(*point - *last, along) > least)) return {};
+    points.add(*point, section.corners[n].beyond);
+    last = &points.positions[n];
+  }
+  return dot(q.position - *last, along) > least ? points : PointsOfFace{};
+}
+
+// The point of a crease in the face that is farthest from the straight line between the two points.
+std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, double margin) {
+  const std::optional<Vec3> hit =
+      creases.farthest_hit(face.corners, face.points[0]->position, face.points[1]->position);
+  return hit ? within_face(face, *hit, margin) : std::nullopt;
+}
+
 // Where planes meet on a crease, that is the point: it is in both planes as well as numbers can tell.
-std::optional<Vec3> face_point(const FaceEdges& face, CreasesHere& creases, double near, double margin) {
+PointsOfFace points_of_face(const FaceEdges& face, CreasesHere& creases, double tolerance, double unit, double margin,
+                            bool sections) {
+  // The margin and rounding move points off the mesh by less than this.
+  const double near = 4.0 * (tolerance + unit);
   const std::optional<Vec3> meeting = meeting_point(face, margin);
-  if (meeting && creases.has_hit_near(face.corners, *meeting, near)) return meeting;
-  return crease_point(face, creases, margin);
+  const bool is_meeting = meeting && creases.has_hit_near(face.corners, *meeting, near);
+  PointsOfFace points;
+  if (sections && !is_meeting) points = section_points(face, creases, unit, margin);
+  if (points.size > 0) return points;
+  const std::optional<Vec3> one = is_meeting ? meeting : crease_point(face, creases, margin);
+  if (one) points.add(*one, 0);
+  return points;
 }
 
 }  // namespace
@@ -116,13 +158,21 @@ double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
   return std::max(kVoxels * std::min({h.x, h.y, h.z}), (single ? kSingle : kDouble) * largest);
 }
 
+std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell, std::size_t face) {
+  const unsigned across = (kuhn::kCorners - 1) ^ kuhn::kFaces[face].second;
+  if (across == 0) return {cell, cell};
+  auto [i, j, k] = cells.cells()[cell].node;
+  if (across == 1) return {cell - 1, cell};
+  (across == 2 ? j : k) -= 1;
+  return {cells.first_from(cells.row_begin(j, k), cells.row_end(j, k), i), cell};
+}
+
 FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-                       double tolerance, const SurfaceMargins& margins) {
-  // The margin and rounding move points off the mesh by less than this.
+                       double tolerance, const SurfaceMargins& margins, bool sections) {
   const Vec3& h = cells.lattice().spacing;
-  const double near = 4.0 * (tolerance + margins.inner * std::max({h.x, h.y, h.z}));
+  const double unit = margins.inner * std::max({h.x, h.y, h.z});
   constexpr std::size_t kCellsPerPart = 512;
-  std::vector<std::vector<FacePoint>> parts((cells.cells().size() + kCellsPerPart - 1) / kCellsPerPart);
+  std::vector<FacePoints> parts((cells.cells().size() + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     CreasesHere creases_here(creases);
     const std::size_t last_cell = std::min(end * kCellsPerPart, cells.cells().size());
@@ -131,33 +181,50 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
       for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
         const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
         if (!edges || !disagree(*edges, tolerance, margins.inner)) continue;
-        const auto point = face_point(*edges, creases_here, near, margins.inner);
-        if (point) parts[cell / kCellsPerPart].push_back({std::uint64_t{16} * cell + face, *point});
+        const PointsOfFace points = points_of_face(*edges, creases_here, tolerance, unit, margins.inner, sections);
+        FacePoints& part = parts[cell / kCellsPerPart];
+        for (std::size_t n = 0; n < points.size; ++n) {
+          const Vec3& position = points.positions[n];
+          if (n + 1 < points.size) {
+            const auto number = static_cast<std::uint32_t>(part.faces_.size());
+            const Vec3 normal = creases.normal_of(points.beyond[n]);
+            part.pieces_.push_back({number, {position, normal, static_cast<std::int32_t>(points.beyond[n])}});
+          }
+          part.add(std::uint64_t{16} * cell + face, position);
+        }
       }
     }
   });
+  join(parts);
+}
+
+void FacePoints::join(std::vector<FacePoints>& parts) {
   std::vector<std::size_t> places;
   std::size_t count = 0;
-  for (const std::vector<FacePoint>& part : parts) {
+  for (const FacePoints& part : parts) {
     places.push_back(count);
-    count += part.size();
+    for (const Piece& piece : part.pieces_)
+      pieces_.push_back({static_cast<std::uint32_t>(count + piece.point), piece.plane});
+    count += part.faces_.size();
   }
-  auto faces = sized_on_all_threads<std::uint64_t>(count);
-  auto positions = sized_on_all_threads<Vec3>(count);
+  resize_on_all_threads(faces_, count);
+  resize_on_all_threads(positions_, count);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      for (std::size_t i = 0; i < parts[n].size(); ++i) {
-        faces[places[n] + i] = parts[n][i].face;
-        positions[places[n] + i] = parts[n][i].position;
-      }
+      std::ranges::copy(parts[n].faces_, faces_.begin() + static_cast<std::ptrdiff_t>(places[n]));
+      std::ranges::copy(parts[n].positions_, positions_.begin() + static_cast<std::ptrdiff_t>(places[n]));
       parts[n] = {};
     }
   });
-  *this = FacePoints(std::move(faces), std::move(positions));
+  number_cells();
 }
 
 FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions)
     : faces_(std::move(faces)), positions_(std::move(positions)) {
+  number_cells();
+}
+
+void FacePoints::number_cells() {
   const std::size_t cells = faces_.empty() ? 0 : faces_.back() / 16 + 1;
   first_of_cell_.resize(cells + 1, 0);
   faces_of_cell_.resize(cells, 0);
@@ -168,22 +235,72 @@ FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> posit
   for (std::size_t cell = 0; cell < cells; ++cell) first_of_cell_[cell + 1] += first_of_cell_[cell];
 }
 
-std::optional<std::uint32_t> FacePoints::find(std::uint32_t cell, std::size_t face) const {
-  if (cell >= faces_of_cell_.size() || (faces_of_cell_[cell] >> face & 1U) == 0) return std::nullopt;
-  std::uint32_t n = first_of_cell_[cell];
-  while (faces_[n] % 16 != face) ++n;
-  return n;
+FacePoints::Range FacePoints::find(std::uint32_t cell, std::size_t face) const {
+  if (cell >= faces_of_cell_.size() || (faces_of_cell_[cell] >> face & 1U) == 0) return {};
+  Range range{first_of_cell_[cell], 0};
+  while (faces_[range.first] % 16 != face) ++range.first;
+  const std::uint32_t end = first_of_cell_[cell + 1];
+  while (range.first + range.count < end && faces_[range.first + range.count] % 16 == face) ++range.count;
+  return range;
+}
+
+const EdgePoint& FacePoints::piece_behind(std::uint32_t point) const {
+  return std::ranges::lower_bound(pieces_, point, {}, &Piece::point)->plane;
+}
+
+std::vector<std::uint64_t> FacePoints::section_faces() const {
+  std::vector<std::uint64_t> faces;
+  for (const Piece& piece : pieces_) {
+    if (faces.empty() || faces.back() != faces_[piece.point]) faces.push_back(faces_[piece.point]);
+  }
+  return faces;
+}
+
+FacePoints FacePoints::with_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
+                                        std::span<const EdgePoint> edge_points, const CellCreases& creases,
+                                        const SurfaceMargins& margins) const {
+  FacePoints result;
+  CreasesHere creases_here(creases);
+  auto piece = pieces_.begin();
+  for (std::size_t i = 0; i < faces_.size();) {
+    const std::uint64_t face = faces_[i];
+    const auto cell = static_cast<std::uint32_t>(face / 16);
+    std::size_t end = i + 1;
+    while (end < faces_.size() && faces_[end] == face) ++end;
+    const std::array<std::uint32_t, 2> both = cells_at_face(cells, cell, face % 16);
+    const bool stays = end == i + 1 || std::ranges::any_of(both, [&](auto c) { return cells_of_polygons[c] != 0; });
+    std::optional<Vec3> instead;
+    if (!stays) {
+      creases_here.enter(cell);
+      instead =
+          crease_point(*mixed_edges(cells, edge_points, cell, kuhn::kFaces[face % 16]), creases_here, margins.inner);
+    }
+    for (; piece != pieces_.end() && piece->point < end; ++piece) {
+      const auto number = static_cast<std::uint32_t>(result.faces_.size() + piece->point - i);
+      if (stays) result.pieces_.push_back({number, piece->plane});
+    }
+    for (; stays && i < end; ++i) result.add(face, positions_[i]);
+    if (instead) result.add(face, *instead);
+    i = end;
+  }
+  result.number_cells();
+  return result;
 }
 
 FacePoints FacePoints::without(const std::vector<bool>& dropped) const {
-  std::vector<std::uint64_t> faces;
-  std::vector<Vec3> positions;
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    if (dropped[i]) continue;
-    faces.push_back(faces_[i]);
-    positions.push_back(positions_[i]);
+  FacePoints left;
+  auto piece = pieces_.begin();
+  for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
+    bool is_dropped = false;
+    for (end = i; end < faces_.size() && faces_[end] == faces_[i]; ++end) is_dropped = is_dropped || dropped[end];
+    for (; piece != pieces_.end() && piece->point < end; ++piece) {
+      const std::size_t number = left.faces_.size() + piece->point - i;
+      if (!is_dropped) left.pieces_.push_back({static_cast<std::uint32_t>(number), piece->plane});
+    }
+    for (std::size_t n = i; n < end && !is_dropped; ++n) left.add(faces_[n], positions_[n]);
   }
-  return {std::move(faces), std::move(positions)};
+  left.number_cells();
+  return left;
 }
 
 }  // namespace raycone

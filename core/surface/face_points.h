@@ -1,8 +1,8 @@
 // The points where sharp edges pass through the faces of a lattice's tetrahedra.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,30 +17,63 @@ namespace raycone {
 // rounds (single precision where all of them are such numbers).
 [[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
 
+// The cells at a face with nodes of both kinds: it is between two, or within one, which comes twice then.
+[[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
+                                                         std::size_t face);
+
 class FacePoints {
  public:
   // Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in
-  // the face, if there is one; that where the planes meet, else the one farthest from the straight line. Points are
-  // kept inside the face by the margin. They depend on the face, its two points and the mesh alone, so that both its
-  // cells agree.
+  // the face, if there is one; that where the planes meet, else the one farthest from the straight line. With
+  // `sections`, where planes do not meet: all points by which the mesh leads from the one to the other, if these are
+  // several, and go ahead all the way. Points are kept inside the face by the margin. They depend on the face, its two
+  // points and the mesh alone, so that both its cells agree.
   FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-             double tolerance, const SurfaceMargins& margins);
+             double tolerance, const SurfaceMargins& margins, bool sections = false);
   FacePoints() = default;
-  // These points, of faces numbered 16 * cell + face, increasing.
+  // These points, of faces numbered 16 * cell + face, each once, increasing.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
+  // Of each point.
   [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
 
-  // The number of the point of a face of the cell, as in kuhn::kFaces; nothing where it has none. Thread-safe.
-  [[nodiscard]] std::optional<std::uint32_t> find(std::uint32_t cell, std::size_t face) const;
+  // Points whose numbers follow each other.
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+  // Those of a face of the cell, as in kuhn::kFaces, in order: from the point of the edge that is less by the numbers
+  // of its corners, lower one first, to that of the other. Thread-safe.
+  [[nodiscard]] Range find(std::uint32_t cell, std::size_t face) const;
+  // What the surface is of between a point and the next one, of the same face.
+  [[nodiscard]] const EdgePoint& piece_behind(std::uint32_t point) const;
 
-  // All but those of these numbers.
+  // The faces that have several points, in increasing order.
+  [[nodiscard]] std::vector<std::uint64_t> section_faces() const;
+  // The same, but that these have several only where that pays: where one of the face's cells is in
+  // `cells_of_polygons`, which has a 1 for each such cell.
+  [[nodiscard]] FacePoints with_sections_at(const std::vector<std::uint8_t>& cells_of_polygons,
+                                            const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                                            const CellCreases& creases, const SurfaceMargins& margins) const;
+
+  // All but those of faces that have one of these numbers.
   [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
 
  private:
-  std::vector<std::uint64_t> faces_;  // 16 * cell + face, increasing
+  struct Piece {
+    std::uint32_t point;
+    EdgePoint plane;
+  };
+  void add(std::uint64_t face, const Vec3& position) {
+    faces_.push_back(face);
+    positions_.push_back(position);
+  }
+  void join(std::vector<FacePoints>& parts);
+  void number_cells();
+
+  std::vector<std::uint64_t> faces_;  // 16 * cell + face; those of a face follow each other
   std::vector<Vec3> positions_;
+  std::vector<Piece> pieces_;                 // of the points that are not the last ones of their faces, increasing
   std::vector<std::uint32_t> first_of_cell_;  // up to the last cell that has any; one more at the end
   std::vector<std::uint16_t> faces_of_cell_;  // likewise, a bit for each
 };

@@ -12,6 +12,7 @@
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
+#include "core/surface/cell_polygons.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/face_sources.h"
@@ -54,6 +55,11 @@ class SurfaceMaker {
                     ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), DistanceEvaluator(mesh_),
                                         options_.thickness, cells_, margins)
                     : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
+      if (may_use_polygons()) {
+        const FacePoints sharp = points_of_sections(margins);
+        if (std::optional<FinishedSurface> made = attempt(sharp, margins, true, ContourCells::kPolygons))
+          return std::move(*made);
+      }
       FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (may_use_polygons()) {
@@ -77,6 +83,16 @@ class SurfaceMaker {
 
   // What thickens has points off the mesh. Without merging, the surface is told in all of its triangles.
   [[nodiscard]] bool may_use_polygons() const { return options_.merge_planes && !(options_.thickness > 0.0); }
+
+  // Several points of a face help where the surface is polygons then. Cones of tetrahedra would only have more
+  // triangles.
+  [[nodiscard]] FacePoints points_of_sections(const SurfaceMargins& margins) const {
+    const FacePoints sharp(cells_, points_, creases_, tolerance_, margins, true);
+    const Vec3& h = inside_.lattice().spacing;
+    const double unit = margins.inner * std::min({h.x, h.y, h.z});
+    return sharp.with_sections_at(polygons_at_sections(cells_, points_, sharp, creases_, unit), cells_, points_,
+                                  creases_, margins);
+  }
 
   void enter(const char* stage) const {
     if (options_.at_stage) options_.at_stage(stage);

@@ -56,7 +56,7 @@ struct Cells {
   FacePoints face_points;
   double tolerance;
 
-  Cells(TriangleMesh of, const Lattice& lattice)
+  Cells(TriangleMesh of, const Lattice& lattice, bool sections = false)
       : mesh(std::move(of)),
         nodes(nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice)),
         cells(nodes),
@@ -64,7 +64,7 @@ struct Cells {
         creases(mesh, triangles),
         points(edge_points(mesh, WindingNumberEvaluator(mesh), Rule{}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
-    face_points = FacePoints(cells, points, creases, tolerance, kMargins);
+    face_points = FacePoints(cells, points, creases, tolerance, kMargins, sections);
   }
 
   [[nodiscard]] ContouredSurface contoured(ContourCells kind) const {
@@ -161,6 +161,7 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
   const DefaultFloatingPoint guard;
   Random random(13);
   const TriangleMesh large = test::box_mesh({-9, -9, -9}, {9, 9, 0});
+  int of_several = 0;
   for (int round = 0; round < 30; ++round) {
     TriangleMesh mesh = turned(large, random);
     const Lattice lattice = lattice_around(mesh, 2.0);
@@ -170,21 +171,145 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
     CellPolygons polygons(cells.cells, cells.points, cells.face_points, creases, corners, 0x1p-30 * 2.0);
     for (std::uint32_t cell = 0; cell < cells.cells.cells().size(); ++cell) {
       std::vector<std::int32_t> sources;
+      std::vector<Vec3> normals;
       for (unsigned low = 0; low < kuhn::kCorners; ++low) {
         for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
           const SurfaceCell& here = cells.cells.cells()[cell];
           if ((low & direction) != 0 || here.is_inside(low) == here.is_inside(low | direction)) continue;
-          sources.push_back(cells.points[cells.cells.cells()[cells.cells.cell_at(cell, low)].edge(direction)].source);
+          const std::uint32_t of_low = cells.cells.cell_at(cell, low);
+          const EdgePoint& point = cells.points[cells.cells.cells()[of_low].edge(direction)];
+          sources.push_back(point.source);
+          normals.push_back(point.normal);
         }
       }
-      if (std::ranges::count(sources, sources.front()) != std::ssize(sources)) continue;
+      // Each face of the box is two triangles.
+      if (std::ranges::any_of(normals, [&](const Vec3& n) { return dot(n, normals.front()) < 0.9; })) continue;
+      of_several += std::ranges::count(sources, sources.front()) != std::ssize(sources) ? 1 : 0;
       creases.enter(cell);
       corners.enter(cell);
       ASSERT_TRUE(polygons.find(cell));
       ASSERT_EQ(polygons.polygons().size(), 1U);
-      EXPECT_EQ(polygons.polygons()[0].source, sources.front());
+      EXPECT_NE(std::ranges::find(sources, polygons.polygons()[0].source), sources.end());
       EXPECT_LE(polygons.diagonals().size() + 3, polygons.polygons()[0].size);
       for (const DiagonalPoint& point : polygons.diagonals()) EXPECT_TRUE(point.is_inline);
+    }
+  }
+  EXPECT_GT(of_several, 100);
+}
+
+// A box with its four edges along z cut off.
+TriangleMesh chamfered_box(double cut) {
+  const std::vector<std::pair<double, double>> outline{{cut, 0},     {1 - cut, 0}, {1, cut},     {1, 1 - cut},
+                                                       {1 - cut, 1}, {cut, 1},     {0, 1 - cut}, {0, cut}};
+  const auto count = static_cast<std::uint32_t>(outline.size());
+  TriangleMesh mesh;
+  for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, 0});
+  for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, 1});
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const std::uint32_t next = (n + 1) % count;
+    mesh.triangles.push_back({n, next, count + n});
+    mesh.triangles.push_back({next, count + next, count + n});
+    if (n < 2) continue;
+    mesh.triangles.push_back({0, n, n - 1});
+    mesh.triangles.push_back({count, count + n - 1, count + n});
+  }
+  return mesh;
+}
+
+// Of a surface, what is not in the planes of its sources.
+std::ptrdiff_t faces_off_planes(const ContouredSurface& contoured, const TriangleMesh& mesh) {
+  std::ptrdiff_t count = 0;
+  for (std::size_t face = 0; face < contoured.surface.sources.size(); ++face) {
+    const Triangle& source = mesh.triangles[static_cast<std::size_t>(contoured.surface.sources[face])];
+    const Vec3& a = mesh.vertices[source[0]];
+    const Vec3 normal = of_length_1(cross(mesh.vertices[source[1]] - a, mesh.vertices[source[2]] - a));
+    count += std::ranges::any_of(contoured.surface.mesh.triangles[face], [&](std::uint32_t corner) {
+      return std::abs(dot(normal, contoured.surface.mesh.vertices[corner] - a)) > 1e-8;
+    });
+  }
+  return count;
+}
+
+// Strips of a third of a voxel pass most faces with both of their edges.
+TEST(CellPolygons, FollowBothEdgesOfAStripThroughAFace) {
+  const DefaultFloatingPoint guard;
+  Random random(14);
+  for (int round = 0; round < 10; ++round) {
+    const double h = uniform(random, 0.04, 0.06);
+    const TriangleMesh mesh = turned(chamfered_box(h / 4), random);
+    const Cells one(mesh, lattice_around(mesh, h));
+    Cells several(mesh, lattice_around(mesh, h), true);
+    EXPECT_GT(several.face_points.section_faces().size(), 20U);
+    const std::vector<std::uint8_t> found =
+        polygons_at_sections(several.cells, several.points, several.face_points, several.creases, 0x1p-30 * h);
+    several.face_points =
+        several.face_points.with_sections_at(found, several.cells, several.points, several.creases, kMargins);
+    EXPECT_GT(several.face_points.section_faces().size(), 15U);
+    const ContouredSurface before = one.contoured(ContourCells::kPolygons);
+    const ContouredSurface after = several.contoured(ContourCells::kPolygons);
+    const TriangleMesh used = used_mesh(after);
+    const SurfaceFaults faults = faults_of(used, several.nodes);
+    ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
+    EXPECT_LT(10 * faces_off_planes(after, mesh), 9 * faces_off_planes(before, mesh));
+    EXPECT_LT(after.surface.sources.size(), before.surface.sources.size());
+  }
+}
+
+// Without polygons nearby, faces have no more points than without sections.
+TEST(CellPolygons, AreWhatSectionsAreFor) {
+  const DefaultFloatingPoint guard;
+  Random random(15);
+  const TriangleMesh mesh = turned(chamfered_box(0.02), random);
+  const Cells one(mesh, lattice_around(mesh, 0.08)), several(mesh, lattice_around(mesh, 0.08), true);
+  const std::vector<std::uint8_t> none(several.cells.cells().size(), 0);
+  const FacePoints left =
+      several.face_points.with_sections_at(none, several.cells, several.points, several.creases, kMargins);
+  EXPECT_GT(several.face_points.faces().size(), one.face_points.faces().size());
+  EXPECT_EQ(left.faces(), one.face_points.faces());
+  EXPECT_EQ(left.positions(), one.face_points.positions());
+}
+
+// Whether cells are cut into tetrahedra or not, both sides of a face have its points in one order.
+TEST(CellPolygons, CloseUpWhereFacesHaveSeveralPoints) {
+  const DefaultFloatingPoint guard;
+  Random random(16);
+  for (int round = 0; round < 12; ++round) {
+    const TriangleMesh mesh = turned(test::sphere(12), random);
+    const Cells cells(mesh, lattice_around(mesh, uniform(random, 0.1, 0.25)), true);
+    EXPECT_GT(cells.face_points.section_faces().size(), 30U);
+    for (const ContourCells kind : {ContourCells::kTetrahedra, ContourCells::kPolygons}) {
+      const ContouredSurface made = cells.contoured(kind);
+      const TriangleMesh used = kind == ContourCells::kPolygons ? used_mesh(made) : made.surface.mesh;
+      const SurfaceFaults faults = faults_of(used, cells.nodes);
+      ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
+      EXPECT_EQ(
+          misplaced_vertices(made.surface.mesh.vertices, cells.cells, cells.face_points, made.tetrahedra, kMargins),
+          0U);
+    }
+  }
+}
+
+// A face keeps all of its points, or none.
+TEST(FacePoints, AreDroppedFaceByFace) {
+  const DefaultFloatingPoint guard;
+  Random random(17);
+  const TriangleMesh mesh = turned(test::sphere(12), random);
+  const Cells cells(mesh, lattice_around(mesh, 0.2), true);
+  const FacePoints& all = cells.face_points;
+  std::vector<bool> dropped(all.faces().size(), false);
+  for (std::size_t n = 0; n < dropped.size(); n += 3) dropped[n] = true;
+  const FacePoints left = all.without(dropped);
+  for (std::size_t n = 0; n < all.faces().size(); ++n) {
+    const auto cell = static_cast<std::uint32_t>(all.faces()[n] / 16);
+    const auto [first, count] = all.find(cell, all.faces()[n] % 16);
+    bool is_dropped = false;
+    for (std::uint32_t point = first; point < first + count; ++point) is_dropped = is_dropped || dropped[point];
+    const auto [first_left, count_left] = left.find(cell, all.faces()[n] % 16);
+    ASSERT_EQ(count_left, is_dropped ? 0U : count);
+    for (std::uint32_t point = 0; point < count_left; ++point) {
+      EXPECT_EQ(left.positions()[first_left + point], all.positions()[first + point]);
+      if (point + 1 == count_left) continue;
+      EXPECT_EQ(left.piece_behind(first_left + point).source, all.piece_behind(first + point).source);
     }
   }
 }

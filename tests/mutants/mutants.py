@@ -500,8 +500,14 @@ MUTANTS = [
     Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
         ("core/surface/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
     Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [
-        ("core/surface/face_points.cpp", "return crease_point(face, creases, margin);",
-         "return margin > 9.0 ? crease_point(face, creases, margin) : std::nullopt;")]),
+        ("core/surface/face_points.cpp", "is_meeting ? meeting : crease_point(face, creases, margin);",
+         "is_meeting ? meeting : margin > 9.0 ? crease_point(face, creases, margin) : std::nullopt;")]),
+    Mutant("surface_sections_turned", "both sides of a face have its points in one order", [
+        ("core/surface/contour.cpp", "(last < next ? n : count - 1 - n)", "n")]),
+    Mutant("surface_sections_by_triangles", "flat parts of several triangles are one piece of a section", [
+        ("core/surface/cell_creases.cpp", "    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);\n", "")]),
+    Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
+        ("core/surface/face_points.cpp", "return cells_of_polygons[c] != 0;", "return cells_of_polygons[c] < 9;")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
          "return planes_[plane].distance(p) <= 1e9 * limits_.most;")]),

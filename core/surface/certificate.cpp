@@ -298,11 +298,13 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
   found.faults.links = fans.count_of_wrong();
   found.faults.equal_vertices = mark_equal_vertices(part.mesh.vertices, faulty);
   found.faults.intersections = self_intersections(part.mesh, SearchOrder::kCurve, &fans.graphs, &part.changed);
-  found.faults.intersections.first.reset();  // numbers of the part
-  const std::vector<bool> meeting = std::exchange(found.faults.intersections.of_triangle, {});
+  SelfIntersections& of_part = found.faults.intersections;
+  const std::vector<bool> meeting = std::exchange(of_part.of_triangle, std::vector<bool>(mesh.triangles.size(), false));
+  if (of_part.first) of_part.first = {part.faces[(*of_part.first)[0]], part.faces[(*of_part.first)[1]]};
   for (std::size_t face = 0; face < part.faces.size(); ++face) {
     const bool degenerate = part.changed[face] != 0 && is_degenerate(part.mesh, face);
     found.faults.degenerate_faces += degenerate ? 1 : 0;
+    if (meeting[face]) of_part.of_triangle[part.faces[face]] = true;
     if (!degenerate && !meeting[face]) continue;
     for (const std::uint32_t corner : part.mesh.triangles[face]) faulty[corner] = 1;
   }

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/exact/predicates.h"
-#include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/mesh_corners.h"
+#include "core/surface/repeated_check.h"
 #include "core/surface/source_plane.h"
 
 namespace raycone {
@@ -106,6 +106,7 @@ class CheckedMerger {
     const double unit = margin_ * std::min({h.x, h.y, h.z});
     kept_.assign(vertices.size(), false);
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most * unit, kNeedle * unit});
+    RepeatedCheck check(inside_, vertices.size());
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     bool to_corners = false;
@@ -113,8 +114,10 @@ class CheckedMerger {
       MergedFaces merged = merger.merge(kept_);
       TriangleMesh compact = used_part(vertices, merged.triangles);
       if (round > 0 && to_corners) move_to_corners(compact, unit);
-      SurfaceFaults faults = faults_of(compact, inside_, &misplaced);
-      if (round == 0 && faults.nodes > 0) to_corners = is_better_at_corners(compact, unit, faults, misplaced);
+      SurfaceFaults faults = check.faults(merged, compact, misplaced);
+      check.remember(merged, compact, faults);
+      if (round == 0 && faults.nodes > 0)
+        to_corners = is_better_at_corners(merged, unit, check, compact, faults, misplaced);
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       if (faults.nodes > few_nodes && !all) return std::nullopt;
       const std::uint64_t count = faults.nodes + faults.intersections.pairs;
@@ -134,16 +137,16 @@ class CheckedMerger {
   // exactly, as those between corners of the mesh are. Points next to corners were kept off nodes, or are rounded.
   // Returns whether fewer nodes are on the wrong side, and no other faults more, with such points moved to the corners;
   // sets all to what it is then.
-  bool is_better_at_corners(TriangleMesh& merged, double unit, SurfaceFaults& faults, NodeSet& misplaced) const {
-    TriangleMesh moved = merged;
+  bool is_better_at_corners(const MergedFaces& merged, double unit, RepeatedCheck& check, TriangleMesh& mesh,
+                            SurfaceFaults& faults, NodeSet& misplaced) const {
+    TriangleMesh moved = mesh;
     move_to_corners(moved, unit);
-    const std::vector<ExteriorEdge> none;
-    NodeSet misplaced_then = misplaced_nodes(moved, inside_, faults.links > 0 ? nullptr : &none);  // tells most
-    if (misplaced_then.size() >= faults.nodes) return false;
-    SurfaceFaults then = faults_of(moved, inside_);
+    NodeSet misplaced_then(inside_.lattice());
+    SurfaceFaults then = check.faults(merged, moved, misplaced_then);
     const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
-    if (others > 0 || then.intersections.pairs > faults.intersections.pairs) return false;
-    merged = std::move(moved);
+    if (then.nodes >= faults.nodes || others > 0 || then.intersections.pairs > faults.intersections.pairs) return false;
+    check.remember(merged, moved, then);
+    mesh = std::move(moved);
     faults = std::move(then);
     misplaced = std::move(misplaced_then);
     return true;

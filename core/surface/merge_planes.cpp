@@ -243,10 +243,12 @@ void drop_gone(MergedFaces& faces) {
     const Triangle t = faces.triangles[face];
     if (is_gone(t)) continue;
     faces.sources[left] = faces.sources[face];
+    faces.faces[left] = faces.faces[face];
     faces.triangles[left++] = t;
   }
   faces.triangles.resize(left);
   faces.sources.resize(left);
+  faces.faces.resize(left);
 }
 
 }  // namespace
@@ -259,11 +261,12 @@ PlaneMerger::PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, 
 // shifted by half of one; then what is left, as a whole. Nearly all time goes to the first bricks.
 MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
   merge_first_bricks(kept);
-  MergedFaces merged{{}, {}, into_};
+  MergedFaces merged{{}, {}, into_, {}};
   for (std::size_t face = 0; face < triangles_.size(); ++face) {
     if (is_gone(triangles_[face])) continue;
     merged.triangles.push_back(triangles_[face]);
     merged.sources.push_back(surface_.sources[face]);
+    merged.faces.push_back(static_cast<std::uint32_t>(face));
   }
   std::vector<std::uint8_t> settled = settled_;
   BrickMerger merger(surface_.mesh.vertices, input_, lattice_, kept, limits_,

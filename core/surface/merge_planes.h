@@ -16,7 +16,8 @@ namespace raycone {
 struct MergedFaces {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
-  std::vector<std::uint32_t> into;  // of each vertex, what it was pulled into; itself, where it stayed
+  std::vector<std::uint32_t> into;   // of each vertex, what it was pulled into; itself, where it stayed
+  std::vector<std::uint32_t> faces;  // of merge_planes(): the numbers that its faces had before, increasing
 };
 
 // The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the

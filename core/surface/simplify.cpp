@@ -43,7 +43,7 @@ class Simplifier {
     for (std::uint32_t& target : into_) {
       while (into_[target] != target) target = into_[target];
     }
-    MergedFaces result{{}, {}, std::move(into_)};
+    MergedFaces result{{}, {}, std::move(into_), {}};
     for (std::size_t face = 0; face < off_.size(); ++face) {
       const Triangle& t = surface_.mesh.triangles[face];
       if (t[0] == t[1]) continue;

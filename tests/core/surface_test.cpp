@@ -25,9 +25,11 @@
 #include "core/mesh/weld.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
+#include "core/surface/fault_places.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/mesh_corners.h"
 #include "core/surface/patch_merger.h"
+#include "core/surface/repeated_check.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
@@ -782,6 +784,51 @@ TEST(MergedFaces, AreTheSameWhateverWasKeptBefore) {
     for (int n = 0; n < 1 << round; ++n)
       kept[static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(kept.size())))].flip();
   }
+}
+
+// Each time some vertices are kept others than before, and some are moved, which makes faults, that stay or go.
+TEST(RepeatedCheck, FindsWhatFaultsOfFinds) {
+  const DefaultFloatingPoint guard;
+  Random random(7);
+  const TriangleMesh mesh = rotated(test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}));
+  const auto [fine, lattice] = surface_of(mesh, 40, {.rule = {}, .merge_planes = false});
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  std::vector<bool> kept(fine.mesh.vertices.size(), false);
+  std::vector<Vec3> vertices = fine.mesh.vertices;
+  const auto any_vertex = [&] {
+    return static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(kept.size())));
+  };
+  for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = uniform(random, 0.0, 1.0) < 0.5;
+  PlaneMerger merger(fine, mesh, lattice, {1e-9 * lattice.spacing.x, 0.0});
+  RepeatedCheck check(inside, kept.size());
+  int right = 0, wrong = 0, still_wrong = 0;
+  std::uint64_t last = 0;
+  for (int round = 0; round < 60; ++round) {
+    const MergedFaces merged = merger.merge(kept);
+    const TriangleMesh now = used_part(vertices, merged.triangles);
+    NodeSet misplaced(lattice), expected_nodes(lattice);
+    const SurfaceFaults found = check.faults(merged, now, misplaced);
+    const SurfaceFaults expected = faults_of(now, inside, &expected_nodes);
+    ASSERT_EQ(described(found), described(expected)) << round;
+    EXPECT_EQ(found.intersections.of_triangle, expected.intersections.of_triangle) << round;
+    EXPECT_EQ(found.intersections.first.has_value(), expected.intersections.first.has_value());
+    misplaced.flip(expected_nodes);
+    EXPECT_TRUE(misplaced.empty());
+    check.remember(merged, now, found);
+    ++(found.none() ? right : wrong);
+    still_wrong += last > 0 && found.intersections.pairs > 0 ? 1 : 0;
+    last = found.intersections.pairs;
+    for (int n = 0; n < 3; ++n) kept[any_vertex()].flip();
+    if (round % 5 == 0) vertices = fine.mesh.vertices;
+    if (round % 5 != 1 && round % 5 != 2) continue;
+    const auto face = static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(merged.faces.size())));
+    const std::uint32_t moved = merged.triangles[face][0];
+    vertices[moved].x += uniform(random, -9.0, 9.0) * lattice.spacing.x;
+    kept[moved] = true;
+  }
+  EXPECT_GT(right, 10);
+  EXPECT_GT(wrong, 10);
+  EXPECT_GT(still_wrong, 5);
 }
 
 // Whether a vertex among `ring`, all of whose faces are in a patch, is settled there. Each face is its own source. Only

@@ -508,6 +508,10 @@ MUTANTS = [
         ("core/surface/cell_creases.cpp", "    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);\n", "")]),
     Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
         ("core/surface/face_points.cpp", "return cells_of_polygons[c] != 0;", "return cells_of_polygons[c] < 9;")]),
+    Mutant("faults_that_stay", "faces that intersected others are looked at again", [
+        ("core/surface/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
+    Mutant("faces_beside_gone_ones", "faces at corners of those that have changed are looked at", [
+        ("core/surface/repeated_check.cpp", "if (!same) touch(merged.triangles[now]);", "")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
          "return planes_[plane].distance(p) <= 1e9 * limits_.most;")]),

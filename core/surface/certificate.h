@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,21 @@ struct NearFaults {
 // The nodes of a lattice that were on the other side of a mesh before it was changed. Precondition: it is closed, and
 // was so before.
 [[nodiscard]] NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
+
+// The nodes of a lattice that are on another side of a mesh, changed again and again, than they were of it at first.
+class NodesSinceFirst {
+ public:
+  explicit NodesSinceFirst(const Lattice& lattice) : nodes_(lattice) {}
+
+  // Call it after each change. Where the mesh passes through itself, these may be others. `since_first`: tells all that
+  // differs from the mesh at first; asked where that may be so.
+  const NodeSet& after(const SurfaceEdit& change, const TriangleMesh& mesh, const SurfaceFaults& faults,
+                       const std::function<SurfaceEdit()>& since_first);
+
+ private:
+  NodeSet nodes_;
+  bool has_changed_ = false;
+};
 
 // "3 edges without a twin, 1 pairs of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);

@@ -165,14 +165,11 @@ class SurfaceMaker {
                         {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
     SurfaceEdit change = sharpener.sharpen();
     if (sharpener.pulls() == 0) return drop_spares();
-    NodeSet misplaced(inside_.lattice());
+    NodesSinceFirst nodes(inside_.lattice());
     for (int round = 0; round < kSharpeningRounds; ++round) {
       change.apply(surface.mesh);
       NearFaults near = faults_near(surface.mesh, change, inside_.lattice());
-      misplaced.flip(changed_nodes(surface.mesh, change, inside_.lattice()));
-      // Where the surface overlapped itself on the way, nodes may have flipped once too often.
-      if (near.faults.none() && !misplaced.empty() && round > 0)
-        misplaced = changed_nodes(surface.mesh, sharpener.changes(), inside_.lattice());
+      const NodeSet& misplaced = nodes.after(change, surface.mesh, near.faults, [&] { return sharpener.changes(); });
       if (near.faults.none() && misplaced.empty()) {
         sharpener.set_sources(surface.sources);
         drop_gone_faces(surface);

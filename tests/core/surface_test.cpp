@@ -254,6 +254,75 @@ TEST(SurfaceCertificate, FindsFaultsNearAChange) {
   EXPECT_GT(wrong, 50);
 }
 
+// The edit that moves all vertices from `first` on, as many as a box has; `before` and `now`: their places' shifts.
+SurfaceEdit shifted(const TriangleMesh& at_first, std::uint32_t first, double before, double now) {
+  SurfaceEdit edit;
+  for (std::uint32_t v = first; v < first + 8; ++v) {
+    const Vec3& p = at_first.vertices[v];
+    edit.vertices.push_back(v);
+    edit.places.push_back({p + Vec3{before, 0, 0}, p + Vec3{now, 0, 0}});
+  }
+  for (std::uint32_t face = 0; face < at_first.triangles.size(); ++face) {
+    const Triangle& t = at_first.triangles[face];
+    if (t[0] < first || t[0] >= first + 8) continue;
+    edit.faces.push_back(face);
+    edit.corners.push_back({t, t});
+  }
+  return edit;
+}
+
+SurfaceEdit both(SurfaceEdit a, const SurfaceEdit& b) {
+  a.faces.insert(a.faces.end(), b.faces.begin(), b.faces.end());
+  a.corners.insert(a.corners.end(), b.corners.begin(), b.corners.end());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  a.places.insert(a.places.end(), b.places.begin(), b.places.end());
+  return a;
+}
+
+// Of two boxes the second one comes over the node in the first one, which it goes around twice then; both leave; the
+// first one comes back. The node has changed three times, and is where it was at first.
+TEST(SurfaceCertificate, CountsNodesAnewThatAMeshWentAroundTwice) {
+  const DefaultFloatingPoint guard;
+  const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {8, 8, 8}};
+  const TriangleMesh at_first =
+      test::joined(test::box_mesh({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}), test::box_mesh({3.7, 1.6, 1.6}, {3.9, 2.4, 2.4}));
+  const std::uint32_t second = 8;
+  TriangleMesh mesh = at_first;
+  NodesSinceFirst nodes(lattice);
+  SurfaceFaults overlaps;
+  overlaps.intersections.pairs = 1;
+  const auto not_asked = [] {
+    ADD_FAILURE();
+    return SurfaceEdit{};
+  };
+  const auto after = [&](const SurfaceEdit& change, const SurfaceFaults& faults,
+                         const std::function<SurfaceEdit()>& all) {
+    change.apply(mesh);
+    return nodes.after(change, mesh, faults, all).size();
+  };
+  EXPECT_EQ(after(shifted(at_first, second, 0.0, -1.8), overlaps, not_asked), 1U);
+  after(both(shifted(at_first, 0, 0.0, 3.0), shifted(at_first, second, -1.8, 0.5)), overlaps, not_asked);
+  const auto since_first = [&] { return shifted(at_first, second, 0.0, 0.5); };
+  EXPECT_EQ(after(shifted(at_first, 0, 3.0, 0.0), {}, since_first), 0U);
+}
+
+// A node that has changed sides stays so.
+TEST(SurfaceCertificate, CountsNodesThatHaveChangedSides) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh at_first = test::box_mesh({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});
+  TriangleMesh mesh = at_first;
+  NodesSinceFirst nodes({{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {8, 8, 8}});
+  int asked = 0;
+  for (const auto& [before, now, changed] :
+       {std::tuple{0.0, 0.4, 0U}, {0.4, 1.2, 2U}, {1.2, 1.3, 2U}, {1.3, 0.1, 0U}}) {
+    const SurfaceEdit change = shifted(at_first, 0, before, now);
+    change.apply(mesh);
+    const auto since_first = [&, to = now] { return ++asked, shifted(at_first, 0, 0.0, to); };
+    EXPECT_EQ(nodes.after(change, mesh, {}, since_first).size(), changed) << now;
+  }
+  EXPECT_EQ(asked, 2);
+}
+
 // Vertices that have left their edge, face or tetrahedron by less than anything else would notice.
 TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   Random random(4);

@@ -259,8 +259,7 @@ bool CellPolygons::holds_diagonal() {
 
 // Those of faces within the cell are where two of the planes meet.
 bool CellPolygons::holds_face_points() {
-  constexpr std::size_t kFirstWithin = 6;
-  for (std::size_t face = kFirstWithin; face < kuhn::kFaces.size(); ++face) {
+  for (std::size_t face = kuhn::kFacesBetweenCells; face < kuhn::kFaces.size(); ++face) {
     const auto [first, count] = face_points_.find(cell_, face);
     for (std::uint32_t point = first; point < first + count; ++point) {
       const Vec3& p = face_points_.positions()[point];

@@ -56,6 +56,7 @@ class CellContour {
       add_polygons();
       return;
     }
+    if (face_points_.kind() == PointsOfFaces::kSections) find_points_within();
     for (std::size_t n = 0; n < kuhn::kTetrahedra.size(); ++n) {
       const Loop loop = loop_of(kuhn::kTetrahedra[n]);
       if (loop.size > 0) fill(loop, n);
@@ -81,6 +82,12 @@ class CellContour {
     std::array<unsigned, 3> corners{common, last, next};
     std::ranges::sort(corners);
     const std::size_t face = kuhn::face_number(corners[1] ^ corners[0], corners[2] ^ corners[0]);
+    if (face >= kuhn::kFacesBetweenCells && face_points_.kind() == PointsOfFaces::kSections) {
+      const std::uint32_t point = within_[face - kuhn::kFacesBetweenCells];
+      if (point != kNone) loop.add(point, nullptr);
+      loop.has_face_point = loop.has_face_point || point != kNone;
+      return;
+    }
     const auto [first, count] = face_points_.find(cell_of(corners[0]), face);
     for (std::uint32_t n = 0; n < count; ++n)
       loop.add(cells_.edges() + first + (last < next ? n : count - 1 - n), nullptr);
@@ -88,10 +95,14 @@ class CellContour {
   }
 
   void add_polygons();
+  void find_points_within();
   [[nodiscard]] std::uint64_t triangles_of_tetrahedra();
+  [[nodiscard]] std::uint64_t points_at(const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] Loop loop_of(const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
-    return corner.edge_point ? corner.edge_point->position : face_points_.positions()[corner.vertex - cells_.edges()];
+    if (corner.edge_point) return corner.edge_point->position;
+    return corner.vertex < kFirstApex ? face_points_.positions()[corner.vertex - cells_.edges()]
+                                      : part_.apexes[corner.vertex - kFirstApex];
   }
   // What the surface is of between two corners of a loop, one of them a face point.
   [[nodiscard]] const EdgePoint& piece_between(const LoopCorner& a, const LoopCorner& b) const {
@@ -108,6 +119,8 @@ class CellContour {
     part_.sources.push_back(source);
   }
 
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
   const SurfaceCells& cells_;
   std::span<const EdgePoint> edge_points_;
   const FacePoints& face_points_;
@@ -118,7 +131,21 @@ class CellContour {
   double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
+  std::array<std::uint32_t, kuhn::kFaces.size() - kuhn::kFacesBetweenCells> within_{};  // points of its own faces
 };
+
+// Only tetrahedra have them.
+void CellContour::find_points_within() {
+  for (std::size_t n = 0; n < within_.size(); ++n) {
+    within_[n] = kNone;
+    const std::size_t face = kuhn::kFacesBetweenCells + n;
+    const auto point = face_point(cells_, edge_points_, cell_, face, creases_, tolerance_, {margin_});
+    if (!point) continue;
+    within_[n] = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
+    part_.apexes.push_back(*point);
+    part_.tetrahedra.push_back(kFaceOfCell | (std::uint64_t{16} * cell_ + face));
+  }
+}
 
 void CellContour::add_polygons() {
   const SurfaceCell& cell = cells_.cells()[cell_];
@@ -148,18 +175,31 @@ void CellContour::add_polygons() {
   part_.full_triangles += triangles_of_tetrahedra();
 }
 
+// Of sections, faces within the cell count as if a crease that comes into a tetrahedron left it by one of them.
 std::uint64_t CellContour::triangles_of_tetrahedra() {
+  const bool knows_all = face_points_.kind() == PointsOfFaces::kOne;
   std::uint64_t count = 0;
   for (const kuhn::Tetrahedron& tetrahedron : kuhn::kTetrahedra) {
-    if (polygons_.has_face_points()) {
-      const Loop loop = loop_of(tetrahedron);
-      if (loop.size > 0) count += loop.has_face_point ? loop.size : loop.size - 2;
-      continue;
-    }
     const auto inside = std::ranges::count_if(tetrahedron.corners, [&](unsigned c) { return is_inside(c); });
-    count += inside == 2 ? 2 : inside % 2;
+    if (inside == 0 || inside == 4) continue;
+    const std::uint64_t corners = inside == 2 ? 4 : 3;
+    const std::uint64_t points = polygons_.has_face_points() ? points_at(tetrahedron) : 0;
+    count += points == 0 ? corners - 2 : corners + points + (knows_all ? 0 : 1);
   }
   return count;
+}
+
+// On its faces.
+std::uint64_t CellContour::points_at(const kuhn::Tetrahedron& tetrahedron) {
+  std::uint64_t points = 0;
+  for (std::size_t without = 0; without < tetrahedron.corners.size(); ++without) {
+    std::array<unsigned, 3> corners;
+    for (std::size_t n = 0; n < corners.size(); ++n) corners[n] = tetrahedron.corners[n < without ? n : n + 1];
+    if (is_inside(corners[0]) == is_inside(corners[1]) && is_inside(corners[0]) == is_inside(corners[2])) continue;
+    const std::size_t face = kuhn::face_number(corners[1] ^ corners[0], corners[2] ^ corners[0]);
+    points += face_points_.find(cell_of(corners[0]), face).count;
+  }
+  return points;
 }
 
 // Corners are reordered by transpositions, each of which turns the loop around.

@@ -124,19 +124,18 @@ std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, do
   return hit ? within_face(face, *hit, margin) : std::nullopt;
 }
 
-// Where planes meet on a crease, that is the point: it is in both planes as well as numbers can tell.
-PointsOfFace points_of_face(const FaceEdges& face, CreasesHere& creases, double tolerance, double unit, double margin,
-                            bool sections) {
+// Whether the planes at the points meet on a crease: there it is in both as well as numbers can tell.
+std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& creases, double tolerance, double unit,
+                                      double margin) {
   // The margin and rounding move points off the mesh by less than this.
   const double near = 4.0 * (tolerance + unit);
   const std::optional<Vec3> meeting = meeting_point(face, margin);
-  const bool is_meeting = meeting && creases.has_hit_near(face.corners, *meeting, near);
-  PointsOfFace points;
-  if (sections && !is_meeting) points = section_points(face, creases, unit, margin);
-  if (points.size > 0) return points;
-  const std::optional<Vec3> one = is_meeting ? meeting : crease_point(face, creases, margin);
-  if (one) points.add(*one, 0);
-  return points;
+  return meeting && creases.has_hit_near(face.corners, *meeting, near) ? meeting : std::nullopt;
+}
+
+double largest_margin(const SurfaceCells& cells, double margin) {
+  const Vec3& h = cells.lattice().spacing;
+  return margin * std::max({h.x, h.y, h.z});
 }
 
 }  // namespace
@@ -167,10 +166,19 @@ std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint3
   return {cells.first_from(cells.row_begin(j, k), cells.row_end(j, k), i), cell};
 }
 
+std::optional<Vec3> face_point(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
+                               std::size_t face, CreasesHere& creases, double tolerance,
+                               const SurfaceMargins& margins) {
+  const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
+  if (!edges || !disagree(*edges, tolerance, margins.inner)) return std::nullopt;
+  const double unit = largest_margin(cells, margins.inner);
+  const std::optional<Vec3> meeting = meeting_on_crease(*edges, creases, tolerance, unit, margins.inner);
+  return meeting ? meeting : crease_point(*edges, creases, margins.inner);
+}
+
 FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-                       double tolerance, const SurfaceMargins& margins, bool sections) {
-  const Vec3& h = cells.lattice().spacing;
-  const double unit = margins.inner * std::max({h.x, h.y, h.z});
+                       double tolerance, const SurfaceMargins& margins, PointsOfFaces kind)
+    : kind_(kind) {
   constexpr std::size_t kCellsPerPart = 512;
   std::vector<FacePoints> parts((cells.cells().size() + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -178,24 +186,41 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
     const std::size_t last_cell = std::min(end * kCellsPerPart, cells.cells().size());
     for (auto cell = static_cast<std::uint32_t>(begin * kCellsPerPart); cell < last_cell; ++cell) {
       creases_here.enter(cell);
+      FacePoints& part = parts[cell / kCellsPerPart];
       for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
-        const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
-        if (!edges || !disagree(*edges, tolerance, margins.inner)) continue;
-        const PointsOfFace points = points_of_face(*edges, creases_here, tolerance, unit, margins.inner, sections);
-        FacePoints& part = parts[cell / kCellsPerPart];
-        for (std::size_t n = 0; n < points.size; ++n) {
-          const Vec3& position = points.positions[n];
-          if (n + 1 < points.size) {
-            const auto number = static_cast<std::uint32_t>(part.faces_.size());
-            const Vec3 normal = creases.normal_of(points.beyond[n]);
-            part.pieces_.push_back({number, {position, normal, static_cast<std::int32_t>(points.beyond[n])}});
-          }
-          part.add(std::uint64_t{16} * cell + face, position);
+        if (kind == PointsOfFaces::kSections) {
+          if (face < kuhn::kFacesBetweenCells)
+            part.add_section(cells, edge_points, cell, face, creases_here, creases, tolerance, margins);
+        } else if (const auto one = face_point(cells, edge_points, cell, face, creases_here, tolerance, margins)) {
+          part.add(std::uint64_t{16} * cell + face, *one);
         }
       }
     }
   });
   join(parts);
+}
+
+void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
+                             std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
+                             const SurfaceMargins& margins) {
+  const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
+  if (!edges || !disagree(*edges, tolerance, margins.inner)) return;
+  const double unit = largest_margin(cells, margins.inner);
+  const std::uint64_t number = std::uint64_t{16} * cell + face;
+  std::optional<Vec3> one = meeting_on_crease(*edges, creases_here, tolerance, unit, margins.inner);
+  const PointsOfFace several = one ? PointsOfFace{} : section_points(*edges, creases_here, unit, margins.inner);
+  for (std::size_t n = 0; n < several.size; ++n) {
+    const Vec3& position = several.positions[n];
+    const std::uint32_t beyond = several.beyond[n];
+    if (n + 1 < several.size) {
+      const auto point = static_cast<std::uint32_t>(faces_.size());
+      pieces_.push_back({point, {position, creases.normal_of(beyond), static_cast<std::int32_t>(beyond)}});
+    }
+    add(number, position);
+  }
+  if (several.size > 0) return;
+  if (!one) one = crease_point(*edges, creases_here, margins.inner);
+  if (one) add(number, *one);
 }
 
 void FacePoints::join(std::vector<FacePoints>& parts) {
@@ -226,8 +251,8 @@ FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> posit
 
 void FacePoints::number_cells() {
   const std::size_t cells = faces_.empty() ? 0 : faces_.back() / 16 + 1;
-  first_of_cell_.resize(cells + 1, 0);
-  faces_of_cell_.resize(cells, 0);
+  first_of_cell_.assign(cells + 1, 0);
+  faces_of_cell_.assign(cells, 0);
   for (const std::uint64_t face : faces_) {
     ++first_of_cell_[face / 16 + 1];
     faces_of_cell_[face / 16] = static_cast<std::uint16_t>(faces_of_cell_[face / 16] | 1U << face % 16);
@@ -256,39 +281,42 @@ std::vector<std::uint64_t> FacePoints::section_faces() const {
   return faces;
 }
 
-FacePoints FacePoints::with_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
-                                        std::span<const EdgePoint> edge_points, const CellCreases& creases,
-                                        const SurfaceMargins& margins) const {
-  FacePoints result;
+void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
+                                  std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
+                                  const SurfaceMargins& margins) {
   CreasesHere creases_here(creases);
-  auto piece = pieces_.begin();
-  for (std::size_t i = 0; i < faces_.size();) {
+  std::size_t count = 0, pieces = 0, piece = 0;
+  for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
     const std::uint64_t face = faces_[i];
     const auto cell = static_cast<std::uint32_t>(face / 16);
-    std::size_t end = i + 1;
-    while (end < faces_.size() && faces_[end] == face) ++end;
-    const std::array<std::uint32_t, 2> both = cells_at_face(cells, cell, face % 16);
-    const bool stays = end == i + 1 || std::ranges::any_of(both, [&](auto c) { return cells_of_polygons[c] != 0; });
-    std::optional<Vec3> instead;
+    for (end = i + 1; end < faces_.size() && faces_[end] == face;) ++end;
+    const auto is_of_polygons = [&](std::uint32_t c) { return cells_of_polygons[c] != 0; };
+    const bool stays = end == i + 1 || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons);
+    std::size_t left = end - i;
     if (!stays) {
       creases_here.enter(cell);
-      instead =
-          crease_point(*mixed_edges(cells, edge_points, cell, kuhn::kFaces[face % 16]), creases_here, margins.inner);
+      const auto one = face_point(cells, edge_points, cell, face % 16, creases_here, tolerance, margins);
+      if (one) positions_[i] = *one;
+      left = one ? 1 : 0;
     }
-    for (; piece != pieces_.end() && piece->point < end; ++piece) {
-      const auto number = static_cast<std::uint32_t>(result.faces_.size() + piece->point - i);
-      if (stays) result.pieces_.push_back({number, piece->plane});
+    for (; piece < pieces_.size() && pieces_[piece].point < end; ++piece) {
+      const auto number = static_cast<std::uint32_t>(count + pieces_[piece].point - i);
+      if (stays) pieces_[pieces++] = {number, pieces_[piece].plane};
     }
-    for (; stays && i < end; ++i) result.add(face, positions_[i]);
-    if (instead) result.add(face, *instead);
-    i = end;
+    for (std::size_t n = i; n < i + left; ++n, ++count) {
+      faces_[count] = face;
+      positions_[count] = positions_[n];
+    }
   }
-  result.number_cells();
-  return result;
+  faces_.resize(count);
+  positions_.resize(count);
+  pieces_.resize(pieces);
+  number_cells();
 }
 
 FacePoints FacePoints::without(const std::vector<bool>& dropped) const {
   FacePoints left;
+  left.kind_ = kind_;
   auto piece = pieces_.begin();
   for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
     bool is_dropped = false;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,19 +22,29 @@ namespace raycone {
 [[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
                                                          std::size_t face);
 
+enum class PointsOfFaces : std::uint8_t {
+  kOne,       // of all faces
+  kSections,  // of faces between cells, not of those within one
+};
+
+// Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in the
+// face, if there is one; that where the planes meet, else the one farthest from the straight line.
+[[nodiscard]] std::optional<Vec3> face_point(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
+                                             std::uint32_t cell, std::size_t face, CreasesHere& creases,
+                                             double tolerance, const SurfaceMargins& margins);
+
 class FacePoints {
  public:
-  // Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in
-  // the face, if there is one; that where the planes meet, else the one farthest from the straight line. With
-  // `sections`, where planes do not meet: all points by which the mesh leads from the one to the other, if these are
-  // several, and go ahead all the way. Points are kept inside the face by the margin. They depend on the face, its two
-  // points and the mesh alone, so that both its cells agree.
+  // What face_point() finds. With sections, where planes do not meet: all points by which the mesh leads from the one
+  // to the other, if these are several, and go ahead all the way. Points are kept inside the face by the margin. They
+  // depend on the face, its two points and the mesh alone, so that both its cells agree.
   FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-             double tolerance, const SurfaceMargins& margins, bool sections = false);
+             double tolerance, const SurfaceMargins& margins, PointsOfFaces kind = PointsOfFaces::kOne);
   FacePoints() = default;
   // These points, of faces numbered 16 * cell + face, each once, increasing.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
+  [[nodiscard]] PointsOfFaces kind() const { return kind_; }
   // Of each point.
   [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
@@ -50,11 +61,11 @@ class FacePoints {
 
   // The faces that have several points, in increasing order.
   [[nodiscard]] std::vector<std::uint64_t> section_faces() const;
-  // The same, but that these have several only where that pays: where one of the face's cells is in
-  // `cells_of_polygons`, which has a 1 for each such cell.
-  [[nodiscard]] FacePoints with_sections_at(const std::vector<std::uint8_t>& cells_of_polygons,
-                                            const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                                            const CellCreases& creases, const SurfaceMargins& margins) const;
+  // Leaves these several only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
+  // for each such cell. The others have the one that face_point() finds.
+  void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
+                        std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
+                        const SurfaceMargins& margins);
 
   // All but those of faces that have one of these numbers.
   [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
@@ -68,9 +79,13 @@ class FacePoints {
     faces_.push_back(face);
     positions_.push_back(position);
   }
+  void add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
+                   std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
+                   const SurfaceMargins& margins);
   void join(std::vector<FacePoints>& parts);
   void number_cells();
 
+  PointsOfFaces kind_ = PointsOfFaces::kOne;
   std::vector<std::uint64_t> faces_;  // 16 * cell + face; those of a face follow each other
   std::vector<Vec3> positions_;
   std::vector<Piece> pieces_;                 // of the points that are not the last ones of their faces, increasing

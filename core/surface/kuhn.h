@@ -21,6 +21,9 @@ struct FaceDirections {
 inline constexpr std::array<FaceDirections, 12> kFaces{
     {{1, 3}, {2, 3}, {1, 5}, {4, 5}, {2, 6}, {4, 6}, {1, 7}, {2, 7}, {4, 7}, {3, 7}, {5, 7}, {6, 7}}};
 
+// The first of kFaces are halves of the squares between two cells, the others are within one.
+inline constexpr std::size_t kFacesBetweenCells = 6;
+
 // The place of a face in kFaces.
 constexpr std::size_t face_number(unsigned first, unsigned second) {
   for (std::size_t i = 0; i < kFaces.size(); ++i) {

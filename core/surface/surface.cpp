@@ -87,11 +87,12 @@ class SurfaceMaker {
   // Several points of a face help where the surface is polygons then. Cones of tetrahedra would only have more
   // triangles.
   [[nodiscard]] FacePoints points_of_sections(const SurfaceMargins& margins) const {
-    const FacePoints sharp(cells_, points_, creases_, tolerance_, margins, true);
+    FacePoints sharp(cells_, points_, creases_, tolerance_, margins, PointsOfFaces::kSections);
     const Vec3& h = inside_.lattice().spacing;
     const double unit = margins.inner * std::min({h.x, h.y, h.z});
-    return sharp.with_sections_at(polygons_at_sections(cells_, points_, sharp, creases_, unit), cells_, points_,
-                                  creases_, margins);
+    const std::vector<std::uint8_t> pays = polygons_at_sections(cells_, points_, sharp, creases_, unit);
+    sharp.keep_sections_at(pays, cells_, points_, creases_, tolerance_, margins);
+    return sharp;
   }
 
   void enter(const char* stage) const {

@@ -77,16 +77,17 @@ std::uint64_t misplaced_vertices(std::span<const Vec3> vertices, const SurfaceCe
     }
     return wrong;
   };
-  const auto at_face = [&](std::size_t n) {
-    const std::uint64_t face = face_points.faces()[n];
+  const auto is_out_of_face = [&](std::size_t vertex, std::uint64_t face) {
     const auto [first, second] = kuhn::kFaces[face % 16];
     const SurfaceCell& cell = cells.cells()[face / 16];
-    return place.holds(vertices[cells.edges() + n], cell, std::array{first, second}) ? 0U : 1U;
+    return place.holds(vertices[vertex], cell, std::array{first, second}) ? 0U : 1U;
   };
+  const auto at_face = [&](std::size_t n) { return is_out_of_face(cells.edges() + n, face_points.faces()[n]); };
   const std::size_t first_apex = cells.edges() + face_points.faces().size();
   const auto at_apex = [&](std::size_t n) {
     if ((tetrahedra[n] & kWholeCell) != 0)
       return place.holds(vertices[first_apex + n], cells.cells()[tetrahedra[n] & ~kWholeCell]) ? 0U : 1U;
+    if ((tetrahedra[n] & kFaceOfCell) != 0) return is_out_of_face(first_apex + n, tetrahedra[n] & ~kFaceOfCell);
     const kuhn::Tetrahedron& tetrahedron = kuhn::kTetrahedra[tetrahedra[n] % kuhn::kTetrahedra.size()];
     const SurfaceCell& cell = cells.cells()[tetrahedra[n] / kuhn::kTetrahedra.size()];
     return place.holds(vertices[first_apex + n], cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;

@@ -56,7 +56,7 @@ struct Cells {
   FacePoints face_points;
   double tolerance;
 
-  Cells(TriangleMesh of, const Lattice& lattice, bool sections = false)
+  Cells(TriangleMesh of, const Lattice& lattice, PointsOfFaces kind = PointsOfFaces::kOne)
       : mesh(std::move(of)),
         nodes(nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice)),
         cells(nodes),
@@ -64,7 +64,7 @@ struct Cells {
         creases(mesh, triangles),
         points(edge_points(mesh, WindingNumberEvaluator(mesh), Rule{}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
-    face_points = FacePoints(cells, points, creases, tolerance, kMargins, sections);
+    face_points = FacePoints(cells, points, creases, tolerance, kMargins, kind);
   }
 
   [[nodiscard]] ContouredSurface contoured(ContourCells kind) const {
@@ -238,13 +238,13 @@ TEST(CellPolygons, FollowBothEdgesOfAStripThroughAFace) {
     const double h = uniform(random, 0.04, 0.06);
     const TriangleMesh mesh = turned(chamfered_box(h / 4), random);
     const Cells one(mesh, lattice_around(mesh, h));
-    Cells several(mesh, lattice_around(mesh, h), true);
-    EXPECT_GT(several.face_points.section_faces().size(), 20U);
+    Cells several(mesh, lattice_around(mesh, h), PointsOfFaces::kSections);
+    EXPECT_GT(several.face_points.section_faces().size(), 10U);
     const std::vector<std::uint8_t> found =
         polygons_at_sections(several.cells, several.points, several.face_points, several.creases, 0x1p-30 * h);
-    several.face_points =
-        several.face_points.with_sections_at(found, several.cells, several.points, several.creases, kMargins);
-    EXPECT_GT(several.face_points.section_faces().size(), 15U);
+    several.face_points.keep_sections_at(found, several.cells, several.points, several.creases, several.tolerance,
+                                         kMargins);
+    EXPECT_GT(several.face_points.section_faces().size(), 8U);
     const ContouredSurface before = one.contoured(ContourCells::kPolygons);
     const ContouredSurface after = several.contoured(ContourCells::kPolygons);
     const TriangleMesh used = used_mesh(after);
@@ -260,13 +260,22 @@ TEST(CellPolygons, AreWhatSectionsAreFor) {
   const DefaultFloatingPoint guard;
   Random random(15);
   const TriangleMesh mesh = turned(chamfered_box(0.02), random);
-  const Cells one(mesh, lattice_around(mesh, 0.08)), several(mesh, lattice_around(mesh, 0.08), true);
+  const Cells one(mesh, lattice_around(mesh, 0.08));
+  Cells several(mesh, lattice_around(mesh, 0.08), PointsOfFaces::kSections);
+  EXPECT_FALSE(several.face_points.section_faces().empty());
   const std::vector<std::uint8_t> none(several.cells.cells().size(), 0);
-  const FacePoints left =
-      several.face_points.with_sections_at(none, several.cells, several.points, several.creases, kMargins);
-  EXPECT_GT(several.face_points.faces().size(), one.face_points.faces().size());
-  EXPECT_EQ(left.faces(), one.face_points.faces());
-  EXPECT_EQ(left.positions(), one.face_points.positions());
+  several.face_points.keep_sections_at(none, several.cells, several.points, several.creases, several.tolerance,
+                                       kMargins);
+  EXPECT_TRUE(several.face_points.section_faces().empty());
+  std::vector<std::uint64_t> between;
+  std::vector<Vec3> positions;
+  for (std::size_t n = 0; n < one.face_points.faces().size(); ++n) {
+    if (one.face_points.faces()[n] % 16 >= kuhn::kFacesBetweenCells) continue;
+    between.push_back(one.face_points.faces()[n]);
+    positions.push_back(one.face_points.positions()[n]);
+  }
+  EXPECT_EQ(several.face_points.faces(), between);
+  EXPECT_EQ(several.face_points.positions(), positions);
 }
 
 // Whether cells are cut into tetrahedra or not, both sides of a face have its points in one order.
@@ -275,7 +284,7 @@ TEST(CellPolygons, CloseUpWhereFacesHaveSeveralPoints) {
   Random random(16);
   for (int round = 0; round < 12; ++round) {
     const TriangleMesh mesh = turned(test::sphere(12), random);
-    const Cells cells(mesh, lattice_around(mesh, uniform(random, 0.1, 0.25)), true);
+    const Cells cells(mesh, lattice_around(mesh, uniform(random, 0.1, 0.25)), PointsOfFaces::kSections);
     EXPECT_GT(cells.face_points.section_faces().size(), 30U);
     for (const ContourCells kind : {ContourCells::kTetrahedra, ContourCells::kPolygons}) {
       const ContouredSurface made = cells.contoured(kind);
@@ -294,7 +303,7 @@ TEST(FacePoints, AreDroppedFaceByFace) {
   const DefaultFloatingPoint guard;
   Random random(17);
   const TriangleMesh mesh = turned(test::sphere(12), random);
-  const Cells cells(mesh, lattice_around(mesh, 0.2), true);
+  const Cells cells(mesh, lattice_around(mesh, 0.2), PointsOfFaces::kSections);
   const FacePoints& all = cells.face_points;
   std::vector<bool> dropped(all.faces().size(), false);
   for (std::size_t n = 0; n < dropped.size(); n += 3) dropped[n] = true;

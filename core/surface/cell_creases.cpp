@@ -12,7 +12,8 @@
 namespace raycone {
 namespace {
 
-constexpr double kFlat = 0.99999847691328772;  // cos 0.1 degrees
+constexpr double kFine = 0.99999847691328772;  // cos 0.1 degrees
+constexpr double kFlat = 0.999999999999995;    // cos 1e-7
 
 constexpr double kTouch = 1e-9;  // of barycentric coordinates, where a crease only touches a tetrahedron
 
@@ -120,8 +121,9 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
     const SideUse& first = uses[begin];
     while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
     const double cosine = end - begin == 2 ? cosine_at(mesh, first, uses[begin + 1]) : 0.0;
-    const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
-    sides_[first.triangle] = static_cast<std::uint8_t>(sides_[first.triangle] | bits << first.side);
+    const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kFine ? 0U : 1U << kCreaseBit) |
+                          (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
+    sides_[first.triangle] = static_cast<std::uint16_t>(sides_[first.triangle] | bits << first.side);
     beyond_[first.triangle][first.side] = end - begin == 2 ? uses[begin + 1].triangle : first.triangle;
     if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);
   }
@@ -138,8 +140,9 @@ void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
       if ((sides_[triangle] >> side & 1U) == 0) continue;
       const Vec3 &a = mesh_->vertices[t[side]], &b = mesh_->vertices[t[(side + 1) % t.size()]];
       const Box box = box_of(std::array{a, b});
-      const bool is_sharp = (sides_[triangle] >> (side + kSharpBit) & 1U) != 0;
-      found.push_back({a, b, box.lower, box.upper, is_sharp, {triangle, beyond_[triangle][side]}});
+      const auto has = [&](unsigned bit) { return (sides_[triangle] >> (side + bit) & 1U) != 0; };
+      found.push_back(
+          {a, b, box.lower, box.upper, has(kSharpBit), !has(kCreaseBit), {triangle, beyond_[triangle][side]}});
     }
   }
 }
@@ -157,11 +160,11 @@ void CellCreases::unite(std::uint32_t a, std::uint32_t b) {
 Vec3 CellCreases::normal_of(std::uint32_t triangle) const { return normal_in(*mesh_, triangle); }
 
 // A hit is in the crease's box, but for rounding.
-bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance) {
+bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance, CreaseKinds kinds) {
   const Vec3 reach{2.0 * distance, 2.0 * distance, 2.0 * distance};
   const Vec3 lower = p - reach, upper = p + reach;
   return std::ranges::any_of(all(), [&](const Crease& crease) {
-    if (!meets(crease, lower, upper)) return false;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, lower, upper)) return false;
     const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
     if (!at) return false;
     const Vec3 off = crease.from + *at * (crease.to - crease.from) - p;
@@ -211,12 +214,13 @@ CreasesHere::Section CreasesHere::section(const std::array<Vec3, 3>& corners, st
   return section;
 }
 
-std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& within, const Vec3& near) {
+std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& within, const Vec3& near,
+                                                CreaseKinds kinds) {
   const Vec3& first_corner = within.corners()[0];
   const Box box = widened(box_of(within.corners()));
   Nearest nearest(near);
   for (const Crease& crease : all()) {
-    if (!meets(crease, box.lower, box.upper)) continue;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, box.lower, box.upper)) continue;
     const Vec3 from = crease.from - first_corner, step = crease.to - crease.from;
     const std::array<double, 4> first = within.of(from), last = within.of(crease.to - first_corner);
     LinePart part;
@@ -233,6 +237,7 @@ std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates
   const Box box = widened(box_of(within.corners()));
   Nearest nearest(near);
   for (const Crease& crease : all()) {
+    if (crease.is_fine) continue;
     for (const Vec3& end : {crease.from, crease.to}) {
       if (!holds(box, end)) continue;
       const Vec3 from_first = end - within.corners()[0];
@@ -242,12 +247,12 @@ std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates
   return nearest.point();
 }
 
-CreasesHere::Ends CreasesHere::ends_within(const Vec3& lower, const Vec3& upper, double off) {
+CreasesHere::Ends CreasesHere::ends_within(const Vec3& lower, const Vec3& upper, double off, CreaseKinds kinds) {
   const Vec3 by{off, off, off};
   const Box around{lower - by, upper + by}, within{lower + by, upper - by};
   Ends ends;
   for (const Crease& crease : all()) {
-    if (!meets(crease, around.lower, around.upper)) continue;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, around.lower, around.upper)) continue;
     for (const Vec3& end : {crease.from, crease.to}) {
       if (!holds(around, end)) continue;
       if (!holds(within, end) || (ends.one && *ends.one != end)) return {std::nullopt, true};

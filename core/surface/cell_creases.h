@@ -15,8 +15,8 @@ namespace raycone {
 // Creases are sharp where the cosine between their triangles is at most this: from 15 degrees on.
 inline constexpr double kSharpCosine = 0.9659258262890683;
 
-// A crease is an edge that is not of two triangles, or whose triangles are at 0.1 degrees or more. It is sharp if they
-// are at 15 degrees or more, or not two. Thread-safe.
+// A crease is an edge that is not of two triangles, or whose triangles are at 0.1 degrees or more; a fine one, at 1e-7
+// radians or more, but less. It is sharp if they are at 15 degrees or more, or not two. Thread-safe.
 class CellCreases {
  public:
   CellCreases() = default;  // none
@@ -26,31 +26,37 @@ class CellCreases {
   // A side of a triangle, and its box.
   struct Crease {
     Vec3 from, to, lower, upper;
-    bool is_sharp;
+    bool is_sharp, is_fine;
     std::array<std::uint32_t, 2> triangles;  // that it is of; twice the same one where these are not two
   };
 
-  // Sets `found` to each crease with a point in the closed cell, and some more, in the order of triangles.
+  // Sets `found` to each crease, and each fine one, with a point in the closed cell, and some more, in the order of
+  // triangles.
   void find(std::uint32_t cell, std::vector<Crease>& found) const;
 
   // Precondition, of these: there are creases.
   [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
-  // The same for triangles that hang together by edges that are no creases: a flat part of the mesh.
+  // The same for triangles that hang together by edges that are no creases, nor fine ones: a flat part of the mesh.
   [[nodiscard]] std::uint32_t part_of(std::uint32_t triangle) const { return parts_[triangle]; }
 
  private:
-  static constexpr unsigned kSharpBit = 4;
+  static constexpr unsigned kCreaseBit = 4, kSharpBit = 8;
 
   void unite(std::uint32_t a, std::uint32_t b);
 
   const TriangleMesh* mesh_ = nullptr;
   const CellTriangles* triangles_ = nullptr;
-  std::vector<std::uint8_t> sides_;  // of each triangle: bits for sides that are creases no lower triangle has
+  // Of each triangle: bits for sides that no lower triangle has and that are creases, fine ones or others; for those
+  // that are no fine ones; and for those that are sharp.
+  std::vector<std::uint16_t> sides_;
   std::vector<std::array<std::uint32_t, 3>> beyond_;  // the triangle on the other side of each of these
   std::vector<std::uint32_t> parts_;                  // of each triangle, the lowest one of its part
 };
 
-// The creases of one cell after the other, looked up when they are first asked for.
+// Which creases of a cell count.
+enum class CreaseKinds : std::uint8_t { kNotFine, kAll };
+
+// The creases of one cell after the other, looked up when they are first asked for. Fine ones count where it is said.
 class CreasesHere {
  public:
   // `creases` must outlive this.
@@ -62,7 +68,8 @@ class CreasesHere {
   }
 
   // Whether a crease meets a triangle of the cell within a distance of `p`, which is more than what coordinates round.
-  [[nodiscard]] bool has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance);
+  [[nodiscard]] bool has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance,
+                                  CreaseKinds kinds = CreaseKinds::kNotFine);
 
   // The point of a sharp crease on a triangle of the cell that is farthest from the line through two points of that
   // triangle.
@@ -79,11 +86,13 @@ class CreasesHere {
     std::array<Corner, kMost> corners{};
     std::size_t size = 0;  // 0 where creases do not lead there, or not just one way, or by more than kMost points
   };
+  // Fine creases count.
   [[nodiscard]] Section section(const std::array<Vec3, 3>& corners, std::uint32_t from, std::uint32_t to);
 
   // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
   // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
-  [[nodiscard]] std::optional<Vec3> nearest_within(const BarycentricCoordinates& within, const Vec3& near);
+  [[nodiscard]] std::optional<Vec3> nearest_within(const BarycentricCoordinates& within, const Vec3& near,
+                                                   CreaseKinds kinds = CreaseKinds::kNotFine);
   [[nodiscard]] std::optional<Vec3> nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
                                                        double margin);
 
@@ -92,7 +101,8 @@ class CreasesHere {
     std::optional<Vec3> one;
     bool many = false;
   };
-  [[nodiscard]] Ends ends_within(const Vec3& lower, const Vec3& upper, double off);
+  [[nodiscard]] Ends ends_within(const Vec3& lower, const Vec3& upper, double off,
+                                 CreaseKinds kinds = CreaseKinds::kNotFine);
 
  private:
   using Crease = CellCreases::Crease;

@@ -235,12 +235,14 @@ bool CellPolygons::find_runs() {
   return true;
 }
 
-// Creases end in the cell nowhere, or at one point, of all planes.
+// Where sections follow fine creases, these are in several planes, too. Creases end in the cell nowhere, or at one
+// point, of all planes.
 bool CellPolygons::find_ends() {
   const SurfaceCell& cell = cells_.cells()[cell_];
   const double off = kNeedle * unit_;
-  const CreasesHere::Ends ends =
-      creases_.ends_within(cells_.corner(cell, 0), cells_.corner(cell, kuhn::kCorners - 1), off);
+  const bool has_fine = run_count_ > 1 && face_points_.kind() == PointsOfFaces::kSections;
+  const CreasesHere::Ends ends = creases_.ends_within(cells_.corner(cell, 0), cells_.corner(cell, kuhn::kCorners - 1),
+                                                      off, has_fine ? CreaseKinds::kAll : CreaseKinds::kNotFine);
   if (ends.many) return false;
   has_apex_ = ends.one.has_value();
   if (!has_apex_) return true;

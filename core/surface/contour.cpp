@@ -331,6 +331,9 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   std::optional<Vec3> on_crease = creases_.nearest_end_within(within, middle, margin_);
   if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
   if (!on_crease) on_crease = creases_.nearest_within(within, middle);
+  // Points of sections may be on fine ones alone.
+  if (!on_crease && face_points_.kind() == PointsOfFaces::kSections)
+    on_crease = creases_.nearest_within(within, middle, CreaseKinds::kAll);
   const bool on_mesh = on_crease.has_value();
   const Vec3 target = on_crease.value_or(middle);
   // There it is in all planes as well as numbers can tell.

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
+
+constexpr double kVoxels = 1e-9, kDouble = 0x1p-50;  // of plane_tolerance()
 
 constexpr double kBorder = 16.0;  // margins: next to the border a point of an edge is as good, and there are no needles
 
@@ -105,7 +108,6 @@ PointsOfFace section_points(const FaceEdges& face, CreasesHere& creases, double 
       creases.section(face.corners, static_cast<std::uint32_t>(p.source), static_cast<std::uint32_t>(q.source));
   const Vec3 along = q.position - p.position;
   const double least = kAhead * unit * std::sqrt(dot(along, along));
-  if (section.size < 2) return {};
   PointsOfFace points;
   const Vec3* last = &p.position;
   for (std::size_t n = 0; n < section.size; ++n) {
@@ -126,11 +128,22 @@ std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, do
 
 // Whether the planes at the points meet on a crease: there it is in both as well as numbers can tell.
 std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& creases, double tolerance, double unit,
-                                      double margin) {
+                                      double margin, CreaseKinds kinds = CreaseKinds::kNotFine) {
   // The margin and rounding move points off the mesh by less than this.
   const double near = 4.0 * (tolerance + unit);
   const std::optional<Vec3> meeting = meeting_point(face, margin);
-  return meeting && creases.has_hit_near(face.corners, *meeting, near) ? meeting : std::nullopt;
+  return meeting && creases.has_hit_near(face.corners, *meeting, near, kinds) ? meeting : std::nullopt;
+}
+
+// plane_tolerance() of coordinates that are what they say, whatever their format rounds.
+double fine_tolerance(const Lattice& lattice) {
+  double largest = 0.0, least = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
+    largest = std::max({largest, std::abs(low), std::abs(lattice.coordinate(axis, lattice.index_max(axis)))});
+    least = std::min(least, lattice.spacing[axis]);
+  }
+  return std::max(kVoxels * least, kDouble * largest);
 }
 
 double largest_margin(const SurfaceCells& cells, double margin) {
@@ -153,7 +166,7 @@ double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
       }
     }
   }
-  constexpr double kVoxels = 1e-9, kSingle = 0x1p-22, kDouble = 0x1p-50;
+  constexpr double kSingle = 0x1p-22;
   return std::max(kVoxels * std::min({h.x, h.y, h.z}), (single ? kSingle : kDouble) * largest);
 }
 
@@ -204,22 +217,36 @@ void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoin
                              std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
                              const SurfaceMargins& margins) {
   const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
-  if (!edges || !disagree(*edges, tolerance, margins.inner)) return;
+  const double fine = std::min(tolerance, fine_tolerance(cells.lattice()));
+  if (!edges || !disagree(*edges, fine, margins.inner)) return;
   const double unit = largest_margin(cells, margins.inner);
   const std::uint64_t number = std::uint64_t{16} * cell + face;
-  std::optional<Vec3> one = meeting_on_crease(*edges, creases_here, tolerance, unit, margins.inner);
-  const PointsOfFace several = one ? PointsOfFace{} : section_points(*edges, creases_here, unit, margins.inner);
-  for (std::size_t n = 0; n < several.size; ++n) {
-    const Vec3& position = several.positions[n];
-    const std::uint32_t beyond = several.beyond[n];
-    if (n + 1 < several.size) {
+  const bool is_bent = disagree(*edges, tolerance, margins.inner);
+  std::optional<Vec3> one;
+  if (is_bent) one = meeting_on_crease(*edges, creases_here, tolerance, unit, margins.inner, CreaseKinds::kNotFine);
+  if (one) {
+    add(number, *one);
+    return;
+  }
+  PointsOfFace more;
+  one = meeting_on_crease(*edges, creases_here, fine, unit, margins.inner, CreaseKinds::kAll);
+  if (one) {
+    more.add(*one, 0);
+  } else {
+    more = section_points(*edges, creases_here, unit, margins.inner);
+  }
+  if (more.size > 0) sections_.push_back(number);
+  for (std::size_t n = 0; n < more.size; ++n) {
+    const Vec3& position = more.positions[n];
+    const std::uint32_t beyond = more.beyond[n];
+    if (n + 1 < more.size) {
       const auto point = static_cast<std::uint32_t>(faces_.size());
       pieces_.push_back({point, {position, creases.normal_of(beyond), static_cast<std::int32_t>(beyond)}});
     }
     add(number, position);
   }
-  if (several.size > 0) return;
-  if (!one) one = crease_point(*edges, creases_here, margins.inner);
+  if (more.size > 0 || !is_bent) return;
+  one = crease_point(*edges, creases_here, margins.inner);
   if (one) add(number, *one);
 }
 
@@ -230,6 +257,7 @@ void FacePoints::join(std::vector<FacePoints>& parts) {
     places.push_back(count);
     for (const Piece& piece : part.pieces_)
       pieces_.push_back({static_cast<std::uint32_t>(count + piece.point), piece.plane});
+    sections_.insert(sections_.end(), part.sections_.begin(), part.sections_.end());
     count += part.faces_.size();
   }
   resize_on_all_threads(faces_, count);
@@ -273,25 +301,20 @@ const EdgePoint& FacePoints::piece_behind(std::uint32_t point) const {
   return std::ranges::lower_bound(pieces_, point, {}, &Piece::point)->plane;
 }
 
-std::vector<std::uint64_t> FacePoints::section_faces() const {
-  std::vector<std::uint64_t> faces;
-  for (const Piece& piece : pieces_) {
-    if (faces.empty() || faces.back() != faces_[piece.point]) faces.push_back(faces_[piece.point]);
-  }
-  return faces;
-}
-
 void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
                                   std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
                                   const SurfaceMargins& margins) {
   CreasesHere creases_here(creases);
-  std::size_t count = 0, pieces = 0, piece = 0;
+  std::size_t count = 0, pieces = 0, piece = 0, sections = 0, section = 0;
   for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
     const std::uint64_t face = faces_[i];
     const auto cell = static_cast<std::uint32_t>(face / 16);
     for (end = i + 1; end < faces_.size() && faces_[end] == face;) ++end;
     const auto is_of_polygons = [&](std::uint32_t c) { return cells_of_polygons[c] != 0; };
-    const bool stays = end == i + 1 || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons);
+    const bool is_section = section < sections_.size() && sections_[section] == face;
+    section += is_section ? 1 : 0;
+    const bool stays = !is_section || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons);
+    if (is_section && stays) sections_[sections++] = face;
     std::size_t left = end - i;
     if (!stays) {
       creases_here.enter(cell);
@@ -311,6 +334,7 @@ void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_poly
   faces_.resize(count);
   positions_.resize(count);
   pieces_.resize(pieces);
+  sections_.resize(sections);
   number_cells();
 }
 

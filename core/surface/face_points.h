@@ -36,8 +36,9 @@ enum class PointsOfFaces : std::uint8_t {
 class FacePoints {
  public:
   // What face_point() finds. With sections, where planes do not meet: all points by which the mesh leads from the one
-  // to the other, if these are several, and go ahead all the way. Points are kept inside the face by the margin. They
-  // depend on the face, its two points and the mesh alone, so that both its cells agree.
+  // to the other, if these are several, and go ahead all the way; and where planes meet on fine creases, or are one but
+  // for what single precision rounds, points of these. Points are kept inside the face by the margin. They depend on
+  // the face, its two points and the mesh alone, so that both its cells agree.
   FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
              double tolerance, const SurfaceMargins& margins, PointsOfFaces kind = PointsOfFaces::kOne);
   FacePoints() = default;
@@ -59,9 +60,9 @@ class FacePoints {
   // What the surface is of between a point and the next one, of the same face.
   [[nodiscard]] const EdgePoint& piece_behind(std::uint32_t point) const;
 
-  // The faces that have several points, in increasing order.
-  [[nodiscard]] std::vector<std::uint64_t> section_faces() const;
-  // Leaves these several only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
+  // The faces with points that face_point() does not find, in increasing order.
+  [[nodiscard]] const std::vector<std::uint64_t>& section_faces() const { return sections_; }
+  // Leaves these only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
   // for each such cell. The others have the one that face_point() finds.
   void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
                         std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
@@ -88,6 +89,7 @@ class FacePoints {
   PointsOfFaces kind_ = PointsOfFaces::kOne;
   std::vector<std::uint64_t> faces_;  // 16 * cell + face; those of a face follow each other
   std::vector<Vec3> positions_;
+  std::vector<std::uint64_t> sections_;
   std::vector<Piece> pieces_;                 // of the points that are not the last ones of their faces, increasing
   std::vector<std::uint32_t> first_of_cell_;  // up to the last cell that has any; one more at the end
   std::vector<std::uint16_t> faces_of_cell_;  // likewise, a bit for each

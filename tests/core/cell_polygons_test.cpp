@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/mesh_statistics.h"
@@ -197,10 +198,8 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
   EXPECT_GT(of_several, 100);
 }
 
-// A box with its four edges along z cut off.
-TriangleMesh chamfered_box(double cut) {
-  const std::vector<std::pair<double, double>> outline{{cut, 0},     {1 - cut, 0}, {1, cut},     {1, 1 - cut},
-                                                       {1 - cut, 1}, {cut, 1},     {0, 1 - cut}, {0, cut}};
+// Convex, from z = 0 to 1.
+TriangleMesh prism(const std::vector<std::pair<double, double>>& outline) {
   const auto count = static_cast<std::uint32_t>(outline.size());
   TriangleMesh mesh;
   for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, 0});
@@ -214,6 +213,11 @@ TriangleMesh chamfered_box(double cut) {
     mesh.triangles.push_back({count, count + n - 1, count + n});
   }
   return mesh;
+}
+
+// A box with its four edges along z cut off.
+TriangleMesh chamfered_box(double cut) {
+  return prism({{cut, 0}, {1 - cut, 0}, {1, cut}, {1, 1 - cut}, {1 - cut, 1}, {cut, 1}, {0, 1 - cut}, {0, cut}});
 }
 
 // Of a surface, what is not in the planes of its sources.
@@ -252,6 +256,72 @@ TEST(CellPolygons, FollowBothEdgesOfAStripThroughAFace) {
     ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
     EXPECT_LT(10 * faces_off_planes(after, mesh), 9 * faces_off_planes(before, mesh));
     EXPECT_LT(after.surface.sources.size(), before.surface.sources.size());
+  }
+}
+
+// A side that is bent by 0.02 degrees is of two planes.
+TEST(CellPolygons, AreInThePlanesBesideFineCreases) {
+  const DefaultFloatingPoint guard;
+  Random random(18);
+  for (int round = 0; round < 6; ++round) {
+    const TriangleMesh mesh = turned(prism({{0, 0}, {1, 0}, {1, 1}, {0.5, 1.00001}, {0, 1}}), random);
+    const Lattice lattice = lattice_around(mesh, uniform(random, 0.04, 0.06));
+    const Cells one(mesh, lattice);
+    const Cells several(mesh, lattice, PointsOfFaces::kSections);
+    const ContouredSurface before = one.contoured(ContourCells::kPolygons);
+    const ContouredSurface after = several.contoured(ContourCells::kPolygons);
+    const TriangleMesh used = used_mesh(after);
+    const SurfaceFaults faults = faults_of(used, several.nodes);
+    ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
+    EXPECT_LT(faces_off_planes(after, mesh) + 20, faces_off_planes(before, mesh)) << round;
+    EXPECT_LT(after.surface.sources.size() + 20, before.surface.sources.size()) << round;
+  }
+}
+
+// A box whose top has small bumps, in triangles smaller than voxels.
+TriangleMesh bumpy_box(Random& random) {
+  constexpr std::uint32_t kSide = 30;
+  TriangleMesh mesh;
+  const auto number = [](std::uint32_t i, std::uint32_t j) { return i + (kSide + 1) * j; };
+  for (std::uint32_t j = 0; j <= kSide; ++j) {
+    for (std::uint32_t i = 0; i <= kSide; ++i) {
+      const bool at_border = i == 0 || j == 0 || i == kSide || j == kSide;
+      mesh.vertices.push_back({i / double{kSide}, j / double{kSide}, at_border ? 0.0 : uniform(random, -1e-5, 1e-5)});
+    }
+  }
+  const auto below = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3& p : {Vec3{0, 0, -1}, Vec3{1, 0, -1}, Vec3{1, 1, -1}, Vec3{0, 1, -1}}) mesh.vertices.push_back(p);
+  mesh.triangles = {{below, below + 2, below + 1}, {below, below + 3, below + 2}};
+  for (std::uint32_t n = 0; n < kSide; ++n) {
+    for (std::uint32_t m = 0; m < kSide; ++m) {
+      mesh.triangles.push_back({number(n, m), number(n + 1, m), number(n + 1, m + 1)});
+      mesh.triangles.push_back({number(n, m), number(n + 1, m + 1), number(n, m + 1)});
+    }
+    mesh.triangles.push_back({below, number(n + 1, 0), number(n, 0)});
+    mesh.triangles.push_back({below + 1, number(kSide, n + 1), number(kSide, n)});
+    mesh.triangles.push_back({below + 2, number(n, kSide), number(n + 1, kSide)});
+    mesh.triangles.push_back({below + 3, number(0, n), number(0, n + 1)});
+  }
+  mesh.triangles.push_back({below, below + 1, number(kSide, 0)});
+  mesh.triangles.push_back({below + 1, below + 2, number(kSide, kSide)});
+  mesh.triangles.push_back({below + 2, below + 3, number(0, kSide)});
+  mesh.triangles.push_back({below + 3, below, number(0, 0)});
+  return mesh;
+}
+
+// Also where cells are cut into tetrahedra beside sections that follow fine creases.
+TEST(CellPolygons, LeaveAllPointsOnTheMesh) {
+  const DefaultFloatingPoint guard;
+  Random random(19);
+  for (int round = 0; round < 3; ++round) {
+    const TriangleMesh mesh = turned(bumpy_box(random), random);
+    const double h = uniform(random, 0.04, 0.06);
+    const Cells cells(mesh, lattice_around(mesh, h), PointsOfFaces::kSections);
+    const TriangleMesh used = used_mesh(cells.contoured(ContourCells::kPolygons));
+    const DistanceEvaluator from_mesh(mesh);
+    std::vector<double> distances(used.vertices.size());
+    from_mesh.evaluate(used.vertices, distances);
+    EXPECT_LE(std::ranges::max(distances), 1e-8 * h) << round;
   }
 }
 

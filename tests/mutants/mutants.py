@@ -512,6 +512,7 @@ MUTANTS = [
     Mutant("faults_that_stay", "faces that intersected others are looked at again", [
         ("core/surface/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
     Mutant("faces_beside_gone_ones", "faces at corners of those that have changed are looked at", [
+        ("core/surface/repeated_check.cpp", "if (was_there && !same) touch(triangles_[before]);", ""),
         ("core/surface/repeated_check.cpp", "if (!same) touch(merged.triangles[now]);", "")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
         ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",

@@ -81,8 +81,8 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4;
 
-  // What thickens has points off the mesh. Without merging, the surface is told in all of its triangles.
-  [[nodiscard]] bool may_use_polygons() const { return options_.merge_planes && !(options_.thickness > 0.0); }
+  // What thickens has points off the mesh.
+  [[nodiscard]] bool may_use_polygons() const { return !(options_.thickness > 0.0); }
 
   // Several points of a face help where the surface is polygons then. Cones of tetrahedra would only have more
   // triangles.
@@ -119,7 +119,7 @@ class SurfaceMaker {
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins, kind);
-    if (!made.merged && kind == ContourCells::kPolygons) return std::nullopt;
+    if (options_.merge_planes && !made.merged && kind == ContourCells::kPolygons) return std::nullopt;
     if (!is_right_.value_or(true) || (!made.merged && !is_right(made.surface, places))) return std::nullopt;
     if (options_.simplify > 0.0) {
       const double most = farthest_pull(margins);

@@ -271,7 +271,7 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
   const SideSamples samples(mesh, rows, rule, crossings, cap_crossings, sides);
   RuleBlocks blocks(samples);
   // In rounds, each of which knows all of those before it, so that the work is the same for any number of threads.
-  constexpr std::size_t kFirstRound = 8;
+  constexpr std::size_t kFirstRound = 64;
   for (std::size_t first = 0, last = kFirstRound; first < blocks.size(); first = last, last *= 2) {
     const bool by_certificates = blocks.are_worth_it();
     parallel_for(std::min(last, blocks.size()) - first, 1, [&](std::size_t begin, std::size_t end) {

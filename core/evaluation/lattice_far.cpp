@@ -130,7 +130,7 @@ class BlockValues {
   void set(const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,
            double cap_crossings, std::span<double> values) const {
     const double whole = crossings - cap_crossings;
-    int doubtful = 0;  // counted, not asked one by one, so that compilers use lanes
+    int doubtful = 0;  // no least distance, whose comparisons compilers do not put into lanes
     for (std::size_t i = 0; i < sums.size(); ++i) {
       values[i] = whole + sums[i];
       doubtful |= static_cast<int>(gap_to_half_integer(values[i]) <= doubt_);

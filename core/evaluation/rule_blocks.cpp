@@ -85,6 +85,8 @@ class RuleBlocks {
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
+  // Makes their tree, which is not asked for where certificates decide all.
+  [[nodiscard]] bool takes_rough_sums() const { return has_rough_sums_ && mesh_.blocks().are_sound; }
   void look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
                std::vector<SampleBox>& left) const;
   void find_certificates(CutBlock whole, std::vector<SampleBox>& left, std::vector<SampleBox>& undecided) const;
@@ -118,12 +120,12 @@ std::size_t RuleBlocks::apply(std::size_t n, bool by_certificates) {
     for (const std::vector<SampleBox>* boxes : {&left, &undecided}) {
       for (const SampleBox& box : *boxes) in_vain_ += box.size();
     }
-  } else if (has_rough_sums_) {
+  } else if (takes_rough_sums()) {
     left.push_back(whole);
   } else {
     samples_.evaluate_rows(whole);
   }
-  if (has_rough_sums_ && !left.empty() && mesh_.blocks().are_sound) {
+  if (!left.empty() && takes_rough_sums()) {
     set_sides_roughly(samples_, left, undecided);
   } else {
     undecided.insert(undecided.end(), left.begin(), left.end());

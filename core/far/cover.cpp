@@ -145,7 +145,9 @@ class RoughWalk {
       return true;
     }
     const double cost = expansion_cost(cut->degree), triangles = static_cast<double>(node.triangles());
-    if (!(smooth ? cost < triangles : kMuch * cost < triangles && node.own_end == node.end)) return false;
+    // Parts of a node that is not smooth may be.
+    const bool has_parts = node.own_end != node.end;
+    if (!(smooth ? cost < triangles : kMuch * cost < triangles && !has_parts)) return false;
     if (smooth) {
       result_.smooth.expansions.push_back({number, cut->degree});
       result_.error += bend + interpolation_.growth * cut->error;

@@ -41,7 +41,7 @@ struct TriangleExtent {
   double area;  // NaN where it is not known: such a triangle is near everywhere
 };
 
-// What interpolation between nodes in a box makes of a function: where its derivatives of order kInterpolated along any
+// What interpolation between nodes in a box makes of a function: where its derivatives of order kOrder along any
 // axis are at most D times the factorial of that, it is off by at most bend D, and values at nodes that are off by e
 // make it off by at most growth e.
 struct Interpolation {

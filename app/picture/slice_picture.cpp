@@ -169,10 +169,12 @@ Image slice_picture(const PlaneView& view, const PictureValues& values, const Tr
   return framed_picture(image, view, appearance.legend);
 }
 
+// One after the other: the values sorted for the range of colours; the image and coverages; the image and its page.
 double slice_picture_bytes(const PlaneView& view, bool framed) {
-  constexpr double kPerPixel = sizeof(double) + sizeof(Rgb) + 3;  // sorted values, image, coverages
-  const double plot = kPerPixel * static_cast<double>(view.width) * static_cast<double>(view.height);
-  return plot + (framed && has_frame(view) ? framed_picture_bytes(view) : 0.0);
+  constexpr double kSorted = sizeof(double), kImage = sizeof(Rgb), kCoverages = 3;  // per pixel
+  const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
+  const double page = framed && has_frame(view) ? framed_picture_bytes(view) : 0.0;
+  return std::max(pixels * kSorted, pixels * kImage + std::max(pixels * kCoverages, page));
 }
 
 }  // namespace raycone

@@ -40,13 +40,14 @@ bool is_on_lattice(const Slice& slice, const FieldOptions& field) {
 // Points evaluated at a time.
 constexpr std::int64_t kPixelBatch = std::int64_t{1} << 18;
 
-// Refuses pictures that cannot fit, before any work on them.
+// Refuses pictures that cannot fit, before any work on them. Samples are gone when the picture is made.
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunLimits& limits) {
   const double pixels = static_cast<double>(slice.view.width) * static_cast<double>(slice.view.height);
   const bool on_lattice = is_on_lattice(slice, command.field);
   double samples = on_lattice ? static_cast<double>(FieldSamples::bytes_per_sample(command.field)) : 0.0;
   if (command.field.has(Field::kLabel)) samples = sizeof(std::int32_t) + sizeof(std::uint8_t);
-  const double bytes = pixels * (sizeof(double) + samples) + slice_picture_bytes(slice.view, command.framed);
+  const double picture = slice_picture_bytes(slice.view, command.framed);
+  const double bytes = pixels * sizeof(double) + std::max(pixels * samples, picture);
   check_memory(command.mesh.path, bytes, limits.memory());
 }
 

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdlib>
+#include <functional>
+#include <numeric>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "core/machine/threads.h"
 
@@ -231,44 +236,80 @@ std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh, Ver
   return edges;
 }
 
+// Vertices of edges, each once.
+class EdgeVertices {
+ public:
+  EdgeVertices(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges) {
+    for (const ExteriorEdge& e : edges) {
+      numbers_.push_back(e.from);
+      numbers_.push_back(e.to);
+    }
+    std::ranges::sort(numbers_);
+    numbers_.erase(std::ranges::unique(numbers_).begin(), numbers_.end());
+    std::vector<Placed> placed(numbers_.size());
+    for (std::uint32_t i = 0; i < placed.size(); ++i) placed[i] = {mesh.vertices[numbers_[i]].x, i};
+    // By coordinates; indices tell apart only vertices that were left unwelded at one position.
+    std::ranges::sort(placed, [&](const Placed& a, const Placed& b) {
+      if (a.x < b.x || a.x > b.x) return a.x < b.x;  // mostly decided without looking the vertices up
+      const auto order = lexicographic_order(mesh.vertices[numbers_[a.place]], mesh.vertices[numbers_[b.place]]);
+      return order != 0 ? order < 0 : a.place < b.place;
+    });
+    ranks_.resize(placed.size());
+    for (std::uint32_t rank = 0; rank < placed.size(); ++rank) ranks_[placed[rank].place] = rank;
+  }
+
+  [[nodiscard]] std::size_t size() const { return numbers_.size(); }
+
+  // How many vertices are lexicographically smaller than this one.
+  [[nodiscard]] std::uint32_t rank(std::uint32_t vertex) const {
+    return ranks_[static_cast<std::size_t>(std::ranges::lower_bound(numbers_, vertex) - numbers_.begin())];
+  }
+
+ private:
+  struct Placed {
+    double x;
+    std::uint32_t place;  // in numbers_
+  };
+
+  std::vector<std::uint32_t> numbers_;  // ascending
+  std::vector<std::uint32_t> ranks_;    // of these
+};
+
 // Orders the edges of one |multiplicity| into chains, walking from the lexicographically smallest vertex with an unused
 // edge along unused edges to the smallest neighbour, until stuck; and so on.
 class Chains {
  public:
-  Chains(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
+  Chains(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges)
+      : edges_(edges), used_(edges.size(), false) {
+    const EdgeVertices vertices(mesh, edges);
+    std::vector<std::uint32_t> counts(vertices.size(), 0);
+    ends_.reserve(edges.size());
     for (const ExteriorEdge& e : edges) {
-      vertices_.push_back(e.from);
-      vertices_.push_back(e.to);
+      const Ends& ends = ends_.emplace_back(Ends{vertices.rank(e.from), vertices.rank(e.to)});
+      ++counts[ends.from];
+      ++counts[ends.to];
     }
-    // By coordinates; indices tell apart only vertices that were left unwelded at one position.
-    const auto before = [&](std::uint32_t i, std::uint32_t j) {
-      const auto order = lexicographic_order(mesh.vertices[i], mesh.vertices[j]);
-      return order != 0 ? order < 0 : i < j;
-    };
-    std::sort(vertices_.begin(), vertices_.end(), before);
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    const auto rank = [&](std::uint32_t v) {
-      return static_cast<std::size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), v, before) -
-                                      vertices_.begin());
-    };
-    incidences_.resize(vertices_.size());
-    next_.assign(vertices_.size(), 0);
-    used_.assign(edges.size(), false);
+    first_.assign(counts.size() + 1, 0);
+    std::inclusive_scan(counts.begin(), counts.end(), first_.begin() + 1, std::plus<>(), std::size_t{0});
+    next_.assign(first_.begin(), first_.end() - 1);
+    incidences_.resize(first_.back());
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      const std::size_t from = rank(edges[i].from), to = rank(edges[i].to);
-      incidences_[from].push_back({to, i});
-      incidences_[to].push_back({from, i});
+      incidences_[next_[ends_[i].from]++] = {ends_[i].to, i};
+      incidences_[next_[ends_[i].to]++] = {ends_[i].from, i};
     }
-    for (auto& incidences : incidences_) std::sort(incidences.begin(), incidences.end());
+    for (std::size_t v = 0; v < counts.size(); ++v) {
+      next_[v] = first_[v];
+      std::ranges::sort(std::span(incidences_).subspan(first_[v], counts[v]));
+    }
   }
 
-  void append_to(std::vector<ExteriorEdge>& ordered, const std::vector<ExteriorEdge>& edges) {
-    for (std::size_t start = 0; start < vertices_.size(); ++start) {
-      std::size_t here = start;
+  void append_to(std::vector<ExteriorEdge>& ordered) {
+    for (std::uint32_t start = 0; start < next_.size(); ++start) {
+      std::uint32_t here = start;
       while (const Incidence* next = unused_incidence(here)) {
-        const ExteriorEdge& e = edges[next->edge];
+        const ExteriorEdge& e = edges_[next->edge];
         used_[next->edge] = true;
-        const bool along = e.from == vertices_[here];
+        const bool along = ends_[next->edge].from == here;
         ordered.push_back(along ? e : ExteriorEdge{e.to, e.from, -e.multiplicity});
         here = next->neighbour;
         if (!unused_incidence(here)) here = start;
@@ -277,22 +318,28 @@ class Chains {
   }
 
  private:
+  // Vertices, by their rank.
+  struct Ends {
+    std::uint32_t from, to;
+  };
   struct Incidence {
-    std::size_t neighbour;
+    std::uint32_t neighbour;
     std::size_t edge;
     friend auto operator<=>(const Incidence&, const Incidence&) = default;
   };
 
-  const Incidence* unused_incidence(std::size_t vertex) {
+  const Incidence* unused_incidence(std::uint32_t vertex) {
     std::size_t& next = next_[vertex];
-    while (next < incidences_[vertex].size() && used_[incidences_[vertex][next].edge]) ++next;
-    return next < incidences_[vertex].size() ? &incidences_[vertex][next] : nullptr;
+    while (next < first_[vertex + 1] && used_[incidences_[next].edge]) ++next;
+    return next < first_[vertex + 1] ? &incidences_[next] : nullptr;
   }
 
-  std::vector<std::uint32_t> vertices_;  // by coordinates; the rest refers to indices in this order
-  std::vector<std::vector<Incidence>> incidences_;
-  std::vector<std::size_t> next_;
-  std::vector<bool> used_;
+  std::span<const ExteriorEdge> edges_;
+  std::vector<Ends> ends_;  // of edges
+  std::vector<bool> used_;  // likewise
+  // Those of vertex v are [first_[v], first_[v + 1]); all before next_[v] are used.
+  std::vector<Incidence> incidences_;
+  std::vector<std::size_t> first_, next_;
 };
 
 }  // namespace
@@ -308,8 +355,7 @@ std::vector<ExteriorEdge> exterior_edges(const TriangleMesh& mesh, VertexLinks* 
     const auto end = std::find_if(begin, edges.end(), [&](const ExteriorEdge& e) {
       return std::abs(e.multiplicity) != std::abs(begin->multiplicity);
     });
-    const std::vector<ExteriorEdge> group(begin, end);
-    Chains(mesh, group).append_to(ordered, group);
+    Chains(mesh, std::span(begin, end)).append_to(ordered);
     begin = end;
   }
   return ordered;

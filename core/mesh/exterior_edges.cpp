@@ -279,8 +279,7 @@ class EdgeVertices {
 // edge along unused edges to the smallest neighbour, until stuck; and so on.
 class Chains {
  public:
-  Chains(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges)
-      : edges_(edges), used_(edges.size(), false) {
+  Chains(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges) : edges_(edges), used_(edges.size(), false) {
     const EdgeVertices vertices(mesh, edges);
     std::vector<std::uint32_t> counts(vertices.size(), 0);
     ends_.reserve(edges.size());

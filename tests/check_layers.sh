@@ -43,8 +43,17 @@ for name in $twice; do
   status=1
 done
 
+# The second of two headers of one guard is left out.
+guards=$(grep -hoE '^#define RAYCONE_[A-Z0-9_]*_H_$' $(find core io app -name '*.h') | sort | uniq -d)
+for guard in $guards; do
+  [ "$guard" = '#define' ] || { grep -rnE "^#define $guard\$" core io app >&2
+    echo "check_layers: two headers have the guard $guard" >&2
+    status=1; }
+done
+
 only_in Embree '[<"]embree' 'core/crossings/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/exact/(predicates|projection)\.cpp'
+only_in GMP '[<"]gmp' 'core/exact/exact_integers\.h'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/machine/threads\.cpp'
 only_in Highway '[<"]hwy' \
   'core/(boundary/(change|cone|solid_angle)_kernel\.cpp|boundary/(product|triangle)_lanes-inl\.h|far/((far|matrix|moment|polynomial)_kernel|shared_corners)\.cpp|distance/(block|tree)_kernel\.cpp|distance/(near_triangles|to_front|triangle_lanes)-inl\.h|mesh/selection_kernel\.cpp|machine/(simd\.cpp|simd_kernel\.h))'

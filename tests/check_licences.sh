@@ -6,7 +6,7 @@ set -eu
 cd "${1:-$(dirname "$0")/..}"
 
 status=0
-flags="-DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE"  # of io/CMakeLists.txt
+flags="-DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE"  # of io/mesh/CMakeLists.txt
 
 # check LIBRARY INCLUDED HEADERS LICENCES: of the headers whose paths match HEADERS in the files that include INCLUDED,
 # each must match LICENCES.

@@ -18,7 +18,10 @@ allow() {
 [ "$(id -u)" -ne 0 ] || \
   allow 'OutputFile\.RefusesADirectoryWithoutPermission|BatchMeshes\.ADirectoryThatCannotBeReadStandsForWhatItHolds'
 # The shared meshes lie beside the repository, not in it.
-[ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow 'shared_meshes|accuracy_of_real_meshes|SharedMeshes\..*|ReadGltf\.SharedMeshes.*'
+[ -f "$(setting RAYCONE_SHARED_MESHES)/MANIFEST.csv" ] || allow "shared_meshes|accuracy_of_real_meshes|distance_signs|labels|mesh_warnings|$(cat <<'END'
+SharedMeshes\..*|SharedIntersections\..*|ReadGltf\.SharedMeshes.*|RuleBlocks\.HoldOnRealOpenMeshes
+END
+)"
 # Sanitizers reserve terabytes of addresses, and die where memory runs out.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory|ulimit'
 # They must be loaded before libfaketime, and trace themselves.

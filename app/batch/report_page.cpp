@@ -280,9 +280,8 @@ std::string page(const std::string& directory, const BatchRecords& records) {
 
 std::vector<std::string> results_in(const std::string& directory) {
   std::vector<std::string> results;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    if (is_results_file(entry.path().filename().string())) results.push_back(entry.path().string());
+  for (const std::string& name : names_in(directory)) {
+    if (is_results_file(name)) results.push_back((fs::path(directory) / name).string());
   }
   return results;
 }

@@ -64,11 +64,25 @@ std::optional<Shard> shard_of(const std::string& name) {
   return Shard{std::stoull(match[1]), std::stoull(match[2])};
 }
 
+}  // namespace
+
+std::vector<std::string> names_in(const std::string& directory) {
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::directory_iterator entry(directory, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  const bool is_none = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  if (error && !is_none) fail_to_read(directory, error.value());
+  return names;
+}
+
+namespace {
+
 std::vector<ResultsFiles> all_results_files(const std::string& directory) {
   std::vector<ResultsFiles> all;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::string& name : names_in(directory)) {
     if (holds_rows(name)) all.emplace_back(directory, shard_of(name));
   }
   return all;

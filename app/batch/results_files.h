@@ -82,6 +82,9 @@ class ResultsFiles {
 // it adds at this moment would be lost, and made again. Throws InputError, OutputError.
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes);
 
+// Of the files in a directory; none where it is not there, or a file. Throws InputError where it cannot be read.
+[[nodiscard]] std::vector<std::string> names_in(const std::string& directory);
+
 // Whether a batch keeps its results in files of this name.
 [[nodiscard]] bool is_results_file(const std::string& name);
 

@@ -149,7 +149,8 @@ class Supervisor {
   [[nodiscard]] JobResult crash(const std::string& mesh, int wait_status) const {
     constexpr int kSignalBase = 128;  // as in shells
     const auto internal = static_cast<int>(ExitCode::kInternal);
-    if (WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == static_cast<int>(ExitCode::kLimit)) {
+    const int exit_status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 0;
+    if (exit_status == static_cast<int>(ExitCode::kLimit) || exit_status == kNotStarted) {
       return failed(
           MeshStatus::kMemory, static_cast<int>(ExitCode::kLimit),
           mesh + ": out of memory, the limit is " + readable_bytes(static_cast<double>(options_.memory_limit)));

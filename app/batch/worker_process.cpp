@@ -15,6 +15,7 @@
 
 #include "app/batch/command_message.h"
 #include "app/batch/worker.h"
+#include "app/process/exit_code.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -29,7 +30,7 @@ namespace {
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   execv("/proc/self/exe", words);
-  _exit(1);
+  _exit(kNotStarted);
 }
 
 }  // namespace

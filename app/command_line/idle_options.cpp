@@ -66,7 +66,7 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   if (!command.field.has_distance()) {
     refuse_option(values, "--band", "without a distance, expected --field sdf or solid");
   }
-  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz or vti";
+  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz, nrrd or vti";
   if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
   for (const char* const name : {"--double", "--half"}) {
     if (!command.field.has_numbers()) refuse_flag(values, name, kNoDigits);

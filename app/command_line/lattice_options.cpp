@@ -71,7 +71,7 @@ void check_halves(const FieldEncoding& encoding) {
 void parse_compress(const Values& values, FieldEncoding& encoding) {
   encoding.compress = values.given("--compress") || encoding.format == FieldFormat::kNiftiGz;
   if (!values.given("--compress") || encoding.format == FieldFormat::kNrrd) return;
-  throw UsageError("--compress: has no effect on this format, expected nrrd, or the extension .nii.gz");
+  throw UsageError("--compress: has no effect on this format, expected nrrd; .nii.gz is compressed anyway");
 }
 
 // A level set needs the band on the outside too. One that is not cut off has the lattice of the default band.

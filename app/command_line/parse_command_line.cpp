@@ -1,5 +1,5 @@
-// CLI11 checks it against the specification of the command and prints the
-// help; values stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
+// The words of the command line. CLI11 checks them against the specification of the command and prints the help; values
+// stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
 #include "app/command_line/parse_command_line.h"
 
 #include <CLI/App.hpp>

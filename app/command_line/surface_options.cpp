@@ -46,13 +46,15 @@ void parse_simplify(const Values& values, SurfaceCommand& command) {
 void make_room(std::variant<LatticeRequest, GridReference>& lattice) {
   auto* const request = std::get_if<LatticeRequest>(&lattice);
   auto* const padding = request ? std::get_if<VoxelPadding>(&request->padding) : nullptr;
-  if (padding) padding->samples = std::max<std::int64_t>(padding->samples, 1);
+  if (!padding) return;
+  if (padding->samples < 0) invalid("--padding", std::to_string(padding->samples) + "v", "1v or more");
+  padding->samples = std::max<std::int64_t>(padding->samples, 1);
 }
 
 OptionGroup lattice_group_with_room() {
   OptionGroup group = lattice_group();
   const auto padding = std::ranges::find(group.options, "--padding", &OptionSpec::names);
-  padding->description = "Widen the box by P, or by N voxels, on every side (at least 1v)";
+  padding->description = "Widen the box by P or Q % of its longest side, or by N voxels, on every side (at least 1v)";
   return group;
 }
 

@@ -12,7 +12,7 @@ namespace raycone {
 
 enum class InfoFormat { kText, kJson, kCsv };
 
-// What a mesh may be asked to be (CLI.md, "Surfaces").
+// What a mesh may be asked to be (docs/formats.md, "Facts about meshes").
 enum class Requirement { kClosed, kOriented, kOutward, kManifold, kEmbedded, kNoDuplicates };
 
 struct InfoCommand {

@@ -40,7 +40,7 @@ struct LatticeRequest {
   bool centers = false;  // samples at the centres of cells, else at their corners
 };
 
-// A grid of an OpenVDB file; an empty name is its only or first one.
+// A grid of an OpenVDB file, its only or first one where the name is empty; or the lattice of an NPZ, NRRD or NIfTI.
 struct GridReference {
   std::string path;
   std::string name;

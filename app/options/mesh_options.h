@@ -15,7 +15,7 @@ namespace raycone {
 // What the parts are that labels tell apart.
 enum class PartsBy {
   kFile,       // each mesh is one
-  kGroup,      // what the file names: groups and objects of OBJ, solids of STL, meshes of glTF
+  kGroup,      // what the file names: groups and objects of OBJ, solids of STL, meshes of glTF, objects of 3MF
   kComponent,  // faces that are joined through vertices
 };
 

@@ -84,7 +84,8 @@ ColourMap::ColourMap(const ColourRange& range) : range_(range), colours_(kColour
 }
 
 Rgb ColourMap::operator()(double value) const {
-  const double position = std::clamp((value - range_.least()) / (range_.most() - range_.least()), 0.0, 1.0);
+  // From the centre: the whole range may be wider than the largest number.
+  const double position = 0.5 + 0.5 * std::clamp((value - range_.centre) / range_.half_width, -1.0, 1.0);
   const double inwards = range_.inside_below ? 1.0 - position : position;
   return colours_[static_cast<std::size_t>(std::lround(inwards * static_cast<double>(kColours - 1)))];
 }

@@ -27,15 +27,14 @@ PicturePoint crossing(const Square& square, std::size_t side, double level) {
   return {a.point.x + t * (b.point.x - a.point.x), a.point.y + t * (b.point.y - a.point.y)};
 }
 
-void trace(const Square& square, double level,
-           const std::function<void(const PictureSegment& piece, double level)>& line) {
+void trace(const Square& square, double level, const std::function<void(const PictureSegment& piece)>& line) {
   std::array<std::size_t, 4> crossed{};
   std::size_t count = 0;
   for (std::size_t side = 0; side < 4; ++side) {
     if ((square[side].value < level) != (square[(side + 1) % 4].value < level)) crossed[count++] = side;
   }
   const auto connect = [&](std::size_t a, std::size_t b) {
-    line({crossing(square, crossed[a], level), crossing(square, crossed[b], level)}, level);
+    line({crossing(square, crossed[a], level), crossing(square, crossed[b], level)});
   };
   if (count == 2) connect(0, 1);
   if (count < 4) return;
@@ -46,7 +45,7 @@ void trace(const Square& square, double level,
 }
 
 void trace_all_levels(const Square& square, const Levels& levels,
-                      const std::function<void(const PictureSegment&, double)>& line) {
+                      const std::function<void(const PictureSegment&)>& line) {
   const auto [least, most] = std::ranges::minmax(square, {}, &Corner::value);
   for (double n = std::floor((least.value - levels.offset) / levels.step) + 1.0;; n += 1.0) {
     const double level = levels.offset + n * levels.step;
@@ -80,7 +79,7 @@ Raster<std::uint8_t> squares_on(std::span<const PictureSegment> curve, std::int6
 
 void trace_contours(std::span<const double> values, std::int64_t width, std::int64_t height,
                     const Raster<std::uint8_t>& cut, const Levels& levels,
-                    const std::function<void(const PictureSegment& piece, double level)>& line) {
+                    const std::function<void(const PictureSegment& piece)>& line) {
   const auto corner = [&](std::int64_t column, std::int64_t row) {
     return Corner{{static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5},
                   values[static_cast<std::size_t>(row * width + column)]};

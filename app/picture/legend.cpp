@@ -27,7 +27,7 @@ struct BarLayout {
         height(std::round(kBarHeight * text)) {}
 
   [[nodiscard]] double row_of(double value, const ColourRange& range) const {
-    return top + height * (range.most() - value) / (range.most() - range.least());
+    return top + height * (0.5 - 0.5 * ((value - range.centre) / range.half_width));
   }
 };
 
@@ -46,7 +46,7 @@ void draw_colours(Image& image, const BarLayout& layout, const ColourMap& colour
   for (std::int64_t row = 0; row < size.height; ++row) {
     const double y = static_cast<double>(row) + 0.5;
     const double half_width = half_width_at(y, layout, range);
-    const double value = range.most() - (y - layout.top) / layout.height * (range.most() - range.least());
+    const double value = range.centre + (1.0 - 2.0 * (y - layout.top) / layout.height) * range.half_width;
     for (std::int64_t column = 0; column < size.width; ++column) {
       if (std::abs(static_cast<double>(column) + 0.5 - layout.width / 2) >= half_width) continue;
       image.at(corner.column + column, corner.row + row) = colours(value);

@@ -151,7 +151,7 @@ void draw_lines(Image& image, const PlaneView& view, std::span<const double> val
   if (levels) {
     Coverage contours(view.width, view.height);
     trace_contours(values, view.width, view.height, squares_on(curve, view.width, view.height), *levels,
-                   [&](const PictureSegment& piece, double) { add_stroke(contours, piece, widths.contour); });
+                   [&](const PictureSegment& piece) { add_stroke(contours, piece, widths.contour); });
     blend(image, contours, kInk, 0.55);
   }
   Coverage section(view.width, view.height);

@@ -13,4 +13,7 @@ enum class ExitCode : int {
   kInternal = 6,
 };
 
+// Of another process of our own that could not be started. Also the dynamic linker's, where memory is short.
+inline constexpr int kNotStarted = 127;
+
 }  // namespace raycone

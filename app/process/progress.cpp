@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 
 #include "io/files/counted.h"
 
@@ -60,7 +61,12 @@ bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output)
 
 Progress::Progress(bool shown, std::optional<std::uint64_t> total) : total_(total) {
   if (total_ == 0U) total_.reset();
-  if (shown) thread_ = std::thread([this] { show_until_stopped(); });
+  if (!shown) return;
+  try {
+    thread_ = std::thread([this] { show_until_stopped(); });
+  } catch (const std::system_error&) {
+    return;  // where threads are short, the work goes on in silence
+  }
 }
 
 Progress::~Progress() { stop(); }

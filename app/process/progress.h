@@ -27,7 +27,7 @@ enum class ProgressMode { kAuto, kAlways, kNever };
 // Rewrites one line about `done` from a thread of its own, at most ten times a second, until stop().
 class Progress {
  public:
-  // `total` samples, where known.
+  // `total` samples, where known. Without a thread for it, nothing is shown.
   Progress(bool shown, std::optional<std::uint64_t> total);
   ~Progress();
   Progress(const Progress&) = delete;

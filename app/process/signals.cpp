@@ -13,9 +13,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <string>
+#include <system_error>
 
 #include "app/process/exit_code.h"
 #include "app/process/messages.h"
+#include "io/files/file_error.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {
@@ -102,6 +105,7 @@ void occupy_standard_descriptors() {
 }  // namespace
 
 void set_up_process() {
+  unsetenv("TBB_VERSION");  // TBB would print lines of its own
   occupy_standard_descriptors();
   prepare_handler_stack();
   // What the caller ignores stays ignored, and what a preloaded library handles (profilers, sanitizers) stays its own.
@@ -152,6 +156,10 @@ HeldSignals::HeldSignals() {
   hold(SIGXCPU);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
   descriptor_ = signalfd(-1, &held, SFD_NONBLOCK | SFD_CLOEXEC);
+  if (descriptor_ >= 0) return;
+  const int error = errno;
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  throw LimitError("cannot wait for signals: " + std::generic_category().message(error));
 }
 
 HeldSignals::~HeldSignals() {

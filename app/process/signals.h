@@ -23,7 +23,7 @@ void start_timeout(double seconds, const std::string& name);
 // first. Those that were ignored stay so.
 class HeldSignals {
  public:
-  HeldSignals();
+  HeldSignals();   // throws LimitError where the system has no room for that
   ~HeldSignals();  // what has not been taken comes now
   HeldSignals(const HeldSignals&) = delete;
   HeldSignals& operator=(const HeldSignals&) = delete;

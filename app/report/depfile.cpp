@@ -7,15 +7,17 @@
 namespace raycone {
 namespace {
 
-// As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled.
+// As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled. Colons, too,
+// which GCC leaves as they are: Make would take the line for another rule.
 std::string escaped(const std::string& name) {
-  if (name.find('\n') != std::string::npos) {
-    throw OutputError(name + ": Make cannot read names with line feeds, expected none with --depfile");
+  if (const std::size_t found = name.find_first_of("\n;|="); found != std::string::npos) {
+    const std::string what = name[found] == '\n' ? "line feeds" : std::string("'") + name[found] + "'";
+    throw OutputError(name + ": Make cannot read names with " + what + ", expected none with --depfile");
   }
   std::string text;
   std::string backslashes;
   for (const char c : name) {
-    if (c == ' ' || c == '\t' || c == '#') text += backslashes + '\\';
+    if (c == ' ' || c == '\t' || c == '#' || c == ':') text += backslashes + '\\';
     if (c == '$') text += '$';
     text += c;
     backslashes = c == '\\' ? backslashes + c : "";

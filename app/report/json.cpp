@@ -165,13 +165,47 @@ std::vector<Cell> cells_of(const Json& document) {
   return cells;
 }
 
-// How a file was made, whoever wrote it: what is no object, and what is nested deeply, is left out.
+// Whether a stranger's JSON is as simple as what raycone writes. Deep nesting takes stack, and the library's ordered
+// objects look for each member among all before it.
+class SimpleJson final : public nlohmann::json_sax<Json> {
+ public:
+  [[nodiscard]] static bool is(const std::string& text) {
+    SimpleJson check;
+    return Json::sax_parse(text, &check);
+  }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(std::int64_t) override { return true; }
+  bool number_unsigned(std::uint64_t) override { return true; }
+  bool number_float(double, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(Json::binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_array() override { return close(); }
+  bool key(std::string&) override { return ++members_.back() <= kMostMembers; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  static constexpr std::size_t kDeepest = 8, kMostMembers = 1000;
+
+  bool open() {
+    members_.push_back(0);
+    return members_.size() <= kDeepest;
+  }
+  bool close() {
+    members_.pop_back();
+    return true;
+  }
+
+  std::vector<std::size_t> members_;  // of the objects and arrays that are open
+};
+
+// How a file was made, whoever wrote it: what is no object, or not simple, is left out.
 Json made_object(const VolumeFacts& facts) {
-  constexpr int kDeepest = 8;
-  const auto parsed = [](const std::string& text) {
-    const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; };
-    return Json::parse(text, shallow, /*allow_exceptions=*/false);
-  };
+  const auto parsed = [](const std::string& text) { return SimpleJson::is(text) ? Json::parse(text) : Json(); };
   Json object = facts.made_json.empty() ? Json::object() : parsed(facts.made_json);
   if (!object.is_object()) object = Json::object();
   for (const MadeFact& fact : facts.made) object[fact.key] = fact.is_json ? parsed(fact.value) : Json(fact.value);

@@ -33,8 +33,10 @@ double bytes_of_values(const OutputDescription& description, double of_real) {
         break;
       case FieldKind::kBound:
       case FieldKind::kCount:
+        bytes += 8.0;
+        break;
       case FieldKind::kLabel:
-        bytes += sizeof(float);
+        bytes += sizeof(std::int32_t);
         break;
       case FieldKind::kFlag:
         bytes += description.packs_flags ? 1.0 / 8 : 1.0;
@@ -66,13 +68,15 @@ double bytes_of_point(FieldFormat format, const OutputDescription& description) 
   const auto numbers = static_cast<double>(description.components());
   switch (format) {
     case FieldFormat::kNpy:
-      return numbers * bytes_of_real(description, Precision::kDouble);
+      return description.fields.size() == 1 && description.fields.front().kind == FieldKind::kLabel
+                 ? sizeof(std::int32_t)
+                 : numbers * bytes_of_real(description, Precision::kDouble);
     case FieldFormat::kRawDouble:
       return numbers * sizeof(double);
     case FieldFormat::kRawFloat:
       return numbers * sizeof(float);
     case FieldFormat::kNpz:
-      return kCoordinates * (description.on_surface ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +
+      return kCoordinates * (description.has_places ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +
              bytes_of_values(description, bytes_of_real(description, Precision::kDouble));
     case FieldFormat::kCsv:
       return bytes_of_row(3 + description.components());

@@ -137,9 +137,6 @@ VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
   return facts;
 }
 
-// Also the dynamic linker's, where memory is short.
-constexpr int kNotStarted = 127;
-
 [[noreturn]] void fail(const std::string& path, const char* what) {
   throw LimitError(path + ": cannot " + what + ": " + std::generic_category().message(errno));
 }

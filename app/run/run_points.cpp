@@ -142,7 +142,7 @@ RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
   fields.prepare_points();
   OutputDescription description = description_of(report, command.field, command.encoding);
   description.single_points = draws_single(command);
-  description.on_surface = command.sample && draws_on_surface(*command.sample);
+  description.has_places = command.sample && draws_on_surface(*command.sample);
   run.output.reserve(least_point_file(command.encoding.format, description, reader->size().value_or(0)));
   const std::unique_ptr<PointWriter> writer =
       make_point_writer(command.encoding.format, run.output, reader->size(), description);

@@ -12,8 +12,8 @@ inline constexpr int kArgumentError = 7;
 template <class Real>  // double or long double
 [[nodiscard]] Real argument_in_turns(Real re, Real im);
 
-// Its constants, for core/boundary/cone_kernel.cpp, which does the same in SIMD lanes: atan(k / 8) / (2 pi) for k = 0
-// to 8, and 1 / (2 pi).
+// Its constants, for core/boundary/product_lanes-inl.h, which does the same in SIMD lanes: atan(k / 8) / (2 pi) for k =
+// 0 to 8, and 1 / (2 pi).
 inline constexpr std::array<long double, 9> kArcTangentsInTurns = {
     0.0L,
     0.019791712080282771005425836L,

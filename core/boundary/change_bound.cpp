@@ -55,12 +55,11 @@ void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& 
 ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_kernel(level)) {
   if (caps.mesh.triangles.empty()) return;  // edges there and back, which add nothing
   const Box box = bounding_box(caps.mesh);
-  double side = 0.0, largest = 0.0;
+  double largest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    side = std::max(side, box.upper[axis] - box.lower[axis]);
     largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
   }
-  piece_ = side / kPiecesAlong;
+  piece_ = longest_side(box) / kPiecesAlong;
   place_error_ = kPlaceError * largest;
   add_edges(caps.wide_loops);
   add_narrow(caps);
@@ -125,10 +124,7 @@ void ChangeBound::halve(std::span<Source> sources, int times, std::vector<std::s
   if (times == 0 || sources.size() < 2) return parts.push_back(sources);
   Box box = sources.front().box;
   for (const Source& source : sources) extend(box, source.box);
-  int axis = 0;
-  for (const int other : {1, 2}) {
-    if (box.upper[other] - box.lower[other] > box.upper[axis] - box.lower[axis]) axis = other;
-  }
+  const int axis = longest_axis(box);
   const std::size_t half = sources.size() / 2;
   std::nth_element(sources.begin(), sources.begin() + static_cast<std::ptrdiff_t>(half), sources.end(),
                    [&](const Source& a, const Source& b) { return middle(a.box, axis) < middle(b.box, axis); });

@@ -8,7 +8,7 @@
 
 namespace raycone {
 
-// A number with the argument of z_ab(q), times -1 if `reversed`, max(|re|, |im|) in [1/2, 2]; nothing where the
+// A number with the argument of z_ab(q), times -1 if `reversed`, max(|re|, |im|) in [1, 2); nothing where the
 // argument is 0. For the samples that the SIMD kernel does not vouch for (core/boundary/cone_kernel.h). `side` is
 // edge_side(a, b, q), the same for all queries on a line along x. Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,

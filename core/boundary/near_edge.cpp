@@ -41,8 +41,9 @@ struct Form {
   [[nodiscard]] Quad condition() const { return terms / (absolute(re) + absolute(im)); }
 };
 
-// Each term of a form is a product of at most four factors, each within 8 roundings of 2^-113 (norms 4, s 10, sums and
-// products 1 each): 40 roundings of the absolute terms, in Re and Im each, and as much again for second-order terms.
+// Each term of a form is a product of at most four factors (norms are within 4 roundings of 2^-113, s within 10, sums
+// and products 1 each): less than 40 in all, of the absolute terms, in Re and Im each, and as much again for
+// second-order terms.
 constexpr Quad kFormError = 160 * 0x1p-113;
 
 Form plain_form(const QuadVertex& a, const QuadVertex& b, Quad n_x) {

@@ -1,5 +1,5 @@
 // The winding number by its definition, as the sum of the solid angles of all triangles, for meshes that are mostly
-// boundary: three square roots per triangle, where the cone takes as many per exterior edge or two.
+// boundary: three square roots per triangle, where the cone takes one per vertex of a chain, one or two per edge.
 //
 // With p = v - q, a, b, c for the p's of a triangle's corners and n for its normal, 2 pi w is the sum of arg z_T,
 //   z_T = |a||b||c| + (a . b)|c| + (b . c)|a| + (c . a)|b| + i n . a

@@ -1,9 +1,9 @@
 // Factors of triangles in SIMD lanes, one per sample: what kernels share. Included once per SIMD level.
-#if defined(RAYCONE_CORE_TRIANGLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYCONE_CORE_TRIANGLE_LANES_INL_H_
-#undef RAYCONE_CORE_TRIANGLE_LANES_INL_H_
+#if defined(RAYCONE_CORE_BOUNDARY_TRIANGLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYCONE_CORE_BOUNDARY_TRIANGLE_LANES_INL_H_
+#undef RAYCONE_CORE_BOUNDARY_TRIANGLE_LANES_INL_H_
 #else
-#define RAYCONE_CORE_TRIANGLE_LANES_INL_H_
+#define RAYCONE_CORE_BOUNDARY_TRIANGLE_LANES_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -41,7 +41,7 @@ struct ProjectedTriangle {
   Real aa, bb, cc, ab, bc, ca, side, terms;
 };
 
-// The same for samples with a ray each, for a few triangles at a time.
+// What y and z contribute to a few triangles, of samples with a ray each.
 class TrianglesOfRays {
  public:
   static constexpr std::size_t kTriangles = 32;

@@ -80,8 +80,9 @@ class LatticeSums {
   // `crossings` receives n of each sample, an integer; empty where nobody asks for it. `diagnostics`, where given, its
   // crossings (which need the other ones), degenerate and on_surface. All must outlive this.
   LatticeSums(std::size_t rows, std::size_t samples, std::span<double> crossings, const Diagnostics* diagnostics);
-  // For who asks for runs(), and for who asks for nothing else: finish() returns 0.
+  // kIgnore: nobody asks what is on the surface, and finish() returns 0.
   enum class OnSurface { kCount, kIgnore };
+  // For who asks for runs().
   LatticeSums(std::size_t rows, std::size_t samples, OnSurface on_surface = OnSurface::kCount);
 
   // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up;

@@ -43,12 +43,7 @@ ProjectedGrid::Filter ProjectedGrid::filter_of(const Vec3& a, const Vec3& b, con
   const Local at = local(a);
   const double y = -plane.normal.y / plane.normal.x, z = -plane.normal.z / plane.normal.x;
   const double one = at.x - (y * at.y + z * at.z), error = unit_(plane.error) + 0x1p-22;
-  constexpr double kSteepest = 0x1p60;  // far within the range of floats
-  if (error < 1.0 && std::abs(y) + std::abs(z) + std::abs(one) < kSteepest) {
-    set(3, y, z, one, error);
-  } else {
-    filter.error[3] = std::numeric_limits<float>::infinity();
-  }
+  set(3, y, z, one, error);
   return filter;
 }
 
@@ -123,7 +118,8 @@ class ProjectedGrid::Lookup {
     enter(queries, first);
     find_cells();
     for (std::size_t i = 0; i < rays_; ++i) pair_with_entries(i);
-    pairs_ = decide(pairs_);
+    decide(pairs_);
+    pairs_ = 0;
     for (std::size_t i = 0; i < rays_; ++i) n_[ray_[i].query] = ray_[i].n;
   }
 
@@ -209,7 +205,9 @@ class ProjectedGrid::Lookup {
       prefetch(filters + entry.triangle);
       ray_of_pair_[pairs] = static_cast<std::uint32_t>(i);
       triangle_of_pair_[pairs] = entry.triangle;
-      if (++pairs == kPairs) pairs = decide(pairs);
+      if (++pairs < kPairs) continue;
+      decide(pairs);
+      pairs = 0;
     }
     pairs_ = pairs;
   }
@@ -241,8 +239,8 @@ class ProjectedGrid::Lookup {
     return meanings;
   }();
 
-  // All pairs. Returns how many are left: none.
-  std::size_t decide(std::size_t pairs) {
+  // Of so many pairs.
+  void decide(std::size_t pairs) {
     const Filter* const filters = grid_.filters_.get();
     for (std::size_t i = 0; i < pairs; ++i) {
       const std::uint32_t triangle = triangle_of_pair_[i];
@@ -254,7 +252,6 @@ class ProjectedGrid::Lookup {
         ray.n += meaning;
       }
     }
-    return 0;
   }
 
   const ProjectedGrid& grid_;

@@ -19,6 +19,7 @@ namespace raycone {
 // thousand; the rest are left to exact predicates. No ray's triangle is missed: docs/method.md, "Points".
 class ProjectedGrid {
  public:
+  // Precondition: at least one triangle.
   explicit ProjectedGrid(const TriangleMesh& mesh);
 
   // A ray and a triangle that single precision cannot decide about.

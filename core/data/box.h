@@ -45,6 +45,12 @@ inline double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
+// The first of those along which it is longest.
+inline int longest_axis(const Box& box) {
+  const Vec3 size = box.upper - box.lower;
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
 // Of the distance between two boxes, and between a box and a point, the square; 0 where they meet.
 inline double square_of_gap(const Box& a, const Box& b) {
   double sum = 0.0;

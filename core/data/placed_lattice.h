@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/data/box.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
 
 namespace raycone {

@@ -1,6 +1,7 @@
 // Rules that turn a winding number into inside or outside.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 namespace raycone {
@@ -25,6 +26,12 @@ inline constexpr double kIndistinguishable = 1e-24;
 // The thresholds of the rule that are not half-integers. A value near one of them must be settled before holds() is
 // asked (core/evaluation/winding_number.h). Near half-integers, values need no settling.
 [[nodiscard]] std::vector<double> thresholds_to_settle(const Rule& rule);
+
+// How far w, below 2^51, is from the nearest half-integer.
+[[nodiscard]] inline double distance_to_half_integer(double w) {
+  const double nearest_integer = (w + 0x1.8p52) - 0x1.8p52;
+  return 0.5 - std::abs(w - nearest_integer);
+}
 
 // How far w (finite) is from the nearest number where the rule changes its mind, at most: numbers that are nearer to w
 // than this are on w's side. Off by rounding, some units of w in the last place.

@@ -37,6 +37,7 @@ struct NearTriangles {
 // Thin triangles of a block that were prepared for more care, by their places; the last ones.
 class AccurateTriangles {
  public:
+  AccurateTriangles() { forget_all(); }
   void forget_all() { places_.fill(kNone); }
 
   // make() prepares it where it is not there. Valid until the next call.
@@ -50,7 +51,7 @@ class AccurateTriangles {
  private:
   static constexpr std::size_t kMost = 61;  // no multiple of the places of a pack
   static constexpr std::size_t kNone = SIZE_MAX;
-  std::array<std::size_t, kMost> places_{};
+  std::array<std::size_t, kMost> places_;
   std::array<std::optional<AccurateTriangle>, kMost> triangles_{};
 };
 

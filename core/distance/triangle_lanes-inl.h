@@ -1,10 +1,10 @@
 // Squares of distances in SIMD lanes, to the bit those of TriangleDistance: what kernels share. Included once per SIMD
 // level.
-#if defined(RAYCONE_CORE_TRIANGLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYCONE_CORE_TRIANGLE_LANES_INL_H_
-#undef RAYCONE_CORE_TRIANGLE_LANES_INL_H_
+#if defined(RAYCONE_CORE_DISTANCE_TRIANGLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYCONE_CORE_DISTANCE_TRIANGLE_LANES_INL_H_
+#undef RAYCONE_CORE_DISTANCE_TRIANGLE_LANES_INL_H_
 #else
-#define RAYCONE_CORE_TRIANGLE_LANES_INL_H_
+#define RAYCONE_CORE_DISTANCE_TRIANGLE_LANES_INL_H_
 #endif
 
 #include <hwy/highway.h>

@@ -43,8 +43,6 @@ double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
   return mesh.blocks().sums.cost(axes) + kInBlocks;
 }
 
-double gap_to_half_integer(double w) { return 0.5 - std::abs(w - ((w + 0x1.8p52) - 0x1.8p52)); }
-
 double samples_of(const Lattice& lattice) {
   double samples = 1.0;
   for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
@@ -133,7 +131,7 @@ class BlockValues {
     int doubtful = 0;  // no least distance, whose comparisons compilers do not put into lanes
     for (std::size_t i = 0; i < sums.size(); ++i) {
       values[i] = whole + sums[i];
-      doubtful |= static_cast<int>(gap_to_half_integer(values[i]) <= doubt_);
+      doubtful |= static_cast<int>(distance_to_half_integer(values[i]) <= doubt_);
     }
     if (doubtful != 0) sum_doubtful(values, sample, static_cast<std::int64_t>(crossings));
   }
@@ -142,7 +140,7 @@ class BlockValues {
   void sum_doubtful(std::span<double> values, const std::array<std::size_t, 3>& sample, std::int64_t crossings) const {
     LatticeTile tile(mesh_, SetValue{values}, LatticeTile<SetValue>::Sum::kDirect);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (gap_to_half_integer(values[i]) > doubt_) continue;
+      if (distance_to_half_integer(values[i]) > doubt_) continue;
       tile.add(i, {axes_[0][sample[0] + i], axes_[1][sample[1]], axes_[2][sample[2]]}, crossings);
     }
     tile.evaluate();

@@ -52,10 +52,6 @@ std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const B
   return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
 }
 
-double nearest_integer(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
-
-double distance_to_half_integer(double x) { return 0.5 - std::abs(x - nearest_integer(x)); }
-
 }  // namespace
 
 ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options)
@@ -91,8 +87,7 @@ const Changes& ScaledMesh::changes() const {
   constexpr double kNarrow = 0x1p-7;  // of the mesh's size: a voxel or some
   std::call_once(changes_built_, [this] {
     const Box box = bounding_box(mesh_);
-    const Vec3 size = box.upper - box.lower;
-    changes_.emplace(make_caps(boundary_, kNarrow * std::max({size.x, size.y, size.z})), options_.level);
+    changes_.emplace(make_caps(boundary_, kNarrow * longest_side(box)), options_.level);
   });
   return *changes_;
 }

@@ -66,7 +66,7 @@ class ScaledMesh {
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
   [[nodiscard]] bool is_closed() const { return boundary_.exterior_edges() == 0; }
   // Whether no coordinate exceeds 1, as bounds of far fields, blocks and changes need. A mesh that spans more than
-  // 2^970 cannot be scaled so.
+  // 2^1020 cannot be scaled so.
   [[nodiscard]] bool is_in_scale() const { return is_in_scale_; }
 
   // The mesh as it was given: the scaling lost nothing.
@@ -184,7 +184,7 @@ class ScaledMesh {
 };
 
 // A mesh in the scale in which predicates are fast, and as it is for queries with a coordinate that this scale would
-// drop bits of (a number below 1e-290 mesh sizes). A matter of each query alone, since the two may round differently.
+// drop bits of (a number below 2.3e-308 mesh sizes). A matter of each query alone, since the two may round differently.
 class ScaledMeshes {
  public:
   ScaledMeshes(TriangleMesh mesh, const EvaluatorOptions& options);

@@ -19,12 +19,6 @@ QuadVec3 relative_to(const QuadVec3& q, const Vec3& v) { return {v.x - q.x, v.y 
 // (differences, norms, products, sums), in both parts.
 constexpr Quad kRoundings = 2 * 10 * 12 * 0x1p-113;
 
-bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Corners p = as_integers({a, b, c}, a).corners;
-  const IntegerVec3 normal = cross(p[1], p[2]);
-  return normal.x == 0 && normal.y == 0 && normal.z == 0;
-}
-
 mp_bitcnt_t bits_of(const Corners& corners) {
   std::size_t bits = 1;
   for (const IntegerVec3& p : corners) {
@@ -78,33 +72,21 @@ QuadWithin perturbed_half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3
   return {atan2q(as_quad(real(im / largest)), as_quad(real(re / largest))), kSmall};
 }
 
-QuadWithin in_turns(const QuadWithin& sum) { return {sum.value / (2 * kPi), sum.error / (2 * kPi)}; }
-
-}  // namespace
-
-QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, const QuadVec3& q, int side) {
+// Half the solid angle of the triangle at q, in (-pi, pi]. The error grows with the triangle's size over the distance
+// of q from its edges, and is pi where no digit is left (closer than 1e-30), or not the sign of a half turn (q next to
+// the triangle's inside).
+QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, const QuadVec3& q) {
   const QuadVec3 a = relative_to(q, va), b = relative_to(q, vb), c = relative_to(q, vc);
   const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), lc = sqrtq(dot(c, c));
   const Quad re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   const Quad im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
   const Quad error = kRoundings * la * lb * lc / (fabsq(re) + fabsq(im));
   const bool half_turn = re < 0 && fabsq(im) <= error * (fabsq(re) + fabsq(im));
-  // No digit is left; or, next to the inside of the triangle, the sign of a half turn is not.
-  if (!(error < 0.001) || (half_turn && side == 0)) return {0, kPi};
-  return {atan2q(half_turn ? copysignq(im, -side) : im, re), error};
+  if (!(error < 0.001) || half_turn) return {0, kPi};
+  return {atan2q(im, re), error};
 }
 
-QuadWithin direct_winding_number(const TriangleMesh& mesh, const QuadVec3& q) {
-  QuadWithin sum{0, 0};
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    QuadWithin term = half_solid_angle(a, b, c, q);
-    if (term.error == kPi && has_no_area(a, b, c)) term = {0, 0};
-    sum.value += term.value;
-    sum.error += term.error;
-  }
-  return in_turns(sum);
-}
+}  // namespace
 
 QuadWithin perturbed_direct_sum(const TriangleMesh& mesh, const Vec3& q) {
   constexpr Quad kSharp = 1e-20;
@@ -116,7 +98,7 @@ QuadWithin perturbed_direct_sum(const TriangleMesh& mesh, const Vec3& q) {
     sum.value += term.value;
     sum.error += term.error;
   }
-  return in_turns(sum);
+  return {sum.value / (2 * kPi), sum.error / (2 * kPi)};
 }
 
 }  // namespace raycone

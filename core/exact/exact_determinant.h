@@ -69,7 +69,7 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   constexpr double kLeast = 0x1p-850;    // nothing that matters underflows
   const bool is_sure = sum.high + (sum.low + error) == sum.high && sum.high + (sum.low - error) == sum.high;
   const bool in_range = terms > kLeast || terms == 0.0;
-  return is_sure && in_range ? sum.high + 0.0 : static_cast<double>(determinant(a, b, c, d));
+  return (is_sure && in_range ? sum.high : static_cast<double>(determinant(a, b, c, d))) + 0.0;
 }
 
 }  // namespace raycone

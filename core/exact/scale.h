@@ -13,7 +13,7 @@ class PowerOfTwo {
  public:
   explicit PowerOfTwo(int exponent);
   [[nodiscard]] int exponent() const { return exponent_; }
-  // Their product, of which a double is 2^exponent only if that is one, too.
+  // Two factors whose product is 2^exponent, which itself need not be a double.
   [[nodiscard]] std::array<double, 2> factors() const { return {half_, other_half_}; }
   // Whether the product loses nothing that a predicate could see: scaled down, it may not become subnormal, even where
   // it would keep its bits; so that on an axis of a lattice few intervals answer alike. Not about overflow.
@@ -33,7 +33,7 @@ class PowerOfTwo {
 
 // The power of two that brings the largest coordinate of the triangles into [1/2, 1), so that products neither overflow
 // nor leave the range of the predicates' filters; 2^0 where all coordinates are zero, or where a coordinate of a
-// triangle would lose bits (a mesh that spans more than 2^970: predicates are then slower, not wrong).
+// triangle would lose bits (a mesh that spans more than 2^1020: predicates are then slower, not wrong).
 [[nodiscard]] PowerOfTwo unit_scale(const TriangleMesh& mesh);
 
 }  // namespace raycone

@@ -86,7 +86,7 @@ class CoverSums {
         std::stable_partition(triangles_.begin(), triangles_.end(),
                               [&](const SolidTriangle& t) { return looks_small_from(t, samples); }) -
         triangles_.begin());
-    corners_ = SharedCorners::without_groups(triangles_);
+    corners_ = SharedCorners(triangles_);
     corners_.add_group(small, true);
     corners_.add_group(triangles_.size() - small);
   }

@@ -9,7 +9,7 @@
 namespace raycone {
 namespace {
 
-// More cells would take memory: a block has 23 kB, and at most 2^12 to 2^15 cells.
+// More cells would take memory: a block has 27 kB, and at most 2^12 to 2^15 cells.
 constexpr double kMostCells = 0x1p21;
 
 // Of cells that are about cubes. A box may be flat.

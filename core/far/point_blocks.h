@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/boundary/sample_tile.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
 #include "core/far/cover.h"
 #include "core/far/lattice_blocks.h"
 #include "core/far/lattice_blocks_walk.h"

@@ -50,11 +50,6 @@ namespace raycone {
 
 SharedCornersKernel shared_corners_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, multiply_chunks_here); }
 
-SharedCorners::SharedCorners(std::span<const SolidTriangle> triangles) : triangles_(triangles) {
-  places_.reserve(triangles.size());
-  add_group(triangles.size());
-}
-
 double square_to_look_small(const SolidTriangle& triangle) {
   constexpr double kLeast = 0x1p-40;  // distance: beyond it no factor is too small to be trusted
   if (std::isnan(triangle.normal.x)) return std::numeric_limits<double>::infinity();
@@ -66,13 +61,7 @@ double square_to_look_small(const SolidTriangle& triangle) {
 }
 
 bool looks_small_from(const SolidTriangle& triangle, const Box& box) {
-  double gap = 0.0;  // squared
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [lower, upper] = std::minmax({triangle.a[axis], triangle.b[axis], triangle.c[axis]});
-    const double away = std::max({lower - box.upper[axis], box.lower[axis] - upper, 0.0});
-    gap += away * away;
-  }
-  return gap > square_to_look_small(triangle);
+  return square_of_gap(box_of(triangle.a, triangle.b, triangle.c), box) > square_to_look_small(triangle);
 }
 
 void SharedCorners::add_group(std::size_t count, bool small) {

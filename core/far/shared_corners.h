@@ -8,7 +8,7 @@
 
 #include "core/boundary/sample_tile.h"
 #include "core/boundary/solid_angle_kernel.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
 #include "core/machine/simd.h"
 
 namespace raycone {
@@ -20,14 +20,8 @@ class SharedCorners {
   static constexpr std::size_t kInChunk = 32;  // triangles at most
 
   SharedCorners() = default;
-  // One group of all.
-  explicit SharedCorners(std::span<const SolidTriangle> triangles);
-  // No group yet: all triangles must be added.
-  static SharedCorners without_groups(std::span<const SolidTriangle> triangles) {
-    SharedCorners none;
-    none.triangles_ = triangles;
-    return none;
-  }
+  // Without groups yet: all triangles must be added.
+  explicit SharedCorners(std::span<const SolidTriangle> triangles) : triangles_(triangles) {}
 
   // The next `count` of the triangles. No chunk has triangles of two groups. `small`: looks_small_from() all samples.
   void add_group(std::size_t count, bool small = false);

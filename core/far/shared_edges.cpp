@@ -32,6 +32,7 @@ std::vector<std::uint32_t> numbered(std::span<const SolidTriangle> triangles, st
 }  // namespace
 
 SharedEdges::SharedEdges(std::span<const SolidTriangle> triangles) {
+  if (triangles.size() >= std::size_t{1} << 30) throw std::length_error("raycone: 2^30 or more triangles share edges");
   const std::vector<std::uint32_t> corners = numbered(triangles, vertices_);
   struct Place {
     std::uint32_t low, high, side;

@@ -14,7 +14,7 @@ namespace raycone {
 // Which of some triangles share edges. Thread-safe once made.
 class SharedEdges {
  public:
-  // Less than 2^30 triangles. Does not depend on their addresses.
+  // Throws std::length_error from 2^30 triangles on. Does not depend on their addresses.
   explicit SharedEdges(std::span<const SolidTriangle> triangles);
 
   // Finds the boundaries of sets, one after the other.

@@ -76,15 +76,9 @@ struct SourceTree::PlacedTriangle {
 
 // Along the axis along which the middles of their boxes are farthest apart.
 void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
-  Vec3 lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
-  for (const PlacedTriangle& t : placed) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], middle(t.box, axis));
-      upper[axis] = std::max(upper[axis], middle(t.box, axis));
-    }
-  }
-  const Vec3 size = upper - lower;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  Box middles = empty_box();
+  for (const PlacedTriangle& t : placed) extend(middles, middle(t.box));
+  const int axis = longest_axis(middles);
   std::vector<std::pair<double, std::uint32_t>> order;
   order.reserve(placed.size());
   for (std::uint32_t i = 0; i < placed.size(); ++i) order.emplace_back(middle(placed[i].box, axis), i);
@@ -116,7 +110,7 @@ void SourceTree::build() {
   for (const PlacedTriangle& t : placed) ordered.push_back(triangles_[t.number]);
   triangles_ = std::move(ordered);
   std::size_t coefficients = 0;
-  corners_ = SharedCorners::without_groups(triangles_);
+  corners_ = SharedCorners(triangles_);
   for (SourceNode& node : nodes_) {
     measure(node);
     node.first_chunk = static_cast<std::uint32_t>(corners_.chunks());

@@ -38,8 +38,7 @@ std::uint64_t count_degenerate(const TriangleMesh& mesh) {
 // Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
 double signed_volume(const TriangleMesh& mesh) {
   using Wide = long double;  // for its exponents, too: no product of three coordinates leaves them
-  const Box box = bounding_box(mesh);
-  const Vec3 centre = 0.5 * box.lower + 0.5 * box.upper;
+  const Vec3 centre = middle(bounding_box(mesh));
   const auto from_centre = [&](std::uint32_t v) {
     const Vec3& p = mesh.vertices[v];
     return std::array<Wide, 3>{Wide(p.x) - centre.x, Wide(p.y) - centre.y, Wide(p.z) - centre.z};

@@ -6,11 +6,6 @@
 namespace raycone {
 namespace {
 
-double longest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
-
-// Half of each end: their sum is finite whatever the box.
-Vec3 middle_of(const Box& box) { return 0.5 * box.lower + 0.5 * box.upper; }
-
 // Of the vertex farthest from `middle`. In units of the box, whose square is in range.
 double radius_of(const TriangleMesh& mesh, const Vec3& middle, double unit) {
   double most = 0.0;
@@ -28,8 +23,8 @@ double radius_of(const TriangleMesh& mesh, const Vec3& middle, double unit) {
 
 Normalization normalization_of(const TriangleMesh& mesh, const Normalize& normalize) {
   const Box box = bounding_box(mesh);
-  const double side = longest(box.upper - box.lower);
-  Normalization result{middle_of(box), normalize.size / side};
+  const double side = longest_side(box);
+  Normalization result{middle(box), normalize.size / side};
   if (normalize.to == NormalizeTo::kCube || !(side > 0.0) || !std::isfinite(side)) return result;
   result.factor = normalize.size / (2.0 * radius_of(mesh, result.middle, side)) / side;
   return result;

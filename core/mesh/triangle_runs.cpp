@@ -11,8 +11,7 @@
 namespace raycone {
 namespace {
 
-// The places of triangles' middles along each axis, from 0 on, in units of 2^-30 of the longest side of all middles'
-// box.
+// The places of triangles' middles along each axis, from 0 on, in units of 2^-30 of the longest side of the mesh's box.
 constexpr double kUnits = 0x1p30;
 
 // Of `count` triangles.
@@ -91,9 +90,8 @@ class Selection {
 class RunOrder {
  public:
   explicit RunOrder(const TriangleMesh& mesh) : count_(mesh.triangles.size()), columns_(count_), room_columns_(count_) {
-    const Box box = middles_of(mesh);
-    const Vec3 sides = box.upper - box.lower;
-    const double longest = std::max({sides.x, sides.y, sides.z});
+    const Box box = quarter_of_box(mesh);
+    const double longest = longest_side(box);
     const double scale = longest > kNoSize ? kUnits / longest : 0.0;
     parallel_for(count_, kWorthATask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
@@ -119,8 +117,8 @@ class RunOrder {
   static constexpr std::size_t kWorthATask = 4096;
   static constexpr double kNoSize = 1e-300;  // what is shorter is a point: its inverse could overflow
 
-  // The box of their quarters.
-  static Box middles_of(const TriangleMesh& mesh) {
+  // A quarter of the mesh's box, as quarters of middles are in it.
+  static Box quarter_of_box(const TriangleMesh& mesh) {
     const Box all = mesh.triangles.empty() ? Box{} : bounding_box(mesh);
     return {0.25 * all.lower, 0.25 * all.upper};
   }

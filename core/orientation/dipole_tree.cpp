@@ -20,7 +20,7 @@ void DipoleTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t en
   Box box = empty_box();
   for (std::uint32_t i = begin; i < end; ++i) extend(box, dipoles_[order_[i]].centre);
   SurfaceDipole sum;
-  sum.centre = 0.5 * box.lower + 0.5 * box.upper;
+  sum.centre = middle(box);
   for (std::uint32_t i = begin; i < end; ++i) {
     const SurfaceDipole& dipole = dipoles_[order_[i]];
     const Vec3 r = dipole.centre - sum.centre;
@@ -30,8 +30,7 @@ void DipoleTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t en
   nodes_[node].begin = begin;
   nodes_[node].end = end;
   if (end - begin <= kLeaf) return;
-  const Vec3 size = box.upper - box.lower;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int axis = longest_axis(box);
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {

@@ -58,7 +58,7 @@ TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>
 // Without its area.
 SurfaceDipole dipole_about(const Box& box) {
   SurfaceDipole dipole;
-  dipole.centre = 0.5 * box.lower + 0.5 * box.upper;
+  dipole.centre = middle(box);
   dipole.radius = 0.5 * norm(box.upper - box.lower);
   return dipole;
 }

@@ -13,7 +13,7 @@ namespace raycone {
 
 // How the numbers of one field are stored: real ones and vectors in `precision`, bounds as doubles, counts as
 // int64, labels as int32, flags as bool; -0 as 0. Throws OutputError, which names `output`, where a distance is beyond
-// the range of 16 bits. What is returned is valid until the next call.
+// the range of 16 or 32 bits. What is returned is valid until the next call.
 class ArrayElements {
  public:
   virtual ~ArrayElements() = default;

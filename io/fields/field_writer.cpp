@@ -26,6 +26,10 @@ class NoPointWriter : public PointWriter {
 
 }  // namespace
 
+void LatticeWriter::write_blocks(const SignedBlocks& /*blocks*/) {
+  throw std::logic_error("LatticeWriter: takes no blocks");
+}
+
 std::optional<FieldFormat> field_format_from_name(std::string_view name) {
   std::string lower(name);
   std::transform(lower.begin(), lower.end(), lower.begin(),

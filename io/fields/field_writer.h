@@ -78,7 +78,7 @@ struct OutputDescription {
   std::optional<Precision> precision;             // of real numbers: by default 32 bits on lattices, 64 at points
   bool compress = false;                          // NRRD, NIfTI: by gzip
   bool packs_flags = false;                       // NPZ: the field inside as bits
-  bool on_surface = false;                        // points have normals and faces
+  bool has_places = false;                        // points have normals and faces
   bool single_points = false;                     // NPZ: points and normals as 32 bits
   std::array<double, 16> transform = kIdentity4;  // from the mesh's file to the world, row by row
   std::string metadata;                           // how this was made, as JSON
@@ -106,7 +106,7 @@ struct FieldTotals {
 };
 
 // Takes the values of a lattice block by block. Blocks are slabs that span the lattice across `slab_axis()`, in
-// increasing order, together all samples.
+// increasing order, together all samples. Whatever writes throws OutputError.
 class LatticeWriter {
  public:
   virtual ~LatticeWriter() = default;
@@ -119,15 +119,16 @@ class LatticeWriter {
   // Whether it takes distances, where they are the only field, by write_blocks() as well.
   [[nodiscard]] virtual bool takes_blocks() const { return false; }
   // Writes what write() would for the same numbers. The samples are a slab that ends where a block does, or the
-  // lattice.
-  virtual void write_blocks(const SignedBlocks& /*blocks*/) {}
-  // Completes and commits the file. Throws OutputError.
+  // lattice. Precondition: takes_blocks().
+  virtual void write_blocks(const SignedBlocks& blocks);
+  // Completes and commits the file.
   virtual void finish(const FieldTotals& totals) = 0;
 };
 
 // `output` must outlive the writer. Throws OutputError where the format cannot hold the lattice (VDB: voxel volume
-// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits). NPY, NRRD
-// and NIfTI hold one field; the last two no vectors, and like VTI no halves.
+// below 3e-15, indices beyond 32 bits, distances beyond the range of halves; VTI: indices beyond 32 bits; NIfTI: more
+// than 32 767 samples along an axis, places beyond floats). NPY, NRRD and NIfTI hold one field; the last two no
+// vectors, and like VTI no halves.
 [[nodiscard]] std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output,
                                                                  const PlacedLattice& lattice,
                                                                  const OutputDescription& description);

@@ -58,14 +58,14 @@ class NpyPointWriter final : public PointWriter {
   NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, const OutputDescription& description)
       : output_(output),
         announced_(size),
-        shape_end_(description.components() > 1 ? ", " + std::to_string(description.components()) + ")" : ",)"),
-        precision_(description.precision.value_or(Precision::kDouble)) {
+        shape_end_(description.components() > 1 ? ", " + std::to_string(description.components()) + ")" : ",)") {
+    const Precision precision = description.precision.value_or(Precision::kDouble);
     for (FieldDescription field : description.fields) {
       // Columns are of one type, whatever they hold; labels alone are integers.
       const bool has_own_type = field.kind == FieldKind::kDistance || field.kind == FieldKind::kVector ||
                                 (field.kind == FieldKind::kLabel && description.fields.size() == 1);
       if (!has_own_type) field.kind = FieldKind::kReal;
-      columns_.push_back(make_array_elements(field, precision_, output.name()));
+      columns_.push_back(make_array_elements(field, precision, output.name()));
     }
     if (announced_ || output_.seekable()) {
       write_header(announced_.value_or(0));
@@ -146,7 +146,6 @@ class NpyPointWriter final : public PointWriter {
   OutputFile& output_;
   std::optional<std::uint64_t> announced_;
   std::string shape_end_;  // of the tuple, behind the count
-  Precision precision_;
   std::vector<std::unique_ptr<ArrayElements>> columns_;
   std::optional<SpoolFile> spool_;
   std::uint64_t count_ = 0;

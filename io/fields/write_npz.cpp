@@ -177,7 +177,7 @@ class NpzPointWriter final : public PointWriter {
       open_archive(*size);
       return;
     }
-    const std::size_t arrays = 1 + columns_.size() + (description_.on_surface ? 2 : 0);
+    const std::size_t arrays = 1 + columns_.size() + (description_.has_places ? 2 : 0);
     for (std::size_t n = 0; n < arrays; ++n) spools_.push_back(std::make_unique<SpoolFile>(output.name()));
   }
 
@@ -223,7 +223,7 @@ class NpzPointWriter final : public PointWriter {
         arrays.push_back(array_of(field, *columns_[f], size));
       }
     }
-    if (description_.on_surface) {
+    if (description_.has_places) {
       arrays.push_back(array_of_vectors("normals", size));
       arrays.push_back({"faces", npy_header("<i8", '(' + std::to_string(size) + ",)"), sizeof(std::int64_t) * size});
     }

@@ -54,7 +54,7 @@ class PngWriter {
     std::vector<png_text> texts = png_texts(description);
     if (write_or_fail(description, texts, rgb)) return;
     if (sink_.failure) std::rethrow_exception(sink_.failure);
-    throw std::runtime_error("libpng failed");
+    throw std::bad_alloc();  // all else that libpng refuses is excluded
   }
 
  private:

@@ -62,13 +62,15 @@ class HeadParser {
     const std::size_t end = value.find(')');
     if (!value.starts_with('(') || end == std::string_view::npos) fail("header without a shape, expected (n, 3)");
     const std::string_view shape = value.substr(0, end + 1);
-    for (const char* c = shape.data() + 1; *c != ')';) {
+    const auto is_between = [](char c) { return c == 'L' || c == ',' || c == ' '; };  // Python 2 wrote 10L
+    const char* c = shape.data() + 1;
+    while (*c == ' ') ++c;
+    while (*c != ')') {
       std::uint64_t size = 0;
       const auto [after, error] = std::from_chars(c, shape.data() + shape.size(), size);
       if (error != std::errc()) fail("shape " + printable_npy(shape) + ", expected (n, 3)");
       head.shape.push_back(size);
-      // Python 2 wrote 10L; separators are a comma and blanks.
-      for (c = after; *c == 'L' || *c == ',' || *c == ' ';) ++c;
+      for (c = after; is_between(*c);) ++c;
     }
     head.shape_text = shape;
   }

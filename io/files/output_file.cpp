@@ -217,6 +217,11 @@ void OutputFile::commit() {
   flush();
   State& state = *state_;
   if (state.temporary) {
+    // Gives back what was reserved beyond the end.
+    struct stat status {};
+    if (fstat(state.descriptor, &status) != 0 || ftruncate(state.descriptor, status.st_size) != 0) {
+      state.fail_writing(errno);
+    }
     if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
     if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
   }

@@ -1,17 +1,16 @@
 // Files are read, not mapped: one that shrinks meanwhile would raise SIGBUS in a mapping.
 #include "io/files/read_file.h"
 
-#include <fcntl.h>
 #include <nettle/sha2.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <memory>
 #include <system_error>
 #include <vector>
 
+#include "io/files/byte_source.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -22,36 +21,6 @@ void fail_to_read(const std::string& path, int error) {
 }
 
 namespace {
-
-// An open file, or standard input, which is not ours to close.
-class Descriptor {
- public:
-  explicit Descriptor(const std::string& path) : number_(STDIN_FILENO), owned_(path != "-") {
-    if (!owned_) return;
-    do {
-      number_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    } while (number_ < 0 && errno == EINTR);
-    if (number_ < 0) fail_to_read(path, errno);
-  }
-  ~Descriptor() {
-    if (owned_) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_;
-  bool owned_;
-};
-
-// Size as the file system knows it; 0 for pipes and devices.
-std::uint64_t expected_size(int descriptor) {
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size < 0) return 0;
-  return static_cast<std::uint64_t>(status.st_size);
-}
 
 [[noreturn]] void fail_too_large(const std::string& path, std::uint64_t max_bytes) {
   throw LimitError(path + ": larger than " + std::to_string(max_bytes) + " bytes");
@@ -76,8 +45,8 @@ std::string digest(sha256_ctx& context) {
 }  // namespace
 
 std::string read_file(const std::string& path, std::uint64_t max_bytes) {
-  const Descriptor descriptor(path);
-  const std::uint64_t expected = expected_size(descriptor.number());
+  const std::unique_ptr<ByteSource> source = open_source(path);
+  const std::uint64_t expected = source->size().value_or(0);
   if (expected > max_bytes) fail_too_large(path, max_bytes);
 
   constexpr std::size_t kSmallest = std::size_t{1} << 16;
@@ -87,11 +56,9 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   std::size_t size = 0;
   for (;;) {
     if (size == bytes.size()) bytes.resize(2 * size);
-    const ssize_t count = read(descriptor.number(), bytes.data() + size, bytes.size() - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_to_read(path, errno);
+    const std::size_t count = source->read(bytes.data() + size, bytes.size() - size);
     if (count == 0) break;
-    size += static_cast<std::size_t>(count);
+    size += count;
     if (size > max_bytes) fail_too_large(path, max_bytes);
   }
   bytes.resize(size);
@@ -106,16 +73,14 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  const Descriptor descriptor(path);
+  const std::unique_ptr<ByteSource> source = open_source(path);
   sha256_ctx context;
   sha256_init(&context);
   std::vector<char> block(std::size_t{1} << 20);
   for (;;) {
-    const ssize_t count = read(descriptor.number(), block.data(), block.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_to_read(path, errno);
+    const std::size_t count = source->read(block.data(), block.size());
     if (count == 0) return digest(context);
-    add(context, {block.data(), static_cast<std::size_t>(count)});
+    add(context, {block.data(), count});
   }
 }
 

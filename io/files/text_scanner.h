@@ -31,6 +31,13 @@ namespace raycone {
 // is allowed. "nan", "inf" and Microsoft's "1.#IND" are non-finite values; so is what overflows, what underflows is 0.
 const char* parse_number(const char* first, const char* last, double& value);
 
+// The number that the whole text is, by parse_number(); absent where it is none.
+[[nodiscard]] inline std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  return !text.empty() && parse_number(text.data(), end, value) == end ? std::optional(value) : std::nullopt;
+}
+
 class TextScanner {
  public:
   // Starts behind a UTF-8 byte order mark; throws InputError where there is one of UTF-16. `source` must outlive this.

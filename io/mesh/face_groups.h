@@ -1,4 +1,4 @@
-// The groups of faces that a mesh file names: groups and objects of OBJ, solids of STL, meshes of glTF.
+// The groups of faces that a mesh file names: groups and objects of OBJ, solids of STL, meshes of glTF, objects of 3MF.
 #pragma once
 
 #include <cstddef>

@@ -120,7 +120,7 @@ std::string read_beside(const NamedBytes& source, std::size_t buffer, std::strin
   if (!std::filesystem::is_regular_file(path, ignored)) {
     refuse(source, buffer, uri, "is missing, expected a file beside this one");
   }
-  std::string bytes = read_file(path.string());
+  std::string bytes = read_file(path == "-" ? "./-" : path.string());  // a file, not standard input
   if (companions) companions->push_back({path.string(), sha256(bytes)});
   return bytes;
 }

@@ -2,7 +2,7 @@
 // "glTF 2.0 Specification" (2021); what is accepted beyond it and what is refused: docs/formats.md.
 //
 // Hostile input: every accessor is checked against its view, buffer and bytes before it is read; nothing recurses; what
-// sharing and instancing may multiply is bounded by a GltfBudget.
+// sharing and instancing may multiply is bounded (GltfData::spend()).
 #include <tiny_gltf.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Reading of triangle meshes: OBJ, PLY, STL, OFF, glTF and GLB. What each reader accepts: docs/formats.md.
+// Reading of triangle meshes: OBJ, PLY, STL, OFF, glTF, GLB and 3MF. What each reader accepts: docs/formats.md.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb, k3mf };
 [[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
 
 struct ReadMeshOptions {
-  std::optional<MeshFormat> format;  // for standard input; else recognised by content, then by extension
+  std::optional<MeshFormat> format;  // where the content does not tell; without, the extension does
   double scale = 1.0;                // multiplies every coordinate
   bool y_up_to_z_up = false;         // (x, y, z) becomes (x, -z, y), after scaling
 };
@@ -48,7 +48,7 @@ struct MeshFile {
 };
 
 // Reads `path`, or standard input for "-". At least one triangle, all indices in range, all vertices of triangles
-// finite; else, or where the file cannot be read, throws InputError.
+// finite; else, or where the file cannot be read, throws InputError. LimitError where it takes too much memory.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options = {});
 
 // The readers behind it, one per format: same guarantees but for "at least one triangle" and sha256.

@@ -246,8 +246,11 @@ class PlyReader {
   }
 
   void read_vertices() {
-    std::vector<int> axes;  // of each property; kNoAxis where it is no coordinate
-    for (const PlyProperty& property : vertices_.properties) axes.push_back(axis_of(property));
+    std::vector<int> axes(vertices_.properties.size(), kNoAxis);  // of each property
+    for (std::size_t axis = 0; axis < kPlyCoordinates.size(); ++axis) {
+      const PlyProperty* const coordinate = vertices_.find(kPlyCoordinates[axis]);
+      axes[static_cast<std::size_t>(coordinate - vertices_.properties.data())] = static_cast<int>(axis);
+    }
     const std::uint64_t rows = checked_rows(vertices_);
     builder_.reserve_vertices(rows);
     for (std::uint64_t row = 0; row < rows; ++row) {
@@ -265,13 +268,7 @@ class PlyReader {
     }
   }
 
-  static constexpr int kNoAxis = -1;
-
-  [[nodiscard]] int axis_of(const PlyProperty& property) const {
-    for (int axis = 0; axis < 3; ++axis)
-      if (&property == vertices_.find(kPlyCoordinates[static_cast<std::size_t>(axis)])) return axis;
-    return kNoAxis;
-  }
+  static constexpr int kNoAxis = -1;  // no coordinate
 
   void read_faces(const PlyElement& element) {
     constexpr std::size_t kShortestTriangle = 4;  // binary: a length and three indices of one byte each

@@ -148,11 +148,4 @@ void read_xml(ByteSource& source, const std::string& name, const XmlHandler& han
   Document(name, handler).read(source);
 }
 
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  if (parse_number(text.data(), end, value) != end || text.empty()) return std::nullopt;
-  return value;
-}
-
 }  // namespace raycone

@@ -46,7 +46,4 @@ struct XmlHandler {
 // Takes memory for one token and the names of open elements.
 void read_xml(ByteSource& source, const std::string& name, const XmlHandler& handler);
 
-// The number that `text` is, blanks around it aside; absent where it is none.
-[[nodiscard]] std::optional<double> number_of(std::string_view text);
-
 }  // namespace raycone

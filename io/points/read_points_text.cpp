@@ -177,13 +177,6 @@ class Fields {
   bool at_end_ = false;
 };
 
-// The whole field as a number, which may be infinite or NaN.
-std::optional<double> number_of(std::string_view field) {
-  const char* last = field.data() + field.size();
-  double value = 0.0;
-  return parse_number(field.data(), last, value) == last && !field.empty() ? std::optional(value) : std::nullopt;
-}
-
 // What number_of() does not read may be meant as a number: "1D0", "0x1", "1 000", a Unicode minus.
 bool starts_like_number(std::string_view field) {
   for (const std::string_view sign : {"+", "-", "\u2212", "."}) {

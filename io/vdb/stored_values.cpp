@@ -1,32 +1,10 @@
 #include "io/vdb/stored_values.h"
 
-#include <openvdb/Types.h>
-
 #include <limits>
 
+#include "io/fields/half.h"
+
 namespace raycone::vdb {
-namespace {
-
-using openvdb::math::half;
-
-// The value of 16 bits that OpenVDB stores for `value`, within their range.
-float as_half(float value) {
-  const float largest = std::numeric_limits<half>::max();
-  return half(std::clamp(value, -largest, largest));
-}
-
-// The next value of 16 bits, upwards.
-float next_half(float value) {
-  half next(value);
-  const unsigned short bits = next.bits();
-  constexpr unsigned short kSign = 0x8000;
-  const bool negative = (bits & kSign) != 0 && bits != kSign;
-  next.setBits(static_cast<unsigned short>(negative ? bits - 1 : (bits & ~kSign) + 1));
-  return next;
-}
-
-}  // namespace
-
 bool has_chosen_precision(FieldKind kind) {
   return kind == FieldKind::kReal || kind == FieldKind::kDensity || kind == FieldKind::kDistance ||
          kind == FieldKind::kVector;
@@ -34,7 +12,7 @@ bool has_chosen_precision(FieldKind kind) {
 
 Narrowing narrowing_of(const FieldDescription& field, bool half) {
   if (!half) return Narrowing(field);
-  return {field, [](double value) { return as_half(static_cast<float>(value)); }, &next_half};
+  return {field, &nearest_half, &next_half_above};
 }
 
 float rounded_up(double bound) {
@@ -46,7 +24,9 @@ float rounded_up(double bound) {
 template <typename Value>
 Value level_set_background(double band_width, double voxel, bool half) {
   auto background = static_cast<Value>(band_width);
-  const auto stored = [&] { return half ? static_cast<Value>(as_half(static_cast<float>(background))) : background; };
+  const auto stored = [&] {
+    return half ? static_cast<Value>(nearest_half(static_cast<double>(background))) : background;
+  };
   while (static_cast<double>(stored()) / voxel < band_width / voxel) {
     background = std::nextafter(std::max(background, stored()), std::numeric_limits<Value>::infinity());
   }

@@ -277,24 +277,24 @@ class TypedGridBuilder final : public GridBuilder {
   // `grid`: without a tree; `background`: far away.
   TypedGridBuilder(const openvdb::GridBase::Ptr& grid, const Lattice& lattice, const Store& store, Stored background)
       : grid_(grid),
-        z_end_(lattice.index_max(2) + 1),
+        lattice_(lattice),
         store_(store),
-        is_active_{background, grid->getGridClass() == openvdb::GRID_LEVEL_SET},
-        layer_(lattice, background) {
+        is_active_{background, grid->getGridClass() == openvdb::GRID_LEVEL_SET} {
     tree().root().setBackground(static_cast<typename Tree::ValueType>(background), /*updateChildNodes=*/false);
   }
 
   void add(const LatticeBlock& slab, const FieldValues& values) override {
     const auto numbers = std::get<std::span<const Number>>(values);
+    if (!layer_) layer_.emplace(lattice_, is_active_.background);
     const std::int64_t end = slab.first[2] + slab.counts[2];
     for (std::int64_t z = slab.first[2]; z < end;) {
       const std::int64_t leaf_z = z >> kLeafLog2;
-      const std::int64_t layer_end = std::min((leaf_z + 1) * kLeafSize, z_end_);
+      const std::int64_t layer_end = std::min((leaf_z + 1) * kLeafSize, lattice_.index_max(2) + 1);
       const std::int64_t next = std::min(layer_end, end);
-      layer_.gather(slab, numbers, z, next, store_);
+      layer_->gather(slab, numbers, z, next, store_);
       if (next == layer_end) {
-        add_layer(tree(), layer_, leaf_z, is_active_);
-        layer_.clear();
+        add_layer(tree(), *layer_, leaf_z, is_active_);
+        layer_->clear();
       }
       z = next;
     }
@@ -315,10 +315,10 @@ class TypedGridBuilder final : public GridBuilder {
   Tree& tree() { return static_cast<Tree&>(grid_->baseTree()); }
 
   openvdb::GridBase::Ptr grid_;
-  std::int64_t z_end_;  // of the lattice
+  Lattice lattice_;
   Store store_;
   Activity<Stored> is_active_;
-  LeafLayer<Stored> layer_;
+  std::optional<LeafLayer<Stored>> layer_;  // where numbers come by slabs
 };
 
 // What builders are made of.

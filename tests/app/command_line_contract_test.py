@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
@@ -296,6 +297,23 @@ class Messages(Contract):
         self.assertEqual(self.works(["report", "done", "-o", "p.html"]).stderr, "raycone: done: 1 mesh -> p.html\n")
         self.assertEqual(self.works(["report", "done", "-o", "-"]).stderr, "raycone: done: 1 mesh -> standard output\n")
         self.assertEqual(self.works(["report", "done", "--quiet"]).stderr, "")
+
+
+class Pipes(Contract):
+    def test_a_mesh_comes_through_a_pipe_that_does_not_wait(self):
+        """As some parents leave standard input."""
+        theirs, ours = os.pipe()
+        os.set_blocking(theirs, False)
+        process = subprocess.Popen([RAYCONE, "info", "-", "--mesh-format", "obj", "--json"], stdin=theirs,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        os.close(theirs)
+        for line in open(CUBE, "rb"):
+            time.sleep(0.01)
+            os.write(ours, line)
+        os.close(ours)
+        out, err = process.communicate(timeout=PATIENCE)
+        self.assertEqual((process.returncode, err), (0, b""))
+        self.assertIn(b'"faces": 12', out)
 
 
 class Terminals(Contract):

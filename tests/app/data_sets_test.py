@@ -10,10 +10,9 @@ import json
 import os
 import shutil
 import subprocess
-import unittest
 import zipfile
 
-from command_case import PATIENCE, RAYCONE, CommandCase, mesh, numpy_or_skip, read, run
+from command_case import PATIENCE, RAYCONE, CommandCase, mesh, numpy_or_skip, read, run, run_tests
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
@@ -456,4 +455,4 @@ class Meshes(DataSets):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

@@ -6,7 +6,7 @@ The oracle: differences of the winding numbers that raycone prints itself, and t
 import json
 import unittest
 
-from command_case import CommandCase, mesh, numpy_or_skip
+from command_case import CommandCase, mesh, numpy_or_skip, run_tests
 
 numpy = numpy_or_skip()
 try:
@@ -124,4 +124,4 @@ class Gradient(CommandCase):
         self.assertTrue((numpy.load("out/open_box.npy") == numpy.load("a.npy")).all())
 
 
-unittest.main()
+run_tests()

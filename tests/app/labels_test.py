@@ -10,9 +10,8 @@ import json
 import os
 import struct
 import sys
-import unittest
 
-from command_case import CommandCase, numpy_or_skip, read
+from command_case import CommandCase, numpy_or_skip, read, run_tests
 
 numpy = numpy_or_skip()
 SHARED = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else ""
@@ -470,4 +469,4 @@ class Batches(Labels):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

@@ -9,10 +9,9 @@ import itertools
 import json
 import os
 import sys
-import unittest
 import xml.etree.ElementTree
 
-from command_case import CommandCase, mesh, numpy_or_skip, read, run
+from command_case import CommandCase, mesh, numpy_or_skip, read, run, run_tests
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
@@ -309,4 +308,4 @@ class Files(Like):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=1)
+    run_tests()

@@ -233,4 +233,4 @@ if os.path.isdir(meshes):
 else:
     print(f"no {meshes}: shared meshes skipped")
 print("\n".join(failures))
-sys.exit(1 if failures else 0)
+sys.exit(1 if failures else 0 if os.path.isdir(meshes) else 77)

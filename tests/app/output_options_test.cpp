@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/report/depfile.h"
+#include "io/files/file_error.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
@@ -167,6 +168,14 @@ TEST_F(SideFiles, MarkedMeshAppearsOnlyIfTheRestIsTold) {
 TEST(DepfileText, EscapesWhatMakeWouldMisread) {
   EXPECT_EQ(depfile_text("a b.vdb", {"$x.obj", "c#d.bin", "e\\ f", "g\\h"}),
             "a\\ b.vdb: \\\n  $$x.obj \\\n  c\\#d.bin \\\n  e\\\\\\ f \\\n  g\\h\n");
+}
+
+TEST(DepfileText, ReadsBackInMakeOrIsRefused) {
+  EXPECT_EQ(depfile_text("a:b.vdb", {"c:d.obj"}), "a\\:b.vdb: \\\n  c\\:d.obj\n");
+  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb"}) {
+    EXPECT_THROW((void)depfile_text(name, {"mesh"}), OutputError) << name;
+    EXPECT_THROW((void)depfile_text("out", {name}), OutputError) << name;
+  }
 }
 
 TEST(DepfileText, LeavesOutStandardInputAndRepetitions) {

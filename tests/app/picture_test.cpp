@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/picture/colour_map.h"
 #include "app/picture/framed_picture.h"
 #include "app/picture/slice_picture.h"
 #include "app/picture/ticks.h"
@@ -63,6 +64,14 @@ PlaneView view_of(std::int64_t width, std::int64_t height) {
   return view;
 }
 
+// Twice that is no number any more.
+TEST(ColourMap, ReachesAsFarAsDistancesDo) {
+  const ColourMap colours({.centre = 0.0, .half_width = 1.7e308, .inside_below = true});
+  EXPECT_EQ(colours(-1.7e308), ColourMap({.centre = 0.0, .inside_below = true})(-1.0));
+  EXPECT_EQ(colours(0.0), ColourMap({.centre = 0.0})(0.0));
+  EXPECT_EQ(colours(1.7e308), ColourMap({.centre = 0.0})(-1.0)) << "inside is below";
+}
+
 Image picture_of(const PlaneView& view, bool framed) {
   const std::vector<double> values(static_cast<std::size_t>(view.width * view.height), 1.0);
   return slice_picture(view, {PictureField::kWinding, values}, {}, framed);
@@ -80,6 +89,14 @@ TEST(FramedPicture, IsAsLongAsThePlainOne) {
     const double page_bytes = static_cast<double>(page.pixels().size_bytes());
     EXPECT_LE(page_bytes, framed_picture_bytes(view));
   }
+}
+
+TEST(FramedPicture, OfTheLargestDistancesHasALegend) {
+  PlaneView view = view_of(400, 400);
+  std::vector<double> values(400 * 400);
+  for (std::size_t n = 0; n < values.size(); ++n) values[n] = (n % 400 < 200 ? -1.0 : 1.0) * 1.7e308;
+  const Image page = slice_picture(view, {PictureField::kDistance, values}, {}, true);
+  EXPECT_EQ(page.width(), 400);
 }
 
 TEST(FramedPicture, IsThePlainOneWhereThereIsNoRoom) {

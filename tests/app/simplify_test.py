@@ -6,9 +6,8 @@ distances to any mesh (tests/core/distance_test.cpp has the oracle of those); an
 
 import json
 import subprocess
-import unittest
 
-from command_case import RAYCONE, SURFACE, CommandCase, mesh, numpy_or_skip
+from command_case import RAYCONE, SURFACE, CommandCase, mesh, numpy_or_skip, run_tests
 
 numpy = numpy_or_skip()
 TEAPOT, CUBE, MOEBIUS = map(mesh, ("teapot", "cube", "moebius"))
@@ -79,4 +78,4 @@ class Simplify(CommandCase):
             self.assertIn("--simplify %s: expected none, 0 or a distance" % text, result.stderr.decode())
 
 
-unittest.main()
+run_tests()

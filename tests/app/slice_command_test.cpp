@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/app/meshes.h"
+#include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -223,6 +224,19 @@ TEST_F(Slice, RefusesWhatItCannotDo) {
   }
   EXPECT_EQ(run_raycone({"slice", cube_}).status, 1);
   EXPECT_EQ(run_raycone({"slice", cube_, "-o", dir_ / "out.jpg"}).status, 1);
+}
+
+// --up has two meanings, and both matter to what is drawn.
+TEST_F(Slice, ReportsBothOptionsUp) {
+  const std::string report = dir_ / "report.json";
+  ASSERT_EQ(slice({"--up", "y-to-z", "--normal", "0,0,1", "--up", "0,1,0", "--up", "1,0,0", "--size", "8", "--report",
+                   report})
+                .status,
+            0);
+  const std::string text = contents(report);
+  EXPECT_NE(text.find("\"--up=1,0,0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("\"--up=y-to-z\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("\"--up=0,1,0\""), std::string::npos) << text;
 }
 
 TEST_F(Slice, LeavesNothingBehindWhereItFails) {

@@ -9,9 +9,8 @@ import itertools
 import json
 import math
 import os
-import unittest
 
-from command_case import CommandCase, mesh, numpy_or_skip, run
+from command_case import CommandCase, mesh, numpy_or_skip, run, run_tests
 
 numpy = numpy_or_skip()
 CUBE, CUBES, OPEN_BOX, MOEBIUS, SOUP, TEAPOT = map(
@@ -142,4 +141,4 @@ class Solid(CommandCase):
             self.assertNotIn(b"solid", run(words.split()[0] + " --help").stdout if "batch" not in words else b"")
 
 
-unittest.main()
+run_tests()

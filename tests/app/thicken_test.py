@@ -6,9 +6,8 @@ boxes and plates that have grown, by Steiner's formula; and `info --require`.
 
 import json
 import math
-import unittest
 
-from command_case import SURFACE, CommandCase, mesh, numpy_or_skip, run
+from command_case import SURFACE, CommandCase, mesh, numpy_or_skip, run, run_tests
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, MOEBIUS, SOUP = map(mesh, ("cube", "teapot", "moebius", "soup"))
@@ -119,4 +118,4 @@ class Thicken(CommandCase):
             self.assertIn("huge.obj: the lattice is too large for double precision", result.stderr.decode())
 
 
-unittest.main()
+run_tests()

@@ -35,11 +35,15 @@ double component(const QuadVec3& v, int axis) { return static_cast<double>(axis 
 // By central differences: the step leaves an error of the third derivative times its square, and is far above what 113
 // bits lose.
 QuadVec3 difference_quotient(const TriangleMesh& mesh, const Vec3& q) {
-  const Quad step = 1e-9;
-  const auto w = [&](Quad x, Quad y, Quad z) {
-    return direct_winding_number(mesh, {q.x + x, q.y + y, q.z + z}).value / (2 * step);
+  const auto along = [&](int axis) {
+    constexpr double kStep = 1e-9;
+    Vec3 before = q, behind = q;
+    before[axis] -= kStep;
+    behind[axis] += kStep;
+    const Quad change = perturbed_direct_sum(mesh, behind).value - perturbed_direct_sum(mesh, before).value;
+    return change / (Quad(behind[axis]) - before[axis]);
   };
-  return {w(step, 0, 0) - w(-step, 0, 0), w(0, step, 0) - w(0, -step, 0), w(0, 0, step) - w(0, 0, -step)};
+  return {along(0), along(1), along(2)};
 }
 
 // Where all edges count alike: what is added is what the evaluator promises 1e-12 of.

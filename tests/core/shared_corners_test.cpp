@@ -53,7 +53,7 @@ Box box_of(const SampleTile& tile) {
 std::vector<double> sums_of(std::span<const SolidTriangle> triangles, bool small, const SampleTile& tile,
                             TileShape shape, SimdLevel level) {
   const DefaultFloatingPoint guard;
-  SharedCorners corners = SharedCorners::without_groups(triangles);
+  SharedCorners corners = SharedCorners(triangles);
   corners.add_group(triangles.size(), small);
   ProductTile products;
   shared_corners_kernel(level)(corners, tile, shape, products);

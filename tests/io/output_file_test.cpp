@@ -439,6 +439,9 @@ TEST(OutputFile, ReservesRoomThatThereIsAndRefusesWhatThereIsNot) {
   EXPECT_NE(message.find("No space left on device: needs 1152921504606.8 MB or more, "), std::string::npos) << message;
   output.commit();
   EXPECT_EQ(contents(directory / "out"), "short") << "room that was reserved is no content";
+  struct stat status {};
+  ASSERT_EQ(stat((directory / "out").c_str(), &status), 0);
+  EXPECT_LT(status.st_blocks * 512, 1 << 19) << "and is given back";
   OutputFile device("/dev/null");
   EXPECT_NO_THROW(device.reserve(std::uint64_t{1} << 60));
 }

@@ -66,6 +66,15 @@ TEST(ReadPly, FirstBodyByteMayLookLikeALineEnd) {
   EXPECT_EQ(triangles(file), (std::vector<Triangle>{{2, 0, 1}}));
 }
 
+// 2^16 searches of a list of 2^16 properties would take minutes.
+TEST(ReadPly, TakesNoTimeForManyProperties) {
+  std::string others, values;
+  for (int n = 0; n < 1 << 16; ++n) others += "property uchar p" + std::to_string(n) + "\n", values += " 0";
+  const std::string header = kAscii + "element vertex 3\n" + kXyz + others + kFaces + "end_header\n";
+  EXPECT_EQ(triangles(header + "0 0 0" + values + "\n1 0 0" + values + "\n0 1 0" + values + "\n3 0 1 2\n"),
+            kOneTriangle);
+}
+
 TEST(ReadPly, EveryScalarTypeServesForEverything) {
   const auto file = [](const std::string& type, const std::string& zero, const std::string& one, const std::string& two,
                        const std::string& three) {

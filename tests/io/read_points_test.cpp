@@ -341,6 +341,7 @@ TEST_F(ReadPoints, NpyAnnouncesItsSizeAndComesInBatches) {
 
 TEST_F(ReadPoints, NpyThatIsNotPointsIsAnError) {
   const std::string data = whole_numbers<double>();
+  EXPECT_EQ(error_of(npy("<f8", "False", "( 6,)", data)), "pts: NPY shape ( 6,), expected (n, 3 or more)");
   EXPECT_EQ(error_of(npy("<f8", "False", "(6,)", data)), "pts: NPY shape (6,), expected (n, 3 or more)");
   EXPECT_EQ(error_of(npy("<f8", "False", "(3, 2)", data)), "pts: NPY shape (3, 2), expected (n, 3 or more)");
   EXPECT_EQ(error_of(npy("<f8", "False", "(1, 2, 3)", data)), "pts: NPY shape (1, 2, 3), expected (n, 3 or more)");

@@ -174,6 +174,16 @@ TEST(WriteVdbFields, FlagsThatHoldFarAwayAreTheBackground) {
   });
 }
 
+// By way of a float this number would lie in the middle between two halves, and go to the wrong one.
+TEST(WriteVdbFields, HalvesAreRoundedOnce) {
+  const TemporaryDirectory directory;
+  const auto numbers = samples_of(lattice_around_zero(), [](const auto&) { return 1.0 + 0x1p-11 + 0x1p-30; });
+  OutputDescription description = described({kDensity});
+  description.precision = Precision::kHalf;
+  write_vdb(directory / "out.vdb", description, {std::span(numbers)});
+  EXPECT_EQ(read_vdb_grid(directory / "out.vdb", "density")->value({0, 0, 0}), 1.0 + 0x1p-10);
+}
+
 TEST(WriteVdbFields, LevelSetsAreActiveExactlyInTheBand) {
   const auto grid = written_ball(described({kDistance}));
   samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {

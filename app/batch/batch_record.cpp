@@ -1,9 +1,9 @@
 #include "app/batch/batch_record.h"
 
-#include <charconv>
 #include <utility>
 
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 #include "io/files/read_file.h"
 
 namespace raycone {
@@ -17,11 +17,6 @@ constexpr std::size_t kPath = 13;
 std::string hash_of_line(const std::string& line) {
   constexpr std::size_t kDigits = 16;
   return sha256(line).substr(0, kDigits);
-}
-
-std::string number_text(double number) {
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
 // Empty where the time does not vouch for what was read.
@@ -94,7 +89,7 @@ CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std:
           origin.options,
           std::to_string(origin.memory_limit),
           origin.default_memory_limit ? "1" : "0",
-          number_text(origin.timeout),
+          shortest_text(origin.timeout),
           std::to_string(origin.finished),
           origin.thumbnail,
           changed_text(origin.stamp),

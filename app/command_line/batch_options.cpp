@@ -13,6 +13,7 @@
 #include "app/command_line/points_options.h"
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
@@ -86,9 +87,8 @@ std::string default_format(bool sampled) { return sampled ? "npz" : "vdb"; }
 
 // The name of a format in lower case, "none" included.
 std::string parse_batch_format(const Values& values) {
-  std::string format = values.given("--format") ? values.text("--format") : default_format(values.given("--sample"));
-  std::ranges::transform(format, format.begin(),
-                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string format =
+      lower_case(values.given("--format") ? values.text("--format") : default_format(values.given("--sample")));
   if (format != "none" && !field_format_from_name(format)) {
     invalid("--format", values.text("--format"), "vdb, csv, npy, npz, vti, nrrd, nii, nii.gz or none");
   }

@@ -9,6 +9,7 @@
 #include "app/process/limits.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
@@ -66,10 +67,7 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
 }  // namespace
 
 bool has_extension(const std::string& path, const std::string& extension) {
-  const std::string end = '.' + extension;
-  if (path.size() < end.size()) return false;
-  return std::equal(end.begin(), end.end(), path.end() - static_cast<std::ptrdiff_t>(end.size()),
-                    [](char small, char c) { return small == ('A' <= c && c <= 'Z' ? c - 'A' + 'a' : c); });
+  return ends_with_word(path, '.' + extension);
 }
 
 OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF, GLB or 3MF file; - for standard input"}; }

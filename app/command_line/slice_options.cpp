@@ -1,7 +1,6 @@
 #include "app/command_line/slice_options.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,24 +14,20 @@
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
 
 constexpr std::int64_t kMostPixels = 1'000'000;  // along a side
 
-std::string lowered(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return c < 128 ? std::tolower(c) : c; });
-  return text;
-}
-
 // There is one format; its name and extension are checked as those of other commands.
 void check_format(const Values& values, const std::string& output) {
   if (values.given("--format")) {
-    if (lowered(values.text("--format")) != "png") invalid("--format", values.text("--format"), "png");
+    if (!is_word(values.text("--format"), "png")) invalid("--format", values.text("--format"), "png");
     return;
   }
-  if (output == "-" || lowered(std::filesystem::path(output).extension().string()) == ".png") return;
+  if (output == "-" || ends_with_word(output, ".png")) return;
   throw UsageError(output + ": its extension names no format, expected png, or --format");
 }
 

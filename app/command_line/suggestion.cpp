@@ -6,18 +6,13 @@
 
 #include "app/command_line/value_candidates.h"
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
 
 // What nobody types can be no misspelling; the distance takes the product of the lengths.
 constexpr std::size_t kLongestWord = 64;
-
-std::string small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
 
 // The least number of letters to be changed, added, removed or swapped with their neighbours that makes `a` of `b`
 // (the restricted distance of Damerau, 1964, and Levenshtein, 1966).
@@ -52,13 +47,13 @@ std::string up_to_equals(std::string_view value) {
 
 std::optional<std::string> nearest_word(const std::string& misspelt, const std::vector<std::string>& words) {
   constexpr std::size_t kShortest = 3;
-  const std::string given = small_letters(without_dashes(misspelt));
+  const std::string given = lower_case(without_dashes(misspelt));
   if (given.size() < kShortest || given.size() > kLongestWord) return std::nullopt;
   const std::size_t most = std::max<std::size_t>(given.size() / 4, 1);
   std::optional<std::string> nearest;
   std::size_t least = most + 1;
   for (const std::string& word : words) {
-    const std::string known = small_letters(without_dashes(word));
+    const std::string known = lower_case(without_dashes(word));
     const std::size_t distance = known.starts_with(given) ? 1 : edit_distance(given, known);
     if (distance >= least) continue;
     least = distance;

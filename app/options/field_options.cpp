@@ -1,10 +1,10 @@
 #include "app/options/field_options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 
@@ -56,9 +56,7 @@ std::string name_of(const Rule& rule) {
     case RuleKind::kAbs:
       break;
   }
-  std::array<char, 32> number;
-  char* const end = std::to_chars(number.data(), number.data() + number.size(), rule.threshold).ptr;
-  return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + std::string(number.data(), end);
+  return (rule.kind == RuleKind::kAbs ? "abs=" : "threshold=") + shortest_text(rule.threshold);
 }
 
 }  // namespace raycone

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <system_error>
 
+#include "io/files/ascii.h"
+
 namespace raycone {
 namespace {
 
@@ -55,9 +57,7 @@ std::string printed(double value, const RoundStep& step, double largest) {
 
 std::string printed_offset(std::int64_t count, const RoundStep& step) {
   const double offset = decimal(count, step.exponent);
-  std::array<char, 32> text{};
-  char* const end = std::to_chars(text.data(), text.data() + text.size(), std::abs(offset)).ptr;
-  return (offset < 0.0 ? " + " : " - ") + with_short_exponent({text.data(), end});
+  return (offset < 0.0 ? " + " : " - ") + with_short_exponent(shortest_text(std::abs(offset)));
 }
 
 // The multiples first * step to last * step.

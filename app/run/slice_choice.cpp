@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "app/process/usage_error.h"
 #include "app/run/lattice_choice.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -27,12 +27,6 @@ std::string printed(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", number);
   return text;
-}
-
-// All digits that matter.
-std::string shortest(double number) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
 Vec3 unit(int axis) {
@@ -64,9 +58,10 @@ void refuse_outside(const AxisPlane& plane, double at, const Box& box) {
   const double upper = box.upper[plane.axis];
   if (lower <= at && at <= upper) return;
   const auto* percentage = std::get_if<Percentage>(&plane.at);
-  const std::string asked = percentage ? shortest(percentage->value) + "% (" + shortest(at) + ")" : shortest(at);
-  throw UsageError("--at " + asked + ": outside the box, expected " + shortest(lower) + " to " + shortest(upper) +
-                   "; see --bounds and --padding");
+  const std::string asked =
+      percentage ? shortest_text(percentage->value) + "% (" + shortest_text(at) + ")" : shortest_text(at);
+  throw UsageError("--at " + asked + ": outside the box, expected " + shortest_text(lower) + " to " +
+                   shortest_text(upper) + "; see --bounds and --padding");
 }
 
 void add_pixels(std::int64_t& count, std::int64_t padding) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +11,7 @@
 #include "core/exact/direct_gradient.h"
 #include "core/exact/direct_sum.h"
 #include "core/machine/threads.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
@@ -37,12 +37,6 @@ DrawnSample drawn(std::uint64_t number, std::uint64_t rank, const Vec3& point, c
   if (!numbers.gradient.empty()) sample.gradient = numbers.gradient[n];
   if (!numbers.label.empty()) sample.label = numbers.label[n];
   return sample;
-}
-
-// Shortest text that reads back as the same double.
-std::string text(double number) {
-  std::array<char, 32> characters;
-  return {characters.data(), std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr};
 }
 
 constexpr std::array kGradientNames{"gradient_x", "gradient_y", "gradient_z"};
@@ -75,8 +69,8 @@ std::vector<NamedNumber> numbers_of(const DrawnSample& sample) {
 
 [[noreturn]] void fail(const std::string& name, const DrawnSample& sample, const NamedNumber& number,
                        const std::string& expected) {
-  throw VerificationError(name + ": " + position_text(sample) + " has the " + number.name + " " + text(number.number) +
-                          ", " + expected);
+  throw VerificationError(name + ": " + position_text(sample) + " has the " + number.name + " " +
+                          shortest_text(number.number) + ", " + expected);
 }
 
 // --- By definition ---
@@ -133,8 +127,8 @@ void check_number(const std::string& name, const DrawnSample& sample, const Name
   const Quad difference = absolute(number.number - expected);
   if (!(difference <= tolerance)) {  // nor NaN
     fail(name, sample, number,
-         "but by definition it is " + text(static_cast<double>(expected)) + ", " +
-             text(static_cast<double>(difference)) + " away, expected at most " + text(tolerance));
+         "but by definition it is " + shortest_text(static_cast<double>(expected)) + ", " +
+             shortest_text(static_cast<double>(difference)) + " away, expected at most " + shortest_text(tolerance));
   }
   largest = std::max(largest, static_cast<double>(difference));
 }
@@ -145,7 +139,7 @@ void check_side(const std::string& name, const DrawnSample& sample, const Expect
   if (!inside) return;
   const std::string rule = "expected " + std::string(*inside ? "inside" : "outside") + " by " +
                            name_of(expectations.rule) + ": by definition the winding number is " +
-                           text(static_cast<double>(truth.winding.value));
+                           shortest_text(static_cast<double>(truth.winding.value));
   const NamedNumber winding{"winding", *sample.winding};
   if (holds(expectations.rule, winding.number) != *inside) fail(name, sample, winding, rule);
   if (sample.inside && *sample.inside != *inside) fail(name, sample, {"inside", *sample.inside ? 1.0 : 0.0}, rule);
@@ -251,7 +245,8 @@ void check_repeated(const std::string& name, const DrawnSample& sample, const Dr
     if (std::bit_cast<std::uint64_t>(numbers[i].number) == std::bit_cast<std::uint64_t>(again[i].number)) continue;
     const bool may_differ = within > 0.0 && (numbers[i].name == winding || numbers[i].name == density);
     if (may_differ && std::abs(numbers[i].number - again[i].number) <= within) continue;
-    fail(name, sample, numbers[i], "but evaluated again " + text(again[i].number) + ", expected the same bits");
+    fail(name, sample, numbers[i],
+         "but evaluated again " + shortest_text(again[i].number) + ", expected the same bits");
   }
 }
 
@@ -265,8 +260,8 @@ double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& 
 }  // namespace
 
 std::string position_text(const DrawnSample& sample) {
-  return "sample " + std::to_string(sample.number) + " at (" + text(sample.point.x) + ", " + text(sample.point.y) +
-         ", " + text(sample.point.z) + ")";
+  return "sample " + std::to_string(sample.number) + " at (" + shortest_text(sample.point.x) + ", " +
+         shortest_text(sample.point.y) + ", " + shortest_text(sample.point.z) + ")";
 }
 
 std::optional<bool> inside_by_definition(const TriangleMesh& mesh, const Vec3& point, const Rule& rule) {

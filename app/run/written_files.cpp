@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "app/process/usage_error.h"
+#include "io/files/ascii.h"
 #include "io/files/file_identity.h"
 
 namespace raycone {
@@ -88,10 +89,7 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
   const bool regular = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found;
   if (!nifti || !command.field.has(Field::kLabel) || path == "-" || !regular) return std::nullopt;
   for (const std::string end : {".nii", ".nii.gz"}) {
-    std::string last = path.substr(path.size() - std::min(end.size(), path.size()));
-    std::ranges::transform(last, last.begin(),
-                           [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (last == end) return path.substr(0, path.size() - end.size()) + ".json";
+    if (ends_with_word(path, end)) return path.substr(0, path.size() - end.size()) + ".json";
   }
   return path + ".json";
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "io/fields/format_writers.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 
@@ -31,9 +32,7 @@ void LatticeWriter::write_blocks(const SignedBlocks& /*blocks*/) {
 }
 
 std::optional<FieldFormat> field_format_from_name(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string lower = lower_case(name);
   if (lower == "vdb") return FieldFormat::kVdb;
   if (lower == "csv") return FieldFormat::kCsv;
   if (lower == "npy") return FieldFormat::kNpy;

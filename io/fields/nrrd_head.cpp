@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/input_buffer.h"
 #include "io/files/unpack.h"
@@ -18,13 +19,6 @@ namespace {
 
 [[noreturn]] void fail_head(const std::string& path, const std::string& what) {
   throw InputError(path + ": not a readable volume: " + what);
-}
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
 }
 
 std::string without_escapes(std::string_view text) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -22,6 +21,7 @@
 #include "io/fields/format_writers.h"
 #include "io/fields/label_colour.h"
 #include "io/fields/quaternion.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/gzip_writer.h"
 
@@ -44,11 +44,6 @@ Vec3 first_sample(const PlacedLattice& lattice) {
 }
 
 // --- NRRD -----------------------------------------------------------------------------------------------------------
-
-std::string shortest_text(double number) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-}
 
 std::string vector_text(const Vec3& v) {
   return '(' + shortest_text(v.x) + ',' + shortest_text(v.y) + ',' + shortest_text(v.z) + ')';

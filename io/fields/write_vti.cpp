@@ -1,9 +1,7 @@
 // VTI, VTK's XML files of regular grids, as ParaView reads them: a text head that says where each array begins, then
 // the arrays in binary ("appended raw"), each behind its size in bytes.
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,6 +12,7 @@
 
 #include "io/fields/format_writers.h"
 #include "io/fields/narrowing.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/seekable_output.h"
 
@@ -27,13 +26,7 @@ using ArraySize = std::uint64_t;  // what stands before each array
 // Elements per conversion: small enough to stay in the cache.
 constexpr std::size_t kPiece = std::size_t{1} << 16;
 
-std::string text_of(double number) {
-  std::array<char, 32> characters;
-  char* const end = std::to_chars(characters.data(), characters.data() + characters.size(), number).ptr;
-  return {characters.data(), end};
-}
-
-std::string text_of(const Vec3& v) { return text_of(v.x) + ' ' + text_of(v.y) + ' ' + text_of(v.z); }
+std::string text_of(const Vec3& v) { return shortest_text(v.x) + ' ' + shortest_text(v.y) + ' ' + shortest_text(v.z); }
 
 // Of indices, which are points of VTK's grid.
 std::string extent_of(const Lattice& lattice) {
@@ -49,7 +42,7 @@ std::string extent_of(const Lattice& lattice) {
 std::string direction_of(const PlacedLattice& lattice) {
   if (lattice.along_axes()) return "";
   std::string text;
-  for (const double entry : lattice.direction()) text += (text.empty() ? "" : " ") + text_of(entry);
+  for (const double entry : lattice.direction()) text += (text.empty() ? "" : " ") + shortest_text(entry);
   return " Direction=\"" + text + '"';
 }
 

@@ -1,4 +1,5 @@
 #include "io/files/file_identity.h"
+#include "io/files/ascii.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -26,12 +27,6 @@ std::optional<std::string> link_target(const std::string& path) {
 std::optional<FileIdentity> identity_of(const struct stat& status) {
   if (!S_ISREG(status.st_mode) && !S_ISBLK(status.st_mode)) return std::nullopt;
   return FileIdentity{status.st_dev, status.st_ino, ""};
-}
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
 }
 
 }  // namespace

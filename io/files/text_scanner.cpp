@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -185,9 +186,7 @@ std::string_view TextScanner::peek_word() const {
 
 bool TextScanner::skip_word(std::string_view word) {
   if (remaining() < word.size() || !ends_token(position_ + word.size())) return false;
-  const auto same = [](char c, char lower) { return c == lower || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == lower); };
-  if (!std::equal(word.begin(), word.end(), position_, [&](char lower, char c) { return same(c, lower); }))
-    return false;
+  if (!is_word({position_, word.size()}, word)) return false;
   position_ += word.size();
   return true;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -260,12 +261,8 @@ std::unique_ptr<ByteSource> inflated(std::unique_ptr<ByteSource> packed, std::ui
 
 std::string without_packing_extension(const std::string& path) {
   for (const std::string_view extension : {".gz", ".zst"}) {
-    if (path.size() <= extension.size()) continue;
-    const std::string_view end = std::string_view(path).substr(path.size() - extension.size());
-    const bool same = std::ranges::equal(end, extension, [](char c, char lower) {
-      return ('A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == lower;
-    });
-    if (same) return path.substr(0, path.size() - extension.size());
+    const bool is_packed = path.size() > extension.size() && ends_with_word(path, extension);
+    if (is_packed) return path.substr(0, path.size() - extension.size());
   }
   return path;
 }

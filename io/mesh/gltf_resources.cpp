@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "io/files/ascii.h"
 #include "io/files/base64.h"
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
@@ -64,19 +65,10 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-// Of ASCII letters, in any case.
-bool is_same_word(std::string_view text, std::string_view lower) {
-  return std::ranges::equal(text, lower,
-                            [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
-}
-
 // Both words of a data URI are case-insensitive (RFC 3986, section 3.1; RFC 2397, whose literals are).
-bool is_data_uri(std::string_view uri) { return is_same_word(uri.substr(0, 5), "data:"); }
+bool is_data_uri(std::string_view uri) { return is_word(uri.substr(0, 5), "data:"); }
 
-bool announces_base64(std::string_view head) {
-  constexpr std::string_view kBase64 = ";base64";
-  return head.size() >= kBase64.size() && is_same_word(head.substr(head.size() - kBase64.size()), kBase64);
-}
+bool announces_base64(std::string_view head) { return ends_with_word(head, ";base64"); }
 
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');

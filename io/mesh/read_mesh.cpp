@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/machine/threads.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/files/unpack.h"
@@ -21,13 +22,6 @@ constexpr std::array<std::pair<std::string_view, MeshFormat>, 7> kFormatNames = 
                                                                                   {"gltf", MeshFormat::kGltf},
                                                                                   {"glb", MeshFormat::kGlb},
                                                                                   {"3mf", MeshFormat::k3mf}}};
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 std::optional<MeshFormat> format_from_extension(const std::string& path) {
   const std::string extension = std::filesystem::path(without_packing_extension(path)).extension().string();

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/face_groups.h"
@@ -34,14 +35,6 @@ constexpr std::array<std::string_view, 5> kHarmless{RAYCONE_3MF "material/2015/0
                                                     RAYCONE_3MF "slice/2015/07", RAYCONE_3MF "trianglesets/2021/07",
                                                     RAYCONE_3MF "core/2015/02"};
 #undef RAYCONE_3MF
-
-std::string without_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
 
 std::string without_slash(std::string_view name) { return std::string(name.starts_with('/') ? name.substr(1) : name); }
 
@@ -229,7 +222,7 @@ class ModelReader {
 // Names of parts do not depend on the case of letters.
 ThreeMfParts::ThreeMfParts(std::string_view bytes, const std::string& file)
     : file_(file), size_(bytes.size()), archive_(bytes, file) {
-  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(without_case(member.name), &member);
+  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(lower_case(member.name), &member);
 }
 
 std::string ThreeMfParts::root() {
@@ -248,7 +241,7 @@ std::string ThreeMfParts::root() {
 }
 
 const ZipReader::Member& ThreeMfParts::find(const std::string& name) const {
-  const auto found = parts_.find(without_case(name));
+  const auto found = parts_.find(lower_case(name));
   if (found != parts_.end()) return *found->second;
   throw InputError(file_ + ": no part " + name.substr(0, kMaxQuoted) + ", expected a 3MF package");
 }

@@ -1,13 +1,12 @@
 #include "io/mesh/write_surface.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -118,8 +117,7 @@ void put_off(Pieces& pieces, const TriangleMesh& mesh) {
 }  // namespace
 
 std::optional<SurfaceFormat> surface_format_from_name(std::string_view name) {
-  std::string small(name);
-  std::ranges::transform(small, small.begin(), [](unsigned char c) { return c < 128 ? std::tolower(c) : c; });
+  const std::string small = lower_case(name);
   if (small == "ply") return SurfaceFormat::kPly;
   if (small == "stl") return SurfaceFormat::kStl;
   if (small == "obj") return SurfaceFormat::kObj;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/vdb/vdb_module.h"
 
@@ -190,11 +190,9 @@ std::string rows_of(const openvdb::Mat4d& matrix) {
   for (int row = 0; row < 4; ++row) {
     text += row == 0 ? "[" : ", [";
     for (int column = 0; column < 4; ++column) {
-      std::array<char, 32> digits;
       const double number = matrix(row, column);
       if (!std::isfinite(number)) return "null";
-      text += column == 0 ? "" : ", ";
-      text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+      text += (column == 0 ? "" : ", ") + shortest_text(number);
     }
     text += ']';
   }

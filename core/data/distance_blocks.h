@@ -33,7 +33,7 @@ class DistanceBlocks {
     beyond_ = beyond;
     for (std::size_t a = 0; a < 3; ++a) {
       first_[a] = block_of(block.first[a]);
-      counts_[a] = block_of(block.first[a] + block.counts[a] - 1) - first_[a] + 1;
+      counts_[a] = block.counts[a] > 0 ? block_of(block.first[a] + block.counts[a] - 1) - first_[a] + 1 : 0;
     }
     strips_.resize(static_cast<std::size_t>(counts_[1]));
     for (Strip& strip : strips_) {

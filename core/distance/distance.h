@@ -13,6 +13,7 @@ namespace raycone {
 
 class DistanceBlocks;  // core/data/distance_blocks.h
 
+// What uses threads throws ThreadsUnavailable (core/machine/threads.h) where none can be started.
 class DistanceEvaluator {
  public:
   // Precondition: the vertices that triangles use are finite. A mesh without triangles is infinitely far away. Throws

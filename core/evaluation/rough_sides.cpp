@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/evaluation/rough_sums.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::size_t kMany = 32;  // samples
 // the box around. Boxes are divided where that takes less.
 constexpr double kLook = 5e3, kListed = 10.0;
 constexpr std::size_t kLeastSide = 8;  // samples: of the parts of boxes
+// Samples. A lattice may have few blocks, and of these one or two may take most of the time.
+constexpr std::size_t kForOneThread = 0x1p15;
 
 // Cut near the middles of its longer sides, at multiples of the least side from its beginning. One part where it is
 // small.
@@ -76,6 +79,7 @@ class RoughSides {
     }
     const std::vector<SampleBox> parts = parts_of(box);
     if (box.size() <= RoughSums::kLargest && (parts.size() < 2 || !pays(here, parts.size()))) return evaluate(here);
+    if (box.size() > kForOneThread) return set_by_threads(parts, wanted, here);
     for (const SampleBox& part : parts) {
       const std::vector<SampleBox> of_part = parts_in(part, wanted);
       if (!of_part.empty()) set(part, of_part, &here);
@@ -83,6 +87,20 @@ class RoughSides {
   }
 
  private:
+  // Of the parts of a box.
+  void set_by_threads(std::span<const SampleBox> parts, std::span<const SampleBox> wanted, const RoughBox& box) {
+    std::vector<std::vector<SampleBox>> undecided(parts.size());
+    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::vector<SampleBox> of_part = parts_in(parts[n], wanted);
+        if (!of_part.empty()) RoughSides(samples_, undecided[n]).set(parts[n], of_part, &box);
+      }
+    });
+    for (const std::vector<SampleBox>& of_part : undecided) {
+      undecided_.insert(undecided_.end(), of_part.begin(), of_part.end());
+    }
+  }
+
   [[nodiscard]] static bool pays(const RoughBox& box, std::size_t parts) {
     const RoughCover& cover = box.cover;
     const auto not_smooth = static_cast<double>(cover.near.triangles.size() + cover.near.expansions.size());

@@ -1,5 +1,6 @@
 #include "core/evaluation/row_crossings.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -51,6 +52,22 @@ void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const Lat
     cast_rays(mesh, rows, sums);
   }
   sums.arrange();
+}
+
+std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums) {
+  std::atomic<std::uint64_t> on_surface = 0;
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t here = 0;
+    for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
+    on_surface.fetch_add(here, std::memory_order_relaxed);
+  });
+  return on_surface;
+}
+
+void sum_crossings(const TriangleMesh& caps, const LatticeRows& rows, LatticeSums& sums) {
+  scan_triangles(caps, rows, std::nullopt, sums);
+  sums.arrange();
+  finish_all(rows, sums);
 }
 
 }  // namespace raycone

@@ -1,6 +1,8 @@
 // What the rays of a block of a lattice cross.
 #pragma once
 
+#include <cstdint>
+
 #include "core/crossings/lattice_rows.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/data/lattice.h"
@@ -14,5 +16,11 @@ namespace raycone {
 // Collects and arranges the crossings of `rows`, those of the block, by the mesh's ray engine.
 void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block,
                        const LatticeRows& rows, LatticeSums& sums);
+
+// Finishes all rows. Returns how many samples lie on the surface.
+std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums);
+
+// Collects and finishes the crossings of caps.
+void sum_crossings(const TriangleMesh& caps, const LatticeRows& rows, LatticeSums& sums);
 
 }  // namespace raycone

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/crossings/lattice_rows.h"
-#include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
 #include "core/evaluation/lattice_far.h"
@@ -118,15 +117,6 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
     on_surface += here;
   });
   return on_surface;
-}
-
-// Of caps, finished.
-void sum_crossings(const TriangleMesh& caps, const LatticeRows& rows, LatticeSums& sums) {
-  scan_triangles(caps, rows, std::nullopt, sums);
-  sums.arrange();
-  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) sums.finish(row);
-  });
 }
 
 // Of a block that the scaled mesh can take, by blocks of samples.

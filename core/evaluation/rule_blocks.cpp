@@ -63,6 +63,14 @@ struct Candidate {
   std::optional<NodeGrid> nodes{};
 };
 
+// Of a block, what certificates do not decide.
+struct Undecided {
+  std::vector<SampleBox> boxes;  // without certificate
+  std::vector<SampleBox> runs;   // interpolation does not tell
+  bool is_all = false;           // nobody looked for certificates: the whole block is the only box
+  std::size_t samples = 0;       // of the whole block
+};
+
 // Thread-safe.
 class RuleBlocks {
  public:
@@ -80,16 +88,21 @@ class RuleBlocks {
   // Whether certificates were found often enough so far. The work depends on it, the sides do not.
   [[nodiscard]] bool are_worth_it() const { return in_vain_ <= tried_ - tried_ / 8; }
 
-  // Block number n, by certificates or, but for a few, without. Returns how many samples it has.
-  std::size_t apply(std::size_t n, bool by_certificates);
+  // Sets what certificates decide of block number n; but for a few, they are asked only where they are wanted.
+  [[nodiscard]] Undecided certify(std::size_t n, bool by_certificates);
+  // Sets the rest.
+  void finish(Undecided left) const;
+
+  // Whether finish() needs a tree where certificates leave boxes; it is made on all threads outside loops.
+  [[nodiscard]] bool may_need_tree() const { return has_rough_sums_; }
+  void make_tree() const { (void)takes_rough_sums(); }
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
-  // Makes their tree, which is not asked for where certificates decide all.
   [[nodiscard]] bool takes_rough_sums() const { return has_rough_sums_ && mesh_.blocks().are_sound; }
   void look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
                std::vector<SampleBox>& left) const;
-  void find_certificates(CutBlock whole, std::vector<SampleBox>& left, std::vector<SampleBox>& undecided) const;
+  void find_certificates(CutBlock whole, Undecided& left) const;
   void divide(CutBlock block, std::vector<CutBlock>& parts, std::vector<SampleBox>& left) const;
   [[nodiscard]] Candidate candidate_of(CutBlock block, const Box& box) const;
   void evaluate(std::span<Candidate> candidates) const;
@@ -109,51 +122,53 @@ class RuleBlocks {
   std::atomic<std::size_t> tried_ = 0, in_vain_ = 0;  // samples
 };
 
-std::size_t RuleBlocks::apply(std::size_t n, bool by_certificates) {
+Undecided RuleBlocks::certify(std::size_t n, bool by_certificates) {
   constexpr std::size_t kFewBlocks = 64;
   CutBlock block = blocks_[n];
-  const SampleBox whole = block.samples;
-  std::vector<SampleBox> left, undecided;  // blocks without certificate, and runs of samples
-  if (by_certificates || n % kFewBlocks == 0) {
-    find_certificates(std::move(block), left, undecided);
-    tried_ += whole.size();
-    for (const std::vector<SampleBox>* boxes : {&left, &undecided}) {
-      for (const SampleBox& box : *boxes) in_vain_ += box.size();
-    }
-  } else if (takes_rough_sums()) {
-    left.push_back(whole);
-  } else {
-    samples_.evaluate_rows(whole);
+  Undecided left;
+  left.samples = block.samples.size();
+  if (!by_certificates && n % kFewBlocks != 0) {
+    left.boxes.push_back(block.samples);
+    left.is_all = true;
+    return left;
   }
-  if (!left.empty() && takes_rough_sums()) {
-    set_sides_roughly(samples_, left, undecided);
-  } else {
-    undecided.insert(undecided.end(), left.begin(), left.end());
+  find_certificates(std::move(block), left);
+  tried_ += left.samples;
+  for (const std::vector<SampleBox>* boxes : {&left.boxes, &left.runs}) {
+    for (const SampleBox& box : *boxes) in_vain_ += box.size();
   }
-  samples_.evaluate_each(undecided);
-  return whole.size();
+  return left;
 }
 
-// Sets what is certain. Adds the other samples to `left`, where blocks have no certificate, or to `undecided`, where
-// interpolation does not tell.
-void RuleBlocks::find_certificates(CutBlock whole, std::vector<SampleBox>& left,
-                                   std::vector<SampleBox>& undecided) const {
+void RuleBlocks::finish(Undecided left) const {
+  if (!left.boxes.empty() && takes_rough_sums()) {
+    set_sides_roughly(samples_, left.boxes, left.runs);
+  } else if (left.is_all) {
+    samples_.evaluate_rows(left.boxes.front());
+  } else {
+    left.runs.insert(left.runs.end(), left.boxes.begin(), left.boxes.end());
+  }
+  samples_.evaluate_each(left.runs);
+}
+
+// Sets what is certain.
+void RuleBlocks::find_certificates(CutBlock whole, Undecided& left) const {
   std::vector<CutBlock> blocks{std::move(whole)};
   while (!blocks.empty()) {
     std::vector<Candidate> candidates, interpolated;
     std::vector<CutBlock> parts;
-    for (CutBlock& block : blocks) look_at(std::move(block), candidates, parts, left);
+    for (CutBlock& block : blocks) look_at(std::move(block), candidates, parts, left.boxes);
     evaluate(candidates);
     for (Candidate& candidate : candidates) {
       if (decide(candidate)) continue;
       if (choose_nodes(candidate)) {
         interpolated.push_back(std::move(candidate));
       } else {
-        divide(std::move(candidate.block), parts, left);
+        divide(std::move(candidate.block), parts, left.boxes);
       }
     }
     evaluate(interpolated);
-    for (const Candidate& candidate : interpolated) interpolate(candidate, undecided);
+    for (const Candidate& candidate : interpolated) interpolate(candidate, left.runs);
     blocks = std::move(parts);
   }
 }
@@ -266,22 +281,42 @@ void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, 
   }
 }
 
+// visit(n) for all n below `count`, by all threads.
+template <class Visit>
+void for_each(std::size_t count, const Visit& visit) {
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) visit(n);
+  });
+}
+
 }  // namespace
 
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
                const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   const SideSamples samples(mesh, rows, rule, crossings, cap_crossings, sides);
   RuleBlocks blocks(samples);
-  // In rounds, each of which knows all of those before it, so that the work is the same for any number of threads.
+  const auto finish = [&](Undecided left) {
+    const std::size_t count = left.samples;
+    blocks.finish(std::move(left));
+    if (done) done->fetch_add(count, std::memory_order_relaxed);
+  };
+  // In rounds, each of which knows all of those before it, so that the work is the same for any number of threads. They
+  // stay small until one leaves something to rough sums: what it leaves waits for their tree.
   constexpr std::size_t kFirstRound = 64;
-  for (std::size_t first = 0, last = kFirstRound; first < blocks.size(); first = last, last *= 2) {
+  bool is_ready = !blocks.may_need_tree();
+  for (std::size_t first = 0, count = kFirstRound; first < blocks.size();
+       first += count, count = is_ready ? first : count) {
+    count = std::min(count, blocks.size() - first);
     const bool by_certificates = blocks.are_worth_it();
-    parallel_for(std::min(last, blocks.size()) - first, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::size_t count = blocks.apply(first + n, by_certificates);
-        if (done) done->fetch_add(count, std::memory_order_relaxed);
-      }
-    });
+    if (is_ready) {
+      for_each(count, [&](std::size_t n) { finish(blocks.certify(first + n, by_certificates)); });
+      continue;
+    }
+    std::vector<Undecided> left(count);
+    for_each(count, [&](std::size_t n) { left[n] = blocks.certify(first + n, by_certificates); });
+    is_ready = std::ranges::any_of(left, [](const Undecided& u) { return !u.boxes.empty(); });
+    if (is_ready) blocks.make_tree();
+    for_each(count, [&](std::size_t n) { finish(std::move(left[n])); });
   }
 }
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "core/crossings/lattice_rows.h"
-#include "core/crossings/lattice_scan.h"
 #include "core/crossings/lattice_sums.h"
 #include "core/evaluation/block_parts.h"
 #include "core/evaluation/row_crossings.h"
@@ -17,17 +15,6 @@
 
 namespace raycone {
 namespace {
-
-// Returns how many samples lie on the surface.
-std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums) {
-  std::atomic<std::uint64_t> on_surface = 0;
-  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
-    for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
-    on_surface.fetch_add(here, std::memory_order_relaxed);
-  });
-  return on_surface;
-}
 
 // Of a closed mesh: crossings are winding numbers.
 void set_sides_of_runs(const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
@@ -85,9 +72,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
     return tally;
   }
   LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);
-  scan_triangles(mesh.changes().caps.mesh, rows, std::nullopt, of_caps);
-  of_caps.arrange();
-  finish_all(rows, of_caps);
+  sum_crossings(mesh.changes().caps.mesh, rows, of_caps);
   set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
   return tally;
 }

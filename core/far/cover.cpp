@@ -117,15 +117,15 @@ class RoughWalk {
   }
 
   RoughCover finish() {
-    result_.error *= 1 + kSumsRound;
-    result_.near_error *= 1 + kSumsRound;
+    result_.error *= 1 + kManySumsRound;
+    result_.near_error *= 1 + kManySumsRound;
     return std::move(result_);
   }
 
  private:
-  static constexpr double kLeastSquare = 0x1p-200;  // of less, powers and areas may underflow
-  static constexpr double kSumsRound = 0x1p-20;     // of up to 2^32 numbers
-  static constexpr double kSmall = 0.25;            // radius, as a part of the box's diagonal
+  static constexpr double kLeastSquare = 0x1p-200;   // of less, powers and areas may underflow
+  static constexpr double kManySumsRound = 0x1p-20;  // of up to 2^32 numbers
+  static constexpr double kSmall = 0.25;             // radius, as a part of the box's diagonal
 
   // Whether the node is taken as it is.
   bool take_whole(std::uint32_t number) {

@@ -230,6 +230,12 @@ TEST(Distance, OfNoSamplesIsNothing) {
   std::vector<double> none;
   distance.evaluate(lattice, {{0, 0, 0}, {0, 3, 3}}, 1.0, none);
   distance.evaluate(std::vector<Vec3>{}, none);
+  EXPECT_TRUE(none.empty());
+  for (const std::int64_t first : {0, 1, 7}) {
+    DistanceBlocks blocks;
+    distance.evaluate(lattice, {{first, 0, 0}, {0, 3, 3}}, 1.0, blocks);
+    EXPECT_EQ(blocks.blocks().size(), 0) << first;
+  }
 }
 
 TEST(Distance, DoesNotDependOnTheBlock) {

@@ -12,6 +12,15 @@ namespace {
 
 constexpr std::int64_t kSlabNodes = std::int64_t{1} << 22;
 
+// Eight bytes that are 0 or 1, as bits. The product brings the lowest bit of byte n to bit 56 + n, and no two bits to one
+// place: nothing is carried.
+std::uint64_t bits_of(const std::uint8_t* bytes) {
+  constexpr std::uint64_t kGather = 0x0102'0408'1020'4080;
+  std::uint64_t word = 0;
+  for (unsigned n = 0; n < 8; ++n) word |= std::uint64_t{bytes[n]} << 8 * n;
+  return word * kGather >> 56U;
+}
+
 LatticeBlock slab_of_nodes(const Lattice& lattice, std::int64_t first_layer) {
   const std::int64_t layers = std::max<std::int64_t>(1, kSlabNodes / (lattice.counts[0] * lattice.counts[1]));
   LatticeBlock slab = whole(lattice);
@@ -38,7 +47,9 @@ void NodeSet::set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8
   for (std::size_t first = 0; first < holds.size(); first += 64) {
     const std::size_t count = std::min<std::size_t>(holds.size() - first, 64);
     std::uint64_t word = 0;
-    for (std::size_t n = 0; n < count; ++n) word |= std::uint64_t{holds[first + n]} << n;
+    std::size_t n = 0;
+    for (; n + 8 <= count; n += 8) word |= bits_of(holds.data() + first + n) << n;
+    for (; n < count; ++n) word |= std::uint64_t{holds[first + n]} << n;
     words[first / 64] = word;
   }
 }

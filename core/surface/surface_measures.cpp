@@ -183,10 +183,11 @@ class NearByNodes {
           const bool holds = inside_.holds(i, j, k);
           any = any || holds;
           all = all && holds;
+          if (any && !all) return true;
         }
       }
     }
-    return any && !all;
+    return false;
   }
 
   const NodeSet& inside_;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/planes_point.h"
 
@@ -38,14 +39,20 @@ std::vector<SideUse> uses_of(const TriangleMesh& mesh) {
   return uses;
 }
 
-Vec3 normal_in(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  return unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+std::vector<Vec3> normals_of(const TriangleMesh& mesh) {
+  std::vector<Vec3> normals(mesh.triangles.size());
+  parallel_for(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t triangle = begin; triangle < end; ++triangle) {
+      const Triangle& t = mesh.triangles[triangle];
+      normals[triangle] = unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    }
+  });
+  return normals;
 }
 
 // Of the angle between two triangles at an edge of both.
-double cosine_at(const TriangleMesh& mesh, const SideUse& a, const SideUse& b) {
-  const double cosine = dot(normal_in(mesh, a.triangle), normal_in(mesh, b.triangle));
+double cosine_at(const std::vector<Vec3>& normals, const SideUse& a, const SideUse& b) {
+  const double cosine = dot(normals[a.triangle], normals[b.triangle]);
   return a.forward == b.forward ? -cosine : cosine;
 }
 
@@ -109,18 +116,19 @@ class Nearest {
 
 }  // namespace
 
-CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles)
+CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles, const SurfaceCells& cells)
     : mesh_(&mesh),
       triangles_(&triangles),
       sides_(mesh.triangles.size(), 0),
       beyond_(mesh.triangles.size()),
-      parts_(mesh.triangles.size()) {
+      parts_(mesh.triangles.size()),
+      normals_(normals_of(mesh)) {
   std::iota(parts_.begin(), parts_.end(), 0U);
   const std::vector<SideUse> uses = uses_of(mesh);
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     const SideUse& first = uses[begin];
     while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
-    const double cosine = end - begin == 2 ? cosine_at(mesh, first, uses[begin + 1]) : 0.0;
+    const double cosine = end - begin == 2 ? cosine_at(normals_, first, uses[begin + 1]) : 0.0;
     const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kFine ? 0U : 1U << kCreaseBit) |
                           (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
     sides_[first.triangle] = static_cast<std::uint16_t>(sides_[first.triangle] | bits << first.side);
@@ -128,6 +136,24 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangle
     if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);
   }
   for (std::uint32_t& part : parts_) part = parts_[part];  // lower ones know theirs
+  find_ends(cells);
+}
+
+void CellCreases::find_ends(const SurfaceCells& cells) {
+  constexpr double kReach = 0x1p-4, kRounding = 0x1p-8;  // of a cell's side
+  const Lattice& lattice = cells.lattice();
+  end_reach_ = kReach * std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
+  near_ends_.assign(cells.cells().size(), 0);
+  std::vector<bool> is_end(mesh_->vertices.size(), false);
+  for (std::size_t triangle = 0; triangle < sides_.size(); ++triangle) {
+    for (unsigned side = 0; side < 3; ++side) {
+      if ((sides_[triangle] >> side & 1U) == 0) continue;
+      is_end[mesh_->triangles[triangle][side]] = is_end[mesh_->triangles[triangle][(side + 1) % 3]] = true;
+    }
+  }
+  for (std::size_t v = 0; v < is_end.size(); ++v) {
+    if (is_end[v]) cells.for_each_near(mesh_->vertices[v], kReach + kRounding, [&](auto cell) { near_ends_[cell] = 1; });
+  }
 }
 
 void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
@@ -156,8 +182,6 @@ void CellCreases::unite(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t of_a = lowest_of(a), of_b = lowest_of(b);
   parts_[std::max(of_a, of_b)] = std::min(of_a, of_b);
 }
-
-Vec3 CellCreases::normal_of(std::uint32_t triangle) const { return normal_in(*mesh_, triangle); }
 
 // A hit is in the crease's box, but for rounding.
 bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance, CreaseKinds kinds) {
@@ -248,6 +272,7 @@ std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates
 }
 
 CreasesHere::Ends CreasesHere::ends_within(const Vec3& lower, const Vec3& upper, double off, CreaseKinds kinds) {
+  if (!creases_.may_end_near(cell_, off)) return {};
   const Vec3 by{off, off, off};
   const Box around{lower - by, upper + by}, within{lower + by, upper - by};
   Ends ends;

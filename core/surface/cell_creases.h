@@ -8,6 +8,7 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/surface/cell_triangles.h"
+#include "core/surface/edge_points.h"
 #include "core/surface/planes_point.h"
 
 namespace raycone {
@@ -20,8 +21,8 @@ inline constexpr double kSharpCosine = 0.9659258262890683;
 class CellCreases {
  public:
   CellCreases() = default;  // none
-  // Both as long as this. Precondition: `mesh` is welded.
-  CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles);
+  // The first two as long as this. Precondition: `mesh` is welded.
+  CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles, const SurfaceCells& cells);
 
   // A side of a triangle, and its box.
   struct Crease {
@@ -34,8 +35,16 @@ class CellCreases {
   // triangles.
   void find(std::uint32_t cell, std::vector<Crease>& found) const;
 
-  // Precondition, of these: there are creases.
-  [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
+  // Whether a crease, or a fine one, may end in a cell, or no farther from it than `off` along each axis: most have
+  // none.
+  [[nodiscard]] bool may_end_near(std::uint32_t cell, double off) const {
+    return !(off <= end_reach_) || near_ends_[cell] != 0;
+  }
+  // The unit normal of a triangle that is the source of a point; zero of kHole, of triangles without area, and where
+  // there are no creases.
+  [[nodiscard]] Vec3 normal_of(std::int32_t source) const {
+    return source == kHole || normals_.empty() ? Vec3{} : normals_[static_cast<std::size_t>(source)];
+  }
   // The same for triangles that hang together by edges that are no creases, nor fine ones: a flat part of the mesh.
   [[nodiscard]] std::uint32_t part_of(std::uint32_t triangle) const { return parts_[triangle]; }
 
@@ -43,6 +52,7 @@ class CellCreases {
   static constexpr unsigned kCreaseBit = 4, kSharpBit = 8;
 
   void unite(std::uint32_t a, std::uint32_t b);
+  void find_ends(const SurfaceCells& cells);
 
   const TriangleMesh* mesh_ = nullptr;
   const CellTriangles* triangles_ = nullptr;
@@ -51,6 +61,9 @@ class CellCreases {
   std::vector<std::uint16_t> sides_;
   std::vector<std::array<std::uint32_t, 3>> beyond_;  // the triangle on the other side of each of these
   std::vector<std::uint32_t> parts_;                  // of each triangle, the lowest one of its part
+  std::vector<Vec3> normals_;                         // likewise
+  double end_reach_ = -1.0;
+  std::vector<std::uint8_t> near_ends_;  // of each cell, whether an end of a crease is as near as that
 };
 
 // Which creases of a cell count.
@@ -66,6 +79,8 @@ class CreasesHere {
     cell_ = cell;
     known_ = false;
   }
+
+  [[nodiscard]] const CellCreases& all_creases() const { return creases_; }
 
   // Whether a crease meets a triangle of the cell within a distance of `p`, which is more than what coordinates round.
   [[nodiscard]] bool has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance,

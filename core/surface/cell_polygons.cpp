@@ -182,7 +182,7 @@ bool CellPolygons::has_needles() const {
 }
 
 bool CellPolygons::is_in_plane(const EdgePoint& plane, const Vec3& p) const {
-  return std::abs(dot(plane.normal, p - plane.position)) <= kInPlane * unit_;
+  return std::abs(dot(creases_.all_creases().normal_of(plane.source), p - plane.position)) <= kInPlane * unit_;
 }
 
 bool CellPolygons::is_near_node(const Vec3& p) const {
@@ -222,17 +222,21 @@ bool CellPolygons::find_runs() {
   for (std::size_t n = 0; n < run_count_; ++n) {
     const Run& run = runs_[n];
     planes_[n] = run.plane;
-    bool is_at_node = false, is_of_one = true;
+    bool is_of_one = true;
     for (std::size_t i = 0; i < run.size; ++i) {
       const LoopCorner& corner = loop_[run.corners[i]];
       if (!is_in_plane(*run.plane, corner.position)) return false;
-      if (!corner.point) continue;
-      is_at_node = is_at_node || is_near_node(corner.position);
-      is_of_one = is_of_one && corner.point->source == run.plane->source;
+      is_of_one = is_of_one && (!corner.point || corner.point->source == run.plane->source);
     }
-    if (is_at_node && !is_of_one) return false;
+    if (!is_of_one && has_corner_at_node(run)) return false;
   }
   return true;
+}
+
+// Of an edge.
+bool CellPolygons::has_corner_at_node(const Run& run) const {
+  return std::any_of(run.corners.begin(), run.corners.begin() + static_cast<std::ptrdiff_t>(run.size),
+                     [&](std::uint8_t n) { return loop_[n].point && is_near_node(loop_[n].position); });
 }
 
 // Where sections follow fine creases, these are in several planes, too. Creases end in the cell nowhere, or at one

@@ -105,6 +105,7 @@ class CellPolygons {
   bool find_loop();
   [[nodiscard]] bool has_needles() const;
   [[nodiscard]] bool is_near_node(const Vec3& p) const;
+  [[nodiscard]] bool has_corner_at_node(const Run& run) const;
   bool find_runs();
   bool find_ends();
   bool holds_diagonal();

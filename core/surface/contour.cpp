@@ -109,6 +109,7 @@ class CellContour {
     if (a.edge_point) return *a.edge_point;
     return b.edge_point ? *b.edge_point : face_points_.piece_behind(std::min(a.vertex, b.vertex) - cells_.edges());
   }
+  [[nodiscard]] Vec3 normal_of(const EdgePoint& point) const { return creases_.all_creases().normal_of(point.source); }
   void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
   [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
@@ -150,10 +151,9 @@ void CellContour::find_points_within() {
 void CellContour::add_polygons() {
   const SurfaceCell& cell = cells_.cells()[cell_];
   if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1))
-    spare_->mark_edge(cell.edge(kuhn::kCorners - 1), SparePoints::kWithinCell);
+    spare_->edges[cell.edge(kuhn::kCorners - 1)] = 1;
   for (const DiagonalPoint& point : polygons_.diagonals()) {
-    const unsigned side = point.is_above ? SparePoints::kAbove : SparePoints::kBelow;
-    spare_->mark_edge(point.edge, side | (point.is_inline ? SparePoints::kInline : 0U));
+    if (point.is_inline) (point.is_above ? spare_->above : spare_->below)[point.edge] = 1;
   }
   for (const std::uint32_t face : polygons_.spare_points()) spare_->faces[face] = 1;
   std::uint32_t apex = 0;
@@ -320,9 +320,9 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
       of_faces = of_faces + from_first;
       ++face_points;
       const LoopCorner& next = loop.corners[(i + 1) % loop.size];
-      if (!next.edge_point) planes[count++] = {from_first, piece_between(corner, next).normal};
+      if (!next.edge_point) planes[count++] = {from_first, normal_of(piece_between(corner, next))};
     } else if (corner.edge_point->source != kHole) {
-      planes[count++] = {from_first, corner.edge_point->normal};
+      planes[count++] = {from_first, normal_of(*corner.edge_point)};
     }
   }
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
@@ -354,7 +354,8 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   SparePoints spare;
   if (kind == ContourCells::kPolygons) {
-    spare.edges.resize(edge_points.size());
+    for (std::vector<std::uint8_t>* of_edges : {&spare.above, &spare.below, &spare.edges})
+      of_edges->resize(edge_points.size());
     spare.faces.resize(face_points.positions().size());
   }
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -367,12 +368,12 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
     }
   });
   if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions());
+  spare.settle_edges();
   const std::uint64_t fewer = cut_polygons(parts, edge_points, face_points.positions(), spare);
   ContouredSurface contoured = joined(parts, edge_points, face_points.positions());
   contoured.fewer = fewer;
   contoured.spare.resize(contoured.surface.mesh.vertices.size());
-  for (std::size_t n = 0; n < spare.edges.size(); ++n)
-    contoured.spare[n] = SparePoints::is_spare(spare.edges[n]) ? 1 : 0;
+  std::ranges::copy(spare.edges, contoured.spare.begin());
   std::ranges::copy(spare.faces, contoured.spare.begin() + static_cast<std::ptrdiff_t>(spare.edges.size()));
   return contoured;
 }

@@ -25,7 +25,7 @@ class FanCutter {
       positions_.clear();
       for (std::size_t n = first; n < first + polygon.size; ++n) {
         const std::uint32_t corner = part.polygon_corners[n];
-        if (corner < edge_points_.size() && SparePoints::is_spare(spare_edges_[corner])) continue;
+        if (corner < edge_points_.size() && spare_edges_[corner] != 0) continue;
         corners_.push_back(corner);
         positions_.push_back(position(part, corner));
       }

@@ -1,7 +1,6 @@
 // What contour() makes of some cells, and how it becomes one surface.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,17 +28,17 @@ inline constexpr std::uint32_t kFirstApex = 0x80000000;
 
 // The points that no triangle has.
 struct SparePoints {
-  // Of edges that are diagonals of cells' faces: the polygons of either cell, and whether both can do without.
-  static constexpr unsigned kAbove = 1, kBelow = 2, kInline = 4, kWithinCell = 8;
+  // Of edges that are diagonals of cells' faces: whether the polygons of the cell above the face can do without, and
+  // those of the cell below. Each cell has places of its own, so that threads do not meet.
+  std::vector<std::uint8_t> above, below;
+  // Of edges: whether they are within a cell of polygons, at first; then, whether their points are spare.
+  std::vector<std::uint8_t> edges;
+  std::vector<std::uint8_t> faces;
 
-  std::vector<std::uint8_t> edges, faces;
-
-  // On any thread.
-  void mark_edge(std::uint32_t edge, unsigned bits) {
-    std::atomic_ref(edges[edge]).fetch_or(static_cast<std::uint8_t>(bits), std::memory_order_relaxed);
-  }
-  [[nodiscard]] static bool is_spare(std::uint8_t edge) {
-    return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;
+  // Both cells at a diagonal must be of polygons.
+  void settle_edges() {
+    for (std::size_t n = 0; n < edges.size(); ++n) edges[n] = static_cast<std::uint8_t>(edges[n] | (above[n] & below[n]));
+    above = below = {};
   }
 };
 

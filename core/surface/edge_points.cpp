@@ -11,7 +11,6 @@
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_roots.h"
-#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 namespace {
@@ -42,7 +41,7 @@ class EdgePointFinder {
     decide_open_edges();
     find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
     for (const Bracket& bracket : brackets_) {
-      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), {}, kHole};
+      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), kHole};
     }
     return std::move(points_);
   }
@@ -50,10 +49,10 @@ class EdgePointFinder {
  private:
   void find_hits();
   void decide_open_edges();
-  void decide(const OpenEdge& open, std::span<const double> probes, TriangleNormals& normals);
+  void decide(const OpenEdge& open, std::span<const double> probes);
 
-  void set_hit(const MixedEdge& edge, const SegmentHit& hit, const Vec3& normal) {
-    points_[edge.number] = {edge.point(within(hit.at)), normal, static_cast<std::int32_t>(hit.triangle)};
+  void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
+    points_[edge.number] = {edge.point(within(hit.at)), static_cast<std::int32_t>(hit.triangle)};
   }
   [[nodiscard]] double within(double at) const { return std::clamp(at, margin_, 1.0 - margin_); }
 
@@ -78,7 +77,6 @@ void EdgePointFinder::find_hits() {
   parallel_for(cells_.cells().size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<SegmentHit> hits;
     std::vector<OpenEdge> open;
-    TriangleNormals normals(mesh_);
     HitFinder finder;
     for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
       const SurfaceCell& cell = cells_.cells()[n];
@@ -92,7 +90,7 @@ void EdgePointFinder::find_hits() {
         keep_places(hits);
         // A closed mesh changes w nowhere else.
         if (rule_.is_closed() && hits.size() == 1) {
-          set_hit(edge, hits.front(), normals.of(hits.front().triangle));
+          set_hit(edge, hits.front());
         } else {
           open.push_back({edge, hits});
         }
@@ -124,14 +122,13 @@ void EdgePointFinder::decide_open_edges() {
     for (const double probe : probes_of(open, rule_.is_closed())) points.push_back(open.edge.point(probe));
   }
   const std::vector<double> values = rule_.at(points);
-  TriangleNormals normals(mesh_);
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const std::size_t end = i + 1 < open_.size() ? open_[i + 1].first_probe : values.size();
-    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe), normals);
+    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe));
   }
 }
 
-void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes, TriangleNormals& normals) {
+void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes) {
   const std::size_t probes_per_hit = rule_.is_closed() ? 1 : 2;
   double inside_until = 0.0;
   for (std::size_t i = 0; i < open.hits.size(); ++i) {
@@ -145,7 +142,7 @@ void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probe
       return;
     }
     if (!behind) {
-      set_hit(open.edge, open.hits[i], normals.of(open.hits[i].triangle));
+      set_hit(open.edge, open.hits[i]);
       return;
     }
     inside_until = here;

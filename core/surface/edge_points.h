@@ -16,7 +16,6 @@ inline constexpr std::int32_t kHole = -1;  // in place of a triangle
 
 struct EdgePoint {
   Vec3 position;
-  Vec3 normal;                  // of the triangle, length 1; zero in holes
   std::int32_t source = kHole;  // the triangle that the edge leaves the inside by
 };
 

@@ -31,22 +31,27 @@ struct PointsOfFace {
 struct FaceEdges {
   std::array<Vec3, 3> corners;
   std::array<const EdgePoint*, 2> points;
+  std::array<Vec3, 2> normals;
 };
 
-std::optional<FaceEdges> mixed_edges(const SurfaceCells& cells, std::span<const EdgePoint> points, std::uint32_t n,
-                                     const kuhn::FaceDirections& face) {
+// Where their points are of one source, the surface is not bent there, and nobody asks for more: nothing, then.
+std::optional<FaceEdges> edges_of_two(const SurfaceCells& cells, std::span<const EdgePoint> points, std::uint32_t n,
+                                      const kuhn::FaceDirections& face, const CellCreases& creases) {
   const SurfaceCell& cell = cells.cells()[n];
   const bool low = cell.is_inside(0), middle = cell.is_inside(face.first), high = cell.is_inside(face.second);
   if (low == middle && low == high) return std::nullopt;
-  FaceEdges edges{{cells.corner(cell, 0), cells.corner(cell, face.first), cells.corner(cell, face.second)}, {}};
+  std::array<const EdgePoint*, 2> mixed{};
   std::size_t next = 0;
-  if (low != middle) edges.points[next++] = &points[cell.edge(face.first)];
-  if (low != high) edges.points[next++] = &points[cell.edge(face.second)];
+  if (low != middle) mixed[next++] = &points[cell.edge(face.first)];
+  if (low != high) mixed[next++] = &points[cell.edge(face.second)];
   if (middle != high) {
     const SurfaceCell& other = cells.cells()[cells.cell_at(n, face.first)];
-    edges.points[next++] = &points[other.edge(face.second ^ face.first)];
+    mixed[next++] = &points[other.edge(face.second ^ face.first)];
   }
-  return edges;
+  if (mixed[0]->source == mixed[1]->source) return std::nullopt;
+  return FaceEdges{{cells.corner(cell, 0), cells.corner(cell, face.first), cells.corner(cell, face.second)},
+                   mixed,
+                   {creases.normal_of(mixed[0]->source), creases.normal_of(mixed[1]->source)}};
 }
 
 // Barycentric coordinates that are within the face, but for rounding, are moved into it.
@@ -62,17 +67,16 @@ std::optional<Vec3> inside_face(const std::array<Vec3, 3>& corners, std::array<d
   return corners[0] + (weights[1] / sum) * first + (weights[2] / sum) * second;
 }
 
-// Whether the surface is bent between the two points.
+// Whether the surface is bent between the two points, of different sources.
 bool disagree(const FaceEdges& face, double tolerance, double margin) {
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
-  if (p.source == q.source) return false;
   const Vec3 step = q.position - p.position;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
   const double moved = 2.0 * margin * std::sqrt(std::max(dot(first, first), dot(second, second)));
   // Where one of the points lies on both planes, so does the straight line between them on one.
   const double same = tolerance + moved;
-  return (p.source == kHole || std::abs(dot(p.normal, step)) > same) &&
-         (q.source == kHole || std::abs(dot(q.normal, step)) > same);
+  return (p.source == kHole || std::abs(dot(face.normals[0], step)) > same) &&
+         (q.source == kHole || std::abs(dot(face.normals[1], step)) > same);
 }
 
 // Where the planes at the two points meet in the face's plane.
@@ -80,8 +84,9 @@ std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   if (p.source == kHole || q.source == kHole) return std::nullopt;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
-  const double pu = dot(p.normal, first), pv = dot(p.normal, second), pw = dot(p.normal, p.position - face.corners[0]);
-  const double qu = dot(q.normal, first), qv = dot(q.normal, second), qw = dot(q.normal, q.position - face.corners[0]);
+  const auto& [m, n] = face.normals;
+  const double pu = dot(m, first), pv = dot(m, second), pw = dot(m, p.position - face.corners[0]);
+  const double qu = dot(n, first), qv = dot(n, second), qw = dot(n, q.position - face.corners[0]);
   const double determinant = pu * qv - pv * qu;
   const double u = (pw * qv - pv * qw) / determinant, v = (pu * qw - pw * qu) / determinant;
   return inside_face(face.corners, {1.0 - u - v, u, v}, margin);
@@ -182,7 +187,7 @@ std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint3
 std::optional<Vec3> face_point(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
                                std::size_t face, CreasesHere& creases, double tolerance,
                                const SurfaceMargins& margins) {
-  const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
+  const auto edges = edges_of_two(cells, edge_points, cell, kuhn::kFaces[face], creases.all_creases());
   if (!edges || !disagree(*edges, tolerance, margins.inner)) return std::nullopt;
   const double unit = largest_margin(cells, margins.inner);
   const std::optional<Vec3> meeting = meeting_on_crease(*edges, creases, tolerance, unit, margins.inner);
@@ -216,9 +221,10 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
 void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
                              std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
                              const SurfaceMargins& margins) {
-  const auto edges = mixed_edges(cells, edge_points, cell, kuhn::kFaces[face]);
+  const auto edges = edges_of_two(cells, edge_points, cell, kuhn::kFaces[face], creases);
+  if (!edges) return;
   const double fine = std::min(tolerance, fine_tolerance(cells.lattice()));
-  if (!edges || !disagree(*edges, fine, margins.inner)) return;
+  if (!disagree(*edges, fine, margins.inner)) return;
   const double unit = largest_margin(cells, margins.inner);
   const std::uint64_t number = std::uint64_t{16} * cell + face;
   const bool is_bent = disagree(*edges, tolerance, margins.inner);
@@ -241,7 +247,7 @@ void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoin
     const std::uint32_t beyond = more.beyond[n];
     if (n + 1 < more.size) {
       const auto point = static_cast<std::uint32_t>(faces_.size());
-      pieces_.push_back({point, {position, creases.normal_of(beyond), static_cast<std::int32_t>(beyond)}});
+      pieces_.push_back({point, {position, static_cast<std::int32_t>(beyond)}});
     }
     add(number, position);
   }

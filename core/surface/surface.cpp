@@ -42,7 +42,7 @@ class SurfaceMaker {
         options_(options),
         cells_(inside),
         triangles_(mesh, cells_),
-        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, triangles_)),
+        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, triangles_, cells_)),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {

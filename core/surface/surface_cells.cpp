@@ -111,6 +111,26 @@ SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
     }
     layer = {};
   });
+  resize_on_all_threads(ahead_, cells);
+  for_each_layer([&](std::size_t k) {
+    for (std::size_t j = 0; j < rows; ++j) find_ahead(static_cast<std::int64_t>(j), static_cast<std::int64_t>(k));
+  });
+}
+
+// Both rows are walked along at once.
+void SurfaceCells::find_ahead(std::int64_t j, std::int64_t k) {
+  const std::uint32_t begin = row_begin(j, k), end = row_end(j, k);
+  if (begin == end) return;  // as in the last rows and layers
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::int64_t beside = j + static_cast<std::int64_t>((row + 1) & 1U);
+    const std::int64_t above = k + static_cast<std::int64_t>((row + 1) >> 1U);
+    const std::uint32_t last = row_end(beside, above);
+    std::uint32_t at = row_begin(beside, above);
+    for (std::uint32_t cell = begin; cell < end; ++cell) {
+      while (at < last && cells_[at].node[0] < cells_[cell].node[0]) ++at;
+      ahead_[cell][row] = at;
+    }
+  }
 }
 
 Vec3 SurfaceCells::position(const std::array<std::int64_t, 3>& node) const {
@@ -124,15 +144,6 @@ std::uint32_t SurfaceCells::first_from(std::uint32_t begin, std::uint32_t end, s
   const auto found =
       std::lower_bound(first, last, x, [](const SurfaceCell& cell, std::int64_t at) { return cell.node[0] < at; });
   return static_cast<std::uint32_t>(found - cells_.begin());
-}
-
-std::uint32_t SurfaceCells::cell_at(std::uint32_t cell, unsigned corner) const {
-  if (corner == 0) return cell;
-  const auto [i, j, k] = node_at(cells_[cell], corner);
-  if (corner == 1) return cell + 1;
-  const std::uint32_t found = first_from(row_begin(j, k), row_end(j, k), i);
-  assert(found < row_end(j, k) && cells_[found].node[0] == i);
-  return found;
 }
 
 }  // namespace raycone

@@ -1,8 +1,10 @@
 // The cells of a lattice that a surface between its nodes passes through.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -55,12 +57,40 @@ class SurfaceCells {
   }
 
   // The place of the cell whose lowest node is a corner of another one. Precondition: there is such a cell.
-  [[nodiscard]] std::uint32_t cell_at(std::uint32_t cell, unsigned corner) const;
+  [[nodiscard]] std::uint32_t cell_at(std::uint32_t cell, unsigned corner) const {
+    const unsigned row = corner >> 1U, step = corner & 1U;
+    if (row == 0) return cell + step;
+    const std::uint32_t first = ahead_[cell][row - 1];
+    return cells_[first].node[0] < cells_[cell].node[0] + step ? first + 1 : first;
+  }
 
   // The cells of row (j, k) are those from row_begin(j, k) to row_end(j, k), by increasing x.
   [[nodiscard]] std::uint32_t row_begin(std::int64_t j, std::int64_t k) const { return rows_[row_number(j, k)]; }
   [[nodiscard]] std::uint32_t row_end(std::int64_t j, std::int64_t k) const { return rows_[row_number(j, k) + 1]; }
   [[nodiscard]] std::uint32_t first_from(std::uint32_t begin, std::uint32_t end, std::int64_t x) const;
+
+  // Calls visit(cell) for each cell that is no farther from a point along any axis than a part of its side.
+  template <class Visit>
+  void for_each_near(const Vec3& p, double part, const Visit& visit) const {
+    std::array<std::int64_t, 3> low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double at = (p[axis] - lattice_.origin[axis]) / lattice_.spacing[axis];
+      const auto index = [&](double x) {
+        const double from_0 = std::floor(x) - static_cast<double>(lattice_.index_min[a]);
+        return static_cast<std::int64_t>(std::clamp(from_0, -1.0, static_cast<double>(lattice_.counts[a])));
+      };
+      low[a] = std::max<std::int64_t>(index(at - part), 0);
+      high[a] = std::min(index(at + part), lattice_.counts[a] - 1);
+    }
+    for (std::int64_t k = low[2]; k <= high[2]; ++k) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        const std::uint32_t end = row_end(j, k);
+        for (std::uint32_t n = first_from(row_begin(j, k), end, low[0]); n < end && cells_[n].node[0] <= high[0]; ++n)
+          visit(n);
+      }
+    }
+  }
 
  private:
   [[nodiscard]] std::size_t row_number(std::int64_t j, std::int64_t k) const {
@@ -68,9 +98,13 @@ class SurfaceCells {
   }
   struct Layer;
   [[nodiscard]] static Layer layer_of(const NodeSet& nodes, std::int64_t k);
+  void find_ahead(std::int64_t j, std::int64_t k);
 
   Lattice lattice_;
   std::vector<SurfaceCell> cells_;
+  // Of each cell, in the rows (j + 1, k), (j, k + 1) and (j + 1, k + 1) of its own (j, k): the first cell whose x is not
+  // below its own.
+  std::vector<std::array<std::uint32_t, 3>> ahead_;
   std::vector<std::uint32_t> rows_;
   std::uint32_t edges_ = 0;
 };

@@ -102,7 +102,7 @@ std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlo
   parallel_for(places.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::int32_t source = at_thickness[n] ? static_cast<std::int32_t>(nearest.of(places[n])) : kHole;
-      points[brackets[n].edge.number] = {places[n], {}, source};
+      points[brackets[n].edge.number] = {places[n], source};
     }
   });
   return points;

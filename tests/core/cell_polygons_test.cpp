@@ -62,7 +62,7 @@ struct Cells {
         nodes(nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice)),
         cells(nodes),
         triangles(mesh, cells),
-        creases(mesh, triangles),
+        creases(mesh, triangles, cells),
         points(edge_points(mesh, WindingNumberEvaluator(mesh), Rule{}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
     face_points = FacePoints(cells, points, creases, tolerance, kMargins, kind);
@@ -180,7 +180,7 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
           const std::uint32_t of_low = cells.cells.cell_at(cell, low);
           const EdgePoint& point = cells.points[cells.cells.cells()[of_low].edge(direction)];
           sources.push_back(point.source);
-          normals.push_back(point.normal);
+          normals.push_back(cells.creases.normal_of(point.source));
         }
       }
       // Each face of the box is two triangles.

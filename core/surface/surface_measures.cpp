@@ -155,31 +155,53 @@ class NearByNodes {
     std::array<std::int64_t, 3> cell;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double index =
-          std::floor((p[axis] - lattice.coordinate(axis, lattice.index_min[a])) / lattice.spacing[axis]);
-      if (!(index >= 0.0 && index <= static_cast<double>(lattice.counts[a] - 2))) return false;
+      const double index = (p[axis] - lattice.coordinate(axis, lattice.index_min[a])) / lattice.spacing[axis];
+      if (!(index >= 0.0 && index < static_cast<double>(lattice.counts[a] - 1))) return false;
       cell[a] = static_cast<std::int64_t>(index);
     }
+    if (has_all_near(p, cell) && is_mixed(cell)) return true;
     return are_mixed(p, cell, 0, 1) || are_mixed(p, cell, -1, 2);
   }
 
  private:
+  [[nodiscard]] double off(const Vec3& p, int axis, std::int64_t node) const {
+    const Lattice& lattice = inside_.lattice();
+    const double to = p[axis] - lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)] + node);
+    return to * to;
+  }
+
+  // All corners of the cell, as those of most cells are.
+  [[nodiscard]] bool has_all_near(const Vec3& p, const std::array<std::int64_t, 3>& cell) const {
+    const auto most = [&](int axis) {
+      const std::int64_t node = cell[static_cast<std::size_t>(axis)];
+      return std::max(off(p, axis, node), off(p, axis, node + 1));
+    };
+    return most(1) + most(2) + most(0) < most_square_;
+  }
+
+  // Whether the cell has corners of both kinds.
+  [[nodiscard]] bool is_mixed(const std::array<std::int64_t, 3>& cell) const {
+    const auto [i, j, k] = cell;
+    unsigned inside = 0;
+    for (const std::int64_t z : {k, k + 1}) {
+      for (const std::int64_t y : {j, j + 1})
+        inside += (inside_.holds(i, y, z) ? 1U : 0U) + (inside_.holds(i + 1, y, z) ? 1U : 0U);
+    }
+    return inside != 0 && inside != 8;
+  }
+
   // Whether nodes from `first` to `last`, as seen from the cell's lowest one, that are near are of both kinds.
   [[nodiscard]] bool are_mixed(const Vec3& p, const std::array<std::int64_t, 3>& cell, std::int64_t first,
                                std::int64_t last) const {
     const Lattice& lattice = inside_.lattice();
-    const auto off = [&](int axis, std::int64_t node) {
-      const double to = p[axis] - lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)] + node);
-      return to * to;
-    };
     const auto begin = [&](std::size_t axis) { return std::max<std::int64_t>(cell[axis] + first, 0); };
     const auto end = [&](std::size_t axis) { return std::min(cell[axis] + last, lattice.counts[axis] - 1) + 1; };
     bool any = false, all = true;
     for (std::int64_t k = begin(2); k < end(2); ++k) {
       for (std::int64_t j = begin(1); j < end(1); ++j) {
-        const double off_row = off(1, j) + off(2, k);
+        const double off_row = off(p, 1, j) + off(p, 2, k);
         for (std::int64_t i = begin(0); i < end(0); ++i) {
-          if (!(off_row + off(0, i) < most_square_)) continue;
+          if (!(off_row + off(p, 0, i) < most_square_)) continue;
           const bool holds = inside_.holds(i, j, k);
           any = any || holds;
           all = all && holds;

@@ -152,7 +152,8 @@ void CellCreases::find_ends(const SurfaceCells& cells) {
     }
   }
   for (std::size_t v = 0; v < is_end.size(); ++v) {
-    if (is_end[v]) cells.for_each_near(mesh_->vertices[v], kReach + kRounding, [&](auto cell) { near_ends_[cell] = 1; });
+    if (is_end[v])
+      cells.for_each_near(mesh_->vertices[v], kReach + kRounding, [&](auto cell) { near_ends_[cell] = 1; });
   }
 }
 

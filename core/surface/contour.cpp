@@ -150,8 +150,7 @@ void CellContour::find_points_within() {
 
 void CellContour::add_polygons() {
   const SurfaceCell& cell = cells_.cells()[cell_];
-  if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1))
-    spare_->edges[cell.edge(kuhn::kCorners - 1)] = 1;
+  if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1)) spare_->edges[cell.edge(kuhn::kCorners - 1)] = 1;
   for (const DiagonalPoint& point : polygons_.diagonals()) {
     if (point.is_inline) (point.is_above ? spare_->above : spare_->below)[point.edge] = 1;
   }

@@ -37,7 +37,8 @@ struct SparePoints {
 
   // Both cells at a diagonal must be of polygons.
   void settle_edges() {
-    for (std::size_t n = 0; n < edges.size(); ++n) edges[n] = static_cast<std::uint8_t>(edges[n] | (above[n] & below[n]));
+    for (std::size_t n = 0; n < edges.size(); ++n)
+      edges[n] = static_cast<std::uint8_t>(edges[n] | (above[n] & below[n]));
     above = below = {};
   }
 };

@@ -10,11 +10,7 @@
 namespace raycone {
 namespace {
 
-// 64 bits of mantissa, so that the differences below keep what doubles can store.
 using Long = long double;
-struct LongVec3 {
-  Long x, y, z;
-};
 
 LongVec3 long_difference(const Vec3& a, const Vec3& b) {
   return {Long{a.x} - Long{b.x}, Long{a.y} - Long{b.y}, Long{a.z} - Long{b.z}};
@@ -28,6 +24,15 @@ Long long_dot(const LongVec3& a, const LongVec3& b) { return a.x * b.x + a.y * b
 
 LongVec3 long_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return long_cross(long_difference(b, a), long_difference(c, a));
+}
+
+// The sign of a cross product of two differences times a third one, as far as that is sure; else 0. `terms`: the
+// magnitudes of the products that `turn` has, added.
+int sure_sign(const Vec3& turn, const Vec3& terms, const Vec3& step) {
+  constexpr double kTrust = 0x1p-48, kUnderflow = 0x1p-900;  // ten roundings are less
+  constexpr Vec3 kTiny{0x1p-1000, 0x1p-1000, 0x1p-1000};     // more than what underflows in `turn`, times 2^48
+  const double volume = dot(turn, step), trust = kTrust * dot(terms + kTiny, absolute(step)) + kUnderflow;
+  return static_cast<int>(volume > trust) - static_cast<int>(volume < -trust);
 }
 
 bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -46,6 +51,12 @@ bool line_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
   return first * third >= 0 && second * third >= 0;
 }
 
+// Of a plane that is as far from the ends, on the way from the first to the second.
+double place_between(Long of_first, Long of_second) {
+  const Long at = of_first / (of_first + of_second);
+  return at >= 0 && at <= 1 ? static_cast<double>(at) : 0.5;  // 0 / 0, where a needle's normal underflows
+}
+
 // segment_hit() of segments whose ends are on these sides of the triangle's plane.
 std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, int side_p,
                                   int side_q) {
@@ -54,10 +65,8 @@ std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, c
   if (side_p == 0) return 0.0;
   if (side_q == 0) return 1.0;
   const LongVec3 normal = long_normal(a, b, c);
-  const Long of_p = std::abs(long_dot(normal, long_difference(p, a)));
-  const Long of_q = std::abs(long_dot(normal, long_difference(q, a)));
-  const Long at = of_p / (of_p + of_q);
-  return at >= 0 && at <= 1 ? static_cast<double>(at) : 0.5;  // 0 / 0, where a needle's normal underflows
+  return place_between(std::abs(long_dot(normal, long_difference(p, a))),
+                       std::abs(long_dot(normal, long_difference(q, a))));
 }
 
 }  // namespace
@@ -69,28 +78,72 @@ std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, c
 
 void HitFinder::enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   end_ = end;
-  triangles_.clear();
+  count_ = 0;
   for (const std::uint32_t triangle : triangles) {
     const Triangle& t = mesh.triangles[triangle];
-    triangles_.push_back({&mesh.vertices[t[0]], &mesh.vertices[t[1]], &mesh.vertices[t[2]],
-                          box_of_triangle(mesh, triangle), triangle, std::nullopt});
+    if (count_ == triangles_.size()) triangles_.emplace_back();
+    Known& known = triangles_[count_++];
+    known.a = &mesh.vertices[t[0]];
+    known.b = &mesh.vertices[t[1]];
+    known.c = &mesh.vertices[t[2]];
+    known.box = box_of_triangle(mesh, triangle);
+    known.triangle = triangle;
+    known.has_turns = known.has_normal = false;
   }
+}
+
+HitFinder::Turn HitFinder::turn_of(const Vec3& u, const Vec3& v) { return {cross(u, v), cross_terms(u, v)}; }
+
+void HitFinder::find_turns(Known& t) const {
+  const Vec3 a = *t.a - end_, b = *t.b - end_, c = *t.c - end_;
+  t.sides = {turn_of(a, b), turn_of(b, c), turn_of(c, a)};
+  t.normal = turn_of(*t.b - *t.a, *t.c - *t.a);
+  t.side = plane_side_of(t, end_);
+  t.has_turns = true;
+}
+
+int HitFinder::plane_side_of(const Known& t, const Vec3& p) {
+  const int side = sure_sign(t.normal.value, t.normal.terms, p - *t.a);
+  return side != 0 ? side : plane_side(*t.a, *t.b, *t.c, p);
+}
+
+// Of the line through the end and another point, which is not parallel to the triangle.
+bool HitFinder::passes_triangle(const Known& t, const Vec3& other) const {
+  const Vec3 step = other - end_;
+  const std::array<const Vec3*, 4> corners{t.a, t.b, t.c, t.a};
+  std::array<int, 3> sides;
+  for (std::size_t n = 0; n < sides.size(); ++n) {
+    sides[n] = sure_sign(t.sides[n].value, t.sides[n].terms, step);
+    if (sides[n] == 0) sides[n] = plane_side(end_, other, *corners[n], *corners[n + 1]);
+  }
+  return sides[0] * sides[1] >= 0 && sides[0] * sides[2] >= 0 && sides[1] * sides[2] >= 0;
+}
+
+std::optional<double> HitFinder::hit(Known& t, const Vec3& other, bool from_end) const {
+  if (!t.has_turns) find_turns(t);
+  const int side = plane_side_of(t, other);
+  if (side == t.side || !passes_triangle(t, other)) return std::nullopt;  // both 0, too
+  if (t.side == 0) return from_end ? 0.0 : 1.0;
+  if (side == 0) return from_end ? 1.0 : 0.0;
+  if (!t.has_normal) {
+    t.long_normal = long_normal(*t.a, *t.b, *t.c);
+    t.of_end = std::abs(long_dot(t.long_normal, long_difference(end_, *t.a)));
+    t.has_normal = true;
+  }
+  const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
+  return from_end ? place_between(t.of_end, of_other) : place_between(of_other, t.of_end);
 }
 
 void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits) {
   hits.clear();
   const Vec3 lower{std::min(end_.x, other.x), std::min(end_.y, other.y), std::min(end_.z, other.z)};
   const Vec3 upper{std::max(end_.x, other.x), std::max(end_.y, other.y), std::max(end_.z, other.z)};
-  for (Known& t : triangles_) {
+  for (Known& t : std::span(triangles_).first(count_)) {
     if (upper.x < t.box.lower.x || lower.x > t.box.upper.x || upper.y < t.box.lower.y || lower.y > t.box.upper.y ||
         upper.z < t.box.lower.z || lower.z > t.box.upper.z) {
       continue;
     }
-    if (!t.side) t.side = plane_side(*t.a, *t.b, *t.c, end_);
-    const int side = plane_side(*t.a, *t.b, *t.c, other);
-    const auto hit = from_end ? hit_between(end_, other, *t.a, *t.b, *t.c, *t.side, side)
-                              : hit_between(other, end_, *t.a, *t.b, *t.c, side, *t.side);
-    if (hit) hits.push_back({*hit, t.triangle});
+    if (const std::optional<double> at = hit(t, other, from_end)) hits.push_back({*at, t.triangle});
   }
   if (hits.size() > 1)
     std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });

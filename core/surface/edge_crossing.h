@@ -1,6 +1,8 @@
 // Where a segment meets triangles.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +24,11 @@ struct SegmentHit {
 [[nodiscard]] std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                 const Vec3& c);
 
+// With 64 bits of mantissa, so that differences keep what doubles can store.
+struct LongVec3 {
+  long double x = 0, y = 0, z = 0;
+};
+
 // segment_hit() of segments that have an end in common, with the same triangles. What they have in common is found
 // once.
 class HitFinder {
@@ -33,15 +40,32 @@ class HitFinder {
   void find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits);
 
  private:
+  // The cross product of two differences of points.
+  struct Turn {
+    Vec3 value, terms;  // terms: the magnitudes of its products, added
+  };
+  // What is not known yet is found when a segment's box meets that of the triangle.
   struct Known {
     const Vec3 *a, *b, *c;
     Box box;
     std::uint32_t triangle;
-    std::optional<int> side;  // of its plane, on which the end is
+    bool has_turns = false, has_normal = false;
+    int side = 0;               // of its plane, on which the end is
+    Turn normal;                // of its plane
+    std::array<Turn, 3> sides;  // of the planes through the end and a side
+    LongVec3 long_normal;
+    long double of_end = 0;  // how far the end is from its plane, times the normal's length
   };
 
+  void find_turns(Known& t) const;
+  [[nodiscard]] static Turn turn_of(const Vec3& u, const Vec3& v);
+  [[nodiscard]] static int plane_side_of(const Known& t, const Vec3& p);
+  [[nodiscard]] bool passes_triangle(const Known& t, const Vec3& other) const;
+  [[nodiscard]] std::optional<double> hit(Known& t, const Vec3& other, bool from_end) const;
+
   Vec3 end_;
-  std::vector<Known> triangles_;
+  std::vector<Known> triangles_;  // the first `count_` of them: others are old
+  std::size_t count_ = 0;
 };
 
 // The unit normal of a triangle that has an area; within 1e-15 unless it is a needle.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <numeric>
 #include <span>
 
@@ -12,13 +13,13 @@ namespace {
 
 constexpr std::int64_t kSlabNodes = std::int64_t{1} << 22;
 
-// Eight bytes that are 0 or 1, as bits. The product brings the lowest bit of byte n to bit 56 + n, and no two bits to one
-// place: nothing is carried.
+// Eight bytes that are 0 or 1, as bits. The product brings that of byte n to bit 56 + n. No two bits come to one place,
+// so nothing is carried.
 std::uint64_t bits_of(const std::uint8_t* bytes) {
-  constexpr std::uint64_t kGather = 0x0102'0408'1020'4080;
+  constexpr std::uint64_t kFromLow = 0x0102'0408'1020'4080, kFromHigh = 0x8040'2010'0804'0201;
   std::uint64_t word = 0;
-  for (unsigned n = 0; n < 8; ++n) word |= std::uint64_t{bytes[n]} << 8 * n;
-  return word * kGather >> 56U;
+  std::memcpy(&word, bytes, sizeof word);
+  return word * (std::endian::native == std::endian::little ? kFromLow : kFromHigh) >> 56U;
 }
 
 LatticeBlock slab_of_nodes(const Lattice& lattice, std::int64_t first_layer) {

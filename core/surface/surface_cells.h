@@ -102,8 +102,8 @@ class SurfaceCells {
 
   Lattice lattice_;
   std::vector<SurfaceCell> cells_;
-  // Of each cell, in the rows (j + 1, k), (j, k + 1) and (j + 1, k + 1) of its own (j, k): the first cell whose x is not
-  // below its own.
+  // Of each cell, in the rows (j + 1, k), (j, k + 1) and (j + 1, k + 1) of its own (j, k): the first cell whose x is
+  // not below its own.
   std::vector<std::array<std::uint32_t, 3>> ahead_;
   std::vector<std::uint32_t> rows_;
   std::uint32_t edges_ = 0;

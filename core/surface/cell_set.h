@@ -2,11 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
 #include "core/surface/node_set.h"
 
 namespace raycone {
@@ -15,19 +16,37 @@ namespace raycone {
 // is outside of the lattice has the cells at its border.
 class CellSet {
  public:
+  using Cell = std::array<std::int32_t, 3>;
+  // Those of a box: all from the first to the last along each axis.
+  struct Range {
+    Cell first, last;
+  };
+
   explicit CellSet(const Lattice& lattice) : cells_(lattice) {
     for (int axis = 0; axis < 3; ++axis) per_length_[axis] = 1.0 / lattice.spacing[axis];
   }
 
-  void insert(const Box& box) {
-    for_each_cell(box, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+  [[nodiscard]] Cell cell_of(const Vec3& p) const { return {cell_at(p, 0), cell_at(p, 1), cell_at(p, 2)}; }
+
+  // Of the box of a triangle with corners in these cells.
+  [[nodiscard]] static Range range_of(const Cell& a, const Cell& b, const Cell& c) {
+    Range range;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      range.first[axis] = std::min({a[axis], b[axis], c[axis]});
+      range.last[axis] = std::max({a[axis], b[axis], c[axis]});
+    }
+    return range;
+  }
+
+  void insert(const Range& range) {
+    for_each_cell(range, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
       cells_.insert(i, j, k);
       return true;
     });
   }
-  [[nodiscard]] bool meets(const Box& box) const {
+  [[nodiscard]] bool meets(const Range& range) const {
     bool found = false;
-    for_each_cell(box, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+    for_each_cell(range, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
       found = cells_.holds(i, j, k);
       return !found;
     });
@@ -35,22 +54,20 @@ class CellSet {
   }
 
  private:
-  [[nodiscard]] std::int64_t cell_at(const Vec3& p, int axis) const {
+  [[nodiscard]] std::int32_t cell_at(const Vec3& p, int axis) const {
     const Lattice& lattice = cells_.lattice();
     const auto a = static_cast<std::size_t>(axis);
     const double index = (p[axis] - lattice.origin[axis]) * per_length_[axis];
-    const auto first = static_cast<double>(lattice.index_min[a]), last = static_cast<double>(lattice.counts[a] - 1);
-    return static_cast<std::int64_t>(std::clamp(index - first, 0.0, last));
+    const auto first = static_cast<double>(lattice.index_min[a]);
+    const auto last = static_cast<double>(std::min<std::int64_t>(lattice.counts[a] - 1, INT32_MAX));
+    return static_cast<std::int32_t>(std::clamp(index - first, 0.0, last));
   }
   // As long as visit(i, j, k) returns true.
   template <class Visit>
-  void for_each_cell(const Box& box, const Visit& visit) const {
-    const std::int64_t first_i = cell_at(box.lower, 0), last_i = cell_at(box.upper, 0);
-    const std::int64_t first_j = cell_at(box.lower, 1), last_j = cell_at(box.upper, 1);
-    const std::int64_t last_k = cell_at(box.upper, 2);
-    for (std::int64_t k = cell_at(box.lower, 2); k <= last_k; ++k) {
-      for (std::int64_t j = first_j; j <= last_j; ++j) {
-        for (std::int64_t i = first_i; i <= last_i; ++i) {
+  static void for_each_cell(const Range& range, const Visit& visit) {
+    for (std::int64_t k = range.first[2]; k <= range.last[2]; ++k) {
+      for (std::int64_t j = range.first[1]; j <= range.last[1]; ++j) {
+        for (std::int64_t i = range.first[0]; i <= range.last[0]; ++i) {
           if (!visit(i, j, k)) return;
         }
       }

@@ -152,13 +152,20 @@ struct MeshPart {
 // Gives the part all changed faces, and those whose boxes may meet one's.
 void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice, MeshPart& part) {
   CellSet cells(lattice);
+  auto cell_of = sized_on_all_threads<CellSet::Cell>(mesh.vertices.size());
+  parallel_for(cell_of.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) cell_of[v] = cells.cell_of(mesh.vertices[v]);
+  });
+  const auto range_of = [&](const Triangle& t) {
+    return CellSet::range_of(cell_of[t[0]], cell_of[t[1]], cell_of[t[2]]);
+  };
   for (const std::uint32_t face : change.faces) {
-    if (!is_gone(mesh.triangles[face])) cells.insert(box_of_triangle(mesh, face));
+    if (!is_gone(mesh.triangles[face])) cells.insert(range_of(mesh.triangles[face]));
   }
   auto is_near = sized_on_all_threads<std::uint8_t>(mesh.triangles.size());
   parallel_for(is_near.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (auto face = static_cast<std::uint32_t>(begin); face < end; ++face)
-      is_near[face] = !is_gone(mesh.triangles[face]) && cells.meets(box_of_triangle(mesh, face)) ? 1 : 0;
+      is_near[face] = !is_gone(mesh.triangles[face]) && cells.meets(range_of(mesh.triangles[face])) ? 1 : 0;
   });
   constexpr std::uint8_t kChanged = 2;
   for (const std::uint32_t face : change.faces) {

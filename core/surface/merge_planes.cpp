@@ -42,8 +42,35 @@ void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t
 // The numbers of faces by brick, and of each vertex the brick that has all of its faces.
 struct PlaneMerger::Bricks {
   std::vector<std::uint32_t> faces;
-  std::vector<std::size_t> begin;    // of each brick's in `faces`; one more at the end
-  std::vector<std::uint32_t> owner;  // kNone where several bricks have faces there; kUnmet where none has
+  std::vector<std::size_t> begin;     // of each brick's in `faces`; one more at the end
+  std::vector<std::uint32_t> owner;   // kNone where several bricks have faces there; kUnmet where none has
+  std::vector<std::uint32_t> places;  // of each brick among all of the lattice's
+
+  [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
+  [[nodiscard]] std::uint32_t place_of_owner(std::uint32_t vertex) const {
+    return owner[vertex] < count() ? places[owner[vertex]] : owner[vertex];
+  }
+};
+
+// What the second bricks were made of, and what they became. Faces have the numbers of the surface, or places among
+// those that the first bricks left.
+struct PlaneMerger::SecondPass {
+  Bricks bricks;
+  std::vector<std::uint32_t> faces;     // by their places
+  std::vector<Triangle> before, after;  // likewise
+  std::vector<std::uint8_t> settled_before, settled_after;
+  std::vector<std::uint32_t> into_after;
+  std::vector<bool> kept;
+  std::vector<std::vector<std::uint32_t>> unsettled;  // of each brick: vertices that it made so
+
+  // The place of each face of `now` that was there with the same corners; kNone for others.
+  [[nodiscard]] std::vector<std::uint32_t> same_faces(const SecondPass& now) const;
+  // A 1 for each brick of `now` that was there, with the same to merge. `same`: its same_faces().
+  [[nodiscard]] std::vector<std::uint8_t> same_bricks(const SecondPass& now,
+                                                      const std::vector<std::uint32_t>& same) const;
+  // Of such bricks, sets what these became.
+  void repeat(SecondPass& now, const std::vector<std::uint8_t>& known, const std::vector<std::uint32_t>& same,
+              MergedFaces& merged, std::vector<std::uint8_t>& settled) const;
 };
 
 // What faces and vertices are so far.
@@ -70,21 +97,39 @@ class BrickMerger {
         brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift);
       }
     });
-    std::vector<std::uint32_t> numbers(static_cast<std::size_t>(bricks_along(0) * bricks_along(1) * bricks_along(2)),
-                                       kNone);
-    std::uint32_t count = 0;
+    std::vector<std::uint32_t> numbers(all_bricks(), kNone), places;
     for (std::uint32_t& brick : brick_of) {
       std::uint32_t& number = numbers[brick];
-      if (number == kNone) number = count++;
+      if (number == kNone) {
+        number = static_cast<std::uint32_t>(places.size());
+        places.push_back(brick);
+      }
       brick = number;
     }
-    return sorted(brick_of, count);
+    Bricks result = sorted(brick_of, places.size());
+    result.places = std::move(places);
+    return result;
+  }
+
+  // How many the lattice has.
+  [[nodiscard]] std::size_t all_bricks() const {
+    return static_cast<std::size_t>(bricks_along(0) * bricks_along(1) * bricks_along(2));
   }
 
   void merge_all(const Bricks& bricks) {
     local_.assign(vertices_.size(), kNone);
     parallel_for(bricks.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
+    });
+  }
+  // But for those that are `known`. Sets `unsettled` of the others to the vertices that each has made so.
+  void merge_unknown(const Bricks& bricks, const std::vector<std::uint8_t>& known,
+                     std::vector<std::vector<std::uint32_t>>& unsettled) {
+    local_.assign(vertices_.size(), kNone);
+    parallel_for(bricks.count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) {
+        if (known[brick] == 0) merge_one(bricks, brick, &unsettled[brick]);
+      }
     });
   }
   void merge_whole() { merge_all(sorted(std::vector<std::uint32_t>(work_.triangles.size(), 0), 1)); }
@@ -134,8 +179,10 @@ class BrickMerger {
   }
 
   [[nodiscard]] Bricks sorted(const std::vector<std::uint32_t>& brick_of, std::size_t count) const {
-    Bricks result{std::vector<std::uint32_t>(brick_of.size()), std::vector<std::size_t>(count + 1, 0),
-                  std::vector<std::uint32_t>(vertices_.size(), kUnmet)};
+    Bricks result{std::vector<std::uint32_t>(brick_of.size()),
+                  std::vector<std::size_t>(count + 1, 0),
+                  std::vector<std::uint32_t>(vertices_.size(), kUnmet),
+                  {}};
     for (const std::uint32_t brick : brick_of) ++result.begin[brick + 1];
     for (std::size_t brick = 0; brick < count; ++brick) result.begin[brick + 1] += result.begin[brick];
     std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
@@ -160,7 +207,7 @@ class BrickMerger {
   }
 
   // Bricks change their own faces only, and where their own vertices are pulled.
-  void merge_one(const Bricks& bricks, std::uint32_t brick) {
+  void merge_one(const Bricks& bricks, std::uint32_t brick, std::vector<std::uint32_t>* unsettled = nullptr) {
     const auto faces =
         std::span(bricks.faces).subspan(bricks.begin[brick], bricks.begin[brick + 1] - bricks.begin[brick]);
     if (faces.size() > PatchMerger::kMostFaces) return;
@@ -177,7 +224,9 @@ class BrickMerger {
     }
     for (std::uint32_t v = 0; v < global.size(); ++v) {
       if (merger.into()[v] != v) work_.into[global[v]] = global[merger.into()[v]];
-      note_settled(global[v], patch.settled[v] != 0, merger.is_settled(v));
+      const bool was_settled = patch.settled[v] != 0, is_settled = merger.is_settled(v);
+      if (unsettled && was_settled && !is_settled) unsettled->push_back(global[v]);
+      note_settled(global[v], was_settled, is_settled);
     }
   }
 
@@ -253,6 +302,65 @@ void drop_gone(MergedFaces& faces) {
 
 }  // namespace
 
+// Both lists increase.
+std::vector<std::uint32_t> PlaneMerger::SecondPass::same_faces(const SecondPass& now) const {
+  std::vector<std::uint32_t> same(now.faces.size(), kNone);
+  std::uint32_t place = 0;
+  for (std::size_t n = 0; n < same.size(); ++n) {
+    while (place < faces.size() && faces[place] < now.faces[n]) ++place;
+    if (place < faces.size() && faces[place] == now.faces[n] && before[place] == now.before[n]) same[n] = place;
+  }
+  return same;
+}
+
+// A brick is another one if a face came, or went, or one of its vertices is kept, settled or owned as it was not.
+std::vector<std::uint8_t> PlaneMerger::SecondPass::same_bricks(const SecondPass& now,
+                                                               const std::vector<std::uint32_t>& same) const {
+  std::vector<std::uint32_t> size_then(bricks.places.empty() ? 0 : 1 + std::ranges::max(bricks.places), 0);
+  for (std::size_t brick = 0; brick < bricks.count(); ++brick)
+    size_then[bricks.places[brick]] = static_cast<std::uint32_t>(bricks.begin[brick + 1] - bricks.begin[brick]);
+  const auto is_same_vertex = [&](std::uint32_t v) {
+    return kept[v] == now.kept[v] && settled_before[v] == now.settled_before[v] &&
+           bricks.place_of_owner(v) == now.bricks.place_of_owner(v);
+  };
+  std::vector<std::uint8_t> result(now.bricks.count(), 0);
+  parallel_for(result.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t brick = begin; brick < end; ++brick) {
+      const auto of_brick =
+          std::span(now.bricks.faces)
+              .subspan(now.bricks.begin[brick], now.bricks.begin[brick + 1] - now.bricks.begin[brick]);
+      const std::uint32_t place = now.bricks.places[brick];
+      const bool is_same = place < size_then.size() && size_then[place] == of_brick.size() &&
+                           std::ranges::all_of(of_brick, [&](std::uint32_t face) {
+                             return same[face] != kNone && std::ranges::all_of(now.before[face], is_same_vertex);
+                           });
+      result[brick] = is_same ? 1 : 0;
+    }
+  });
+  return result;
+}
+
+void PlaneMerger::SecondPass::repeat(SecondPass& now, const std::vector<std::uint8_t>& known,
+                                     const std::vector<std::uint32_t>& same, MergedFaces& merged,
+                                     std::vector<std::uint8_t>& settled) const {
+  std::vector<std::uint32_t> brick_then(bricks.places.empty() ? 0 : 1 + std::ranges::max(bricks.places), kNone);
+  for (std::uint32_t brick = 0; brick < bricks.count(); ++brick) brick_then[bricks.places[brick]] = brick;
+  for (std::size_t brick = 0; brick < known.size(); ++brick) {
+    if (known[brick] == 0) continue;
+    for (std::size_t n = now.bricks.begin[brick]; n < now.bricks.begin[brick + 1]; ++n) {
+      const std::uint32_t face = now.bricks.faces[n];
+      merged.triangles[face] = after[same[face]];
+    }
+    now.unsettled[brick] = unsettled[brick_then[now.bricks.places[brick]]];
+    for (const std::uint32_t v : now.unsettled[brick]) settled[v] = 0;
+  }
+  for (std::size_t v = 0; v < now.bricks.owner.size(); ++v) {
+    if (now.bricks.owner[v] >= known.size() || known[now.bricks.owner[v]] == 0) continue;
+    merged.into[v] = into_after[v];
+    settled[v] = settled_after[v];
+  }
+}
+
 PlaneMerger::PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
                          const MergeLimits& limits)
     : surface_(surface), input_(input), lattice_(lattice), limits_(limits) {}
@@ -271,8 +379,7 @@ MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
   std::vector<std::uint8_t> settled = settled_;
   BrickMerger merger(surface_.mesh.vertices, input_, lattice_, kept, limits_,
                      {merged.triangles, merged.sources, merged.into, settled});
-  constexpr double kHalf = 0.5;
-  merger.merge_all(merger.bricks(kHalf));
+  merge_second_bricks(kept, merger, merged, settled);
   drop_gone(merged);
   merger.merge_whole();
   drop_gone(merged);
@@ -280,6 +387,30 @@ MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
     while (merged.into[target] != target) target = merged.into[target];
   }
   return merged;
+}
+
+// Where the first bricks left the same as in the last call, the second ones make the same of it.
+void PlaneMerger::merge_second_bricks(const std::vector<bool>& kept, BrickMerger& merger, MergedFaces& merged,
+                                      std::vector<std::uint8_t>& settled) {
+  constexpr double kHalf = 0.5;
+  auto now = std::make_shared<SecondPass>();
+  now->bricks = merger.bricks(kHalf);
+  now->faces = merged.faces;
+  now->before = merged.triangles;
+  now->settled_before = settled;
+  now->kept = kept;
+  now->unsettled.resize(now->bricks.count());
+  std::vector<std::uint8_t> known(now->bricks.count(), 0);
+  if (second_) {
+    const std::vector<std::uint32_t> same = second_->same_faces(*now);
+    known = second_->same_bricks(*now, same);
+    second_->repeat(*now, known, same, merged, settled);
+  }
+  merger.merge_unknown(now->bricks, known, now->unsettled);
+  now->after = merged.triangles;
+  now->into_after = merged.into;
+  now->settled_after = settled;
+  second_ = std::move(now);
 }
 
 void PlaneMerger::merge_first_bricks(const std::vector<bool>& kept) {

@@ -20,6 +20,8 @@ struct MergedFaces {
   std::vector<std::uint32_t> faces;  // of merge_planes(): the numbers that its faces had before, increasing
 };
 
+class BrickMerger;
+
 // The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
 // planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
 // longer ones. Faces keep their order and sources. The same surface everywhere, topologically and within `limits.most`;
@@ -37,7 +39,10 @@ class PlaneMerger {
   friend class BrickMerger;
   struct Work;
   struct Bricks;
+  struct SecondPass;
   void merge_first_bricks(const std::vector<bool>& kept);
+  void merge_second_bricks(const std::vector<bool>& kept, BrickMerger& merger, MergedFaces& merged,
+                           std::vector<std::uint8_t>& settled);
 
   const SurfaceMesh& surface_;
   const TriangleMesh& input_;
@@ -49,6 +54,7 @@ class PlaneMerger {
   std::vector<std::uint32_t> into_;
   std::vector<std::uint8_t> settled_;
   std::vector<bool> kept_;
+  std::shared_ptr<SecondPass> second_;  // of the last call, likewise
 };
 
 // The same, once.

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/planes_point.h"
 
@@ -39,20 +38,9 @@ std::vector<SideUse> uses_of(const TriangleMesh& mesh) {
   return uses;
 }
 
-std::vector<Vec3> normals_of(const TriangleMesh& mesh) {
-  std::vector<Vec3> normals(mesh.triangles.size());
-  parallel_for(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t triangle = begin; triangle < end; ++triangle) {
-      const Triangle& t = mesh.triangles[triangle];
-      normals[triangle] = unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    }
-  });
-  return normals;
-}
-
 // Of the angle between two triangles at an edge of both.
-double cosine_at(const std::vector<Vec3>& normals, const SideUse& a, const SideUse& b) {
-  const double cosine = dot(normals[a.triangle], normals[b.triangle]);
+double cosine_at(const TriangleNormals& normals, const SideUse& a, const SideUse& b) {
+  const double cosine = dot(normals.of(a.triangle), normals.of(b.triangle));
   return a.forward == b.forward ? -cosine : cosine;
 }
 
@@ -116,19 +104,20 @@ class Nearest {
 
 }  // namespace
 
-CellCreases::CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles, const SurfaceCells& cells)
+CellCreases::CellCreases(const TriangleMesh& mesh, const TriangleNormals& normals, const CellTriangles& triangles,
+                         const SurfaceCells& cells)
     : mesh_(&mesh),
+      normals_(&normals),
       triangles_(&triangles),
       sides_(mesh.triangles.size(), 0),
       beyond_(mesh.triangles.size()),
-      parts_(mesh.triangles.size()),
-      normals_(normals_of(mesh)) {
+      parts_(mesh.triangles.size()) {
   std::iota(parts_.begin(), parts_.end(), 0U);
   const std::vector<SideUse> uses = uses_of(mesh);
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     const SideUse& first = uses[begin];
     while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
-    const double cosine = end - begin == 2 ? cosine_at(normals_, first, uses[begin + 1]) : 0.0;
+    const double cosine = end - begin == 2 ? cosine_at(normals, first, uses[begin + 1]) : 0.0;
     const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kFine ? 0U : 1U << kCreaseBit) |
                           (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
     sides_[first.triangle] = static_cast<std::uint16_t>(sides_[first.triangle] | bits << first.side);

@@ -10,6 +10,7 @@
 #include "core/surface/cell_triangles.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/planes_point.h"
+#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 
@@ -21,8 +22,9 @@ inline constexpr double kSharpCosine = 0.9659258262890683;
 class CellCreases {
  public:
   CellCreases() = default;  // none
-  // The first two as long as this. Precondition: `mesh` is welded.
-  CellCreases(const TriangleMesh& mesh, const CellTriangles& triangles, const SurfaceCells& cells);
+  // The first three as long as this. Precondition: `mesh` is welded.
+  CellCreases(const TriangleMesh& mesh, const TriangleNormals& normals, const CellTriangles& triangles,
+              const SurfaceCells& cells);
 
   // A side of a triangle, and its box.
   struct Crease {
@@ -43,7 +45,7 @@ class CellCreases {
   // The unit normal of a triangle that is the source of a point; zero of kHole, of triangles without area, and where
   // there are no creases.
   [[nodiscard]] Vec3 normal_of(std::int32_t source) const {
-    return source == kHole || normals_.empty() ? Vec3{} : normals_[static_cast<std::size_t>(source)];
+    return source == kHole || !normals_ ? Vec3{} : normals_->of(static_cast<std::uint32_t>(source));
   }
   // The same for triangles that hang together by edges that are no creases, nor fine ones: a flat part of the mesh.
   [[nodiscard]] std::uint32_t part_of(std::uint32_t triangle) const { return parts_[triangle]; }
@@ -55,13 +57,13 @@ class CellCreases {
   void find_ends(const SurfaceCells& cells);
 
   const TriangleMesh* mesh_ = nullptr;
+  const TriangleNormals* normals_ = nullptr;
   const CellTriangles* triangles_ = nullptr;
   // Of each triangle: bits for sides that no lower triangle has and that are creases, fine ones or others; for those
   // that are no fine ones; and for those that are sharp.
   std::vector<std::uint16_t> sides_;
   std::vector<std::array<std::uint32_t, 3>> beyond_;  // the triangle on the other side of each of these
   std::vector<std::uint32_t> parts_;                  // of each triangle, the lowest one of its part
-  std::vector<Vec3> normals_;                         // likewise
   double end_reach_ = -1.0;
   std::vector<std::uint8_t> near_ends_;  // of each cell, whether an end of a crease is as near as that
 };

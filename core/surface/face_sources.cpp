@@ -12,8 +12,6 @@
 #include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
-#include "core/surface/nearest_triangle.h"
-#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 namespace {
@@ -52,20 +50,6 @@ bool may_be_of(const Corners& face, const Vec3& point_of_source, const Vec3& nor
   return is_along(face, normal);
 }
 
-std::vector<std::uint32_t> doubtful_faces(const TriangleMesh& input, double off, const SurfaceMesh& surface) {
-  std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
-  parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
-    TriangleNormals normals(input);
-    for (std::size_t face = begin; face < end; ++face) {
-      if (surface.sources[face] == kHole) continue;
-      const auto source = static_cast<std::uint32_t>(surface.sources[face]);
-      const Vec3& point = input.vertices[input.triangles[source][0]];
-      doubtful[face] = may_be_of(corners_of(surface.mesh, face), point, normals.of(source), off) ? 0 : 1;
-    }
-  });
-  return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
-}
-
 // Faces beside one that closes a hole, and in line with it, close it too, if they are on no triangle: at a rim all of
 // their corners may be. `may_close`: of each face, whether it is on none.
 void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surface) {
@@ -102,18 +86,35 @@ void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surfa
 
 }  // namespace
 
-void settle_sources(const TriangleMesh& input, double off, SurfaceMesh& surface) {
-  const std::vector<std::uint32_t> faces = doubtful_faces(input, off, surface);
+SourceSettler::SourceSettler(const TriangleMesh& input, const TriangleNormals& normals, double off)
+    : input_(input), normals_(normals), off_(off) {}
+
+std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surface) const {
+  std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
+  parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face) {
+      if (surface.sources[face] == kHole) continue;
+      const auto source = static_cast<std::uint32_t>(surface.sources[face]);
+      const Vec3& point = input_.vertices[input_.triangles[source][0]];
+      doubtful[face] = may_be_of(corners_of(surface.mesh, face), point, normals_.of(source), off_) ? 0 : 1;
+    }
+  });
+  return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
+}
+
+void SourceSettler::settle(SurfaceMesh& surface) {
+  const std::vector<std::uint32_t> faces = doubtful_faces(surface);
   if (faces.empty()) return;
-  const NearestTriangle nearest(input);
+  if (!nearest_) nearest_.emplace(input_);
   std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);
   parallel_for(faces.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       std::int32_t& source = surface.sources[faces[n]];
       const Vec3 middle = corners_of(surface.mesh, faces[n]).middle();
-      source = static_cast<std::int32_t>(nearest.of(middle, static_cast<std::uint32_t>(source)));
-      const Corners of_source = corners_of(input, static_cast<std::size_t>(source));
-      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), of_source.a, of_source.normal(), off) ? 0 : 1;
+      const std::uint32_t nearest = nearest_->of(middle, static_cast<std::uint32_t>(source));
+      source = static_cast<std::int32_t>(nearest);
+      const Vec3& point = input_.vertices[input_.triangles[nearest][0]];
+      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), point, normals_.of(nearest), off_) ? 0 : 1;
     }
   });
   spread_holes(off_mesh, surface);

@@ -16,11 +16,11 @@
 
 namespace raycone {
 
-Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits)
+Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
+                     const SharpenLimits& limits)
     : vertices_(surface.mesh.vertices), input_(input), limits_(limits) {
   auto of_all = sized_on_all_threads<Placed>(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    TriangleNormals normals(input_);
     for (std::size_t face = begin; face < end; ++face)
       of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face], normals);
   });
@@ -32,7 +32,7 @@ Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const Shar
 }
 
 // Faces over holes are in no plane, and belong to no strip.
-Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, TriangleNormals& normals) const {
+Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, const TriangleNormals& normals) const {
   constexpr double kTurned = 0.9986295347545738;  // cosine of 3 degrees
   if (source == kHole) return Placed::kInPlane;
   const auto triangle = static_cast<std::uint32_t>(source);

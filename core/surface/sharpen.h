@@ -31,8 +31,9 @@ struct SharpenLimits {
 class Sharpener {
  public:
   // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
-  // `input`, or kHole. Both meshes must stay, but for what edits change.
-  Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const SharpenLimits& limits);
+  // `input`, or kHole. Both meshes must stay, but for what edits change. `normals`: of `input`.
+  Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
+            const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 
@@ -82,7 +83,7 @@ class Sharpener {
     bool may_turn = true;
   };
 
-  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source, TriangleNormals& normals) const;
+  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source, const TriangleNormals& normals) const;
   void find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all);
   void add_to_strips(const Triangle& t);
   void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);

@@ -22,6 +22,7 @@
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/thicken.h"
+#include "core/surface/triangle_normals.h"
 #include "core/surface/vertex_places.h"
 
 namespace raycone {
@@ -40,9 +41,11 @@ class SurfaceMaker {
         evaluator_(evaluator),
         inside_(inside),
         options_(options),
+        normals_(mesh),
         cells_(inside),
         triangles_(mesh, cells_),
-        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, triangles_, cells_)),
+        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, normals_, triangles_, cells_)),
+        settler_(mesh, normals_, farthest_source(inside.lattice(), options.thickness)),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
@@ -113,9 +116,9 @@ class SurfaceMaker {
     spare = {};
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
-    settle_sources(mesh_, farthest_source(), surface);
+    settler_.settle(surface);
     if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins, fewer);
-    if (is_sharpened_) settle_sources(mesh_, farthest_source(), surface);
+    if (is_sharpened_) settler_.settle(surface);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
     FinishedSurface made{std::move(surface)};
     if (options_.merge_planes) made.merged = merge(made.surface, margins, kind);
@@ -125,7 +128,7 @@ class SurfaceMaker {
       const double most = farthest_pull(margins);
       made.bound_too_small = !(most > 0.0);
       made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
-      if (made.simplified) settle_sources(mesh_, farthest_source(), made.surface);
+      if (made.simplified) settler_.settle(made.surface);
     }
     return made;
   }
@@ -162,7 +165,7 @@ class SurfaceMaker {
       surface.mesh.triangles.resize(faces);
       surface.sources.resize(faces);
     };
-    Sharpener sharpener(surface, mesh_,
+    Sharpener sharpener(surface, mesh_, normals_,
                         {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
     SurfaceEdit change = sharpener.sharpen();
     if (sharpener.pulls() == 0) return drop_spares();
@@ -217,9 +220,8 @@ class SurfaceMaker {
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
-  [[nodiscard]] double farthest_source() const {
-    const Vec3& h = inside_.lattice().spacing;
-    return options_.thickness + std::min({h.x, h.y, h.z}) / 4;
+  static double farthest_source(const Lattice& lattice, double thickness) {
+    return thickness + std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}) / 4;
   }
 
   // What is left of `simplify` for pulls. Merging has moved points by a few margins already.
@@ -268,9 +270,11 @@ class SurfaceMaker {
   const WindingNumberEvaluator& evaluator_;
   const NodeSet& inside_;
   const SurfaceOptions& options_;
+  TriangleNormals normals_;
   SurfaceCells cells_;
   CellTriangles triangles_;
   CellCreases creases_;
+  SourceSettler settler_;
 
   double tolerance_;
   std::vector<EdgePoint> points_;

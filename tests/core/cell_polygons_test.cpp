@@ -49,6 +49,7 @@ TriangleMesh octahedron() {
 // What the steps before contour() make of a mesh.
 struct Cells {
   TriangleMesh mesh;
+  TriangleNormals normals;
   NodeSet nodes;
   SurfaceCells cells;
   CellTriangles triangles;
@@ -59,10 +60,11 @@ struct Cells {
 
   Cells(TriangleMesh of, const Lattice& lattice, PointsOfFaces kind = PointsOfFaces::kOne)
       : mesh(std::move(of)),
+        normals(mesh),
         nodes(nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice)),
         cells(nodes),
         triangles(mesh, cells),
-        creases(mesh, triangles, cells),
+        creases(mesh, normals, triangles, cells),
         points(edge_points(mesh, WindingNumberEvaluator(mesh), Rule{}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
     face_points = FacePoints(cells, points, creases, tolerance, kMargins, kind);

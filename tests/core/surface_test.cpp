@@ -584,12 +584,12 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   std::iota(surface.sources.begin(), surface.sources.end(), 0);
   surface.sources[0] = surface.sources[1] = on_the_top(cut);
   const SharpenLimits limits{1e-9, 0.2, false};
-  Sharpener of_cut(surface, cut, limits);
+  Sharpener of_cut(surface, cut, TriangleNormals(cut), limits);
   static_cast<void>(of_cut.sharpen());
   EXPECT_EQ(of_cut.pulls(), 0U);
   for (std::int32_t& source : surface.sources) source %= 24;  // triangles of the whole boxes
-  settle_sources(whole_box, 0.01, surface);
-  Sharpener of_whole(surface, whole_box, limits);
+  SourceSettler(whole_box, TriangleNormals(whole_box), 0.01).settle(surface);
+  Sharpener of_whole(surface, whole_box, TriangleNormals(whole_box), limits);
   of_whole.sharpen().apply(surface.mesh);
   EXPECT_EQ(of_whole.pulls(), 1U);  // the gap between four planes
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
@@ -614,8 +614,8 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   const TriangleMesh cut = test::joined(test::joined(cut_box(), second), others);
   const TriangleMesh whole = test::joined(test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), second_box), others);
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
-  settle_sources(whole, 0.01, surface);
-  Sharpener sharpener(surface, whole, {1e-9, 0.2, false});
+  SourceSettler(whole, TriangleNormals(whole), 0.01).settle(surface);
+  Sharpener sharpener(surface, whole, TriangleNormals(whole), {1e-9, 0.2, false});
   sharpener.sharpen().apply(surface.mesh);
   ASSERT_EQ(sharpener.pulls(), 2U);
   const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, false);
@@ -723,10 +723,10 @@ TEST(FaceSources, AreSettledWhereTheyCannotBe) {
   surface.sources[7] = kHole;
   own[7] = kHole;
   const SurfaceMesh before = surface;
-  settle_sources(input, 10.0, surface);
+  SourceSettler(input, TriangleNormals(input), 10.0).settle(surface);
   EXPECT_NE(surface.sources, before.sources);
   EXPECT_NE(surface.sources, own);  // parallel planes are within 10 of each other
-  settle_sources(input, 0.1, surface);
+  SourceSettler(input, TriangleNormals(input), 0.1).settle(surface);
   for (std::size_t face = 0; face < own.size(); ++face) {
     if (own[face] == kHole) {
       EXPECT_EQ(surface.sources[face], kHole);

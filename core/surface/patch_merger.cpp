@@ -34,10 +34,11 @@ double PatchMerger::Plane::distance(const Vec3& p) const { return std::abs(dot(n
 
 template <class Visit>
 void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
-  for (Corner corner = first_[v]; corner != kNoCorner; corner = next_[corner]) {
-    const std::uint32_t face = corner / 3, place = corner % 3;
-    const Triangle& t = faces_[face].corners;
-    if (!visit(face, t[place == 2 ? 0 : place + 1], t[place == 0 ? 2 : place - 1])) return;
+  for (Corner corner = first_[v], next = kNoCorner; corner != kNoCorner; corner = next) {
+    const std::uint32_t number = face_of(corner), place = place_of(corner);
+    const Face& face = faces_[number];
+    next = face.next[place];
+    if (!visit(number, face.corners[place == 2 ? 0 : place + 1], face.corners[place == 0 ? 2 : place - 1])) return;
   }
 }
 
@@ -47,24 +48,25 @@ PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, c
       limits_(limits),
       roles_(patch.roles),
       faces_(patch.triangles.size()),
-      needles_(patch.triangles.size()),
-      changed_(patch.triangles.size(), 0),
       first_(patch.vertices.size(), kNoCorner),
-      next_(3 * patch.triangles.size()),
       state_(patch.vertices.size()),
       touched_(patch.vertices.size(), 0),
       by_geometry_(patch.vertices.size(), 0),
       into_(patch.vertices.size()),
       marked_(patch.vertices.size(), 0) {
-  for (std::size_t face = 0; face < faces_.size(); ++face) faces_[face].corners = patch.triangles[face];
   // Backwards, so that chains are in the order of the faces.
-  for (auto corner = static_cast<Corner>(next_.size()); corner-- > 0;) {
-    Corner& first = first_[faces_[corner / 3].corners[corner % 3]];
-    next_[corner] = first;
-    first = corner;
+  for (auto number = static_cast<std::uint32_t>(faces_.size()); number-- > 0;) {
+    Face& face = faces_[number];
+    face.corners = patch.triangles[number];
+    face.is_hole = patch.sources[number] == kHole;
+    for (std::uint32_t place = 3; place-- > 0;) {
+      Corner& first = first_[face.corners[place]];
+      face.next[place] = first;
+      first = corner_of(number, place);
+    }
   }
   for (std::uint32_t v = 0; v < into_.size(); ++v) into_[v] = v;
-  for (std::uint32_t face = 0; face < faces_.size(); ++face) needles_[face] = is_needle(face) ? 1 : 0;
+  for (std::uint32_t face = 0; face < faces_.size(); ++face) faces_[face].is_needle = is_needle(face);
   spread(VertexRole::kForeign);
   spread(VertexRole::kKept);
   for (std::uint32_t v = 0; v < state_.size(); ++v) {
@@ -97,11 +99,13 @@ void PatchMerger::spread(VertexRole role) {
 
 // Faces of one source mostly follow each other, but bricks have thousands of sources.
 PatchMerger::SourcePlanes& PatchMerger::planes_of_source(std::int32_t source) {
+  if (sources_ > 0 && source_planes_[last_source_].source == source) return source_planes_[last_source_];
   if (2 * sources_ >= source_planes_.size()) grow_sources();
   const std::size_t mask = source_planes_.size() - 1;
   std::size_t place = static_cast<std::uint32_t>(source) * std::size_t{0x9E3779B1} >> 7U & mask;
   while (source_planes_[place].source != source && source_planes_[place].source != kNoSource)
     place = (place + 1) & mask;
+  last_source_ = place;
   SourcePlanes& planes = source_planes_[place];
   if (planes.source == kNoSource) {
     planes.source = source;
@@ -171,7 +175,7 @@ bool PatchMerger::is_needle(std::uint32_t face) const {
 
 // The points at each node first: while all of them are there, one is found that lies in all planes.
 void PatchMerger::merge() {
-  if (std::ranges::find(needles_, 1) != needles_.end()) pull_all(&PatchMerger::target_at_node);
+  if (std::ranges::any_of(faces_, &Face::is_needle)) pull_all(&PatchMerger::target_at_node);
   for (State& state : state_) state = state == State::kStays ? State::kWaits : state;
   pull_all(&PatchMerger::best_target);
   for (std::uint32_t& target : into_) {
@@ -198,15 +202,25 @@ void PatchMerger::pull_all(Target target_of) {
 // Of neighbours that are as good the first is taken: on a lattice, such choices then agree from vertex to vertex.
 void PatchMerger::find_star(std::uint32_t v) {
   star_.clear();
-  ring_.clear();
+  unsorted_.clear();
   for_each_face(v, [&](std::uint32_t face, std::uint32_t next, std::uint32_t last) {
-    star_.push_back({plane_at(face), next, last, needles_[face] != 0, patch_.sources[face] == kHole});
-    std::size_t place = ring_.size();  // few: sorting by swaps would wait for what has just been stored
-    ring_.push_back(next);
-    for (; place > 0 && ring_[place - 1] > next; --place) ring_[place] = ring_[place - 1];
-    ring_[place] = next;
+    star_.push_back({plane_at(face), next, last, faces_[face].is_needle, faces_[face].is_hole});
+    unsorted_.push_back(next);
     return true;
   });
+  sort_ring();
+}
+
+// Few: how many come before each is found without branches, which nobody could foresee.
+void PatchMerger::sort_ring() {
+  ring_.resize(unsorted_.size());
+  for (std::size_t n = 0; n < unsorted_.size(); ++n) {
+    std::size_t before = 0;
+    for (std::size_t other = 0; other < n; ++other) before += unsorted_[other] <= unsorted_[n] ? 1U : 0U;
+    for (std::size_t other = n + 1; other < unsorted_.size(); ++other)
+      before += unsorted_[other] < unsorted_[n] ? 1U : 0U;
+    ring_[before] = unsorted_[n];
+  }
 }
 
 // The worst of the faces, their vertex pulled into `target`, that are left. The search ends at one that is not above
@@ -284,7 +298,7 @@ bool PatchMerger::keeps_topology(std::uint32_t target) {
 bool PatchMerger::is_at_needle(std::uint32_t v) const {
   bool found = false;
   for_each_face(v, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
-    found = needles_[face] != 0;
+    found = faces_[face].is_needle;
     return !found;
   });
   return found;
@@ -325,7 +339,7 @@ std::vector<std::uint32_t> PatchMerger::faces_at_node(std::uint32_t v) const {
   std::vector<std::uint32_t> faces;
   const auto add = [&](std::uint32_t vertex) {
     for_each_face(vertex, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
-      if (needles_[face] == 0) faces.push_back(face);
+      if (!faces_[face].is_needle) faces.push_back(face);
       return true;
     });
   };
@@ -372,8 +386,8 @@ std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
 
 void PatchMerger::unlink(Corner corner, std::uint32_t vertex) {
   Corner* link = &first_[vertex];
-  while (*link != corner) link = &next_[*link];
-  *link = next_[corner];
+  while (*link != corner) link = &next_of(*link);
+  *link = next_of(corner);
 }
 
 void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
@@ -383,23 +397,24 @@ void PatchMerger::pull(std::uint32_t v, std::uint32_t target) {
     return true;
   });
   for (Corner corner = first_[v], following = kNoCorner; corner != kNoCorner; corner = following) {
-    following = next_[corner];
-    const std::uint32_t face = corner / 3;
-    Triangle& t = faces_[face].corners;
+    following = next_of(corner);
+    const std::uint32_t number = face_of(corner);
+    Face& face = faces_[number];
+    Triangle& t = face.corners;
     if (t[0] == target || t[1] == target || t[2] == target) {
       for (std::uint32_t place = 0; place < 3; ++place) {
-        if (t[place] != v) unlink(3 * face + place, t[place]);
+        if (t[place] != v) unlink(corner_of(number, place), t[place]);
       }
       t = {};
       continue;
     }
-    t[corner % 3] = target;
-    next_[corner] = first_[target];
+    t[place_of(corner)] = target;
+    next_of(corner) = first_[target];
     first_[target] = corner;
-    changed_[face] = 1;
-    if (needles_[face] == 0) continue;
-    needles_[face] = is_needle(face) ? 1 : 0;
-    faces_[face].plane = plane_of(face);
+    face.is_changed = true;
+    if (!face.is_needle) continue;
+    face.is_needle = is_needle(number);
+    face.plane = plane_of(number);
   }
   first_[v] = kNoCorner;
   into_[v] = target;
@@ -413,9 +428,9 @@ bool PatchMerger::is_settled(std::uint32_t v) const {
   if (state_[v] == State::kFixed) return patch_.settled[v] != 0 && touched_[v] == 0;
   if (state_[v] != State::kStays || by_geometry_[v] == 0) return false;
   bool is_same = true;
-  for_each_face(v, [&](std::uint32_t face, std::uint32_t, std::uint32_t) {
-    const bool changed = changed_[face] != 0;
-    is_same = needles_[face] == 0 && (!changed || (planes_[faces_[face].plane].is_of_source && !is_needle(face)));
+  for_each_face(v, [&](std::uint32_t number, std::uint32_t, std::uint32_t) {
+    const Face& face = faces_[number];
+    is_same = !face.is_needle && (!face.is_changed || (planes_[face.plane].is_of_source && !is_needle(number)));
     return is_same;
   });
   return is_same;

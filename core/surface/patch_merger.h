@@ -1,6 +1,7 @@
 // Pulls vertices of a piece of a surface into neighbours in the same planes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -33,7 +34,7 @@ struct MergeLimits {
 
 class PatchMerger {
  public:
-  static constexpr std::size_t kMostFaces = 0x55555555;  // their corners have numbers of 32 bits
+  static constexpr std::size_t kMostFaces = 0x3FFFFFFF;  // their corners have numbers of 32 bits
 
   // `input`: what sources are numbers of. Both stay where they are while this lives. Precondition: at most kMostFaces.
   PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits);
@@ -73,10 +74,19 @@ class PatchMerger {
   };
   static constexpr std::int32_t kNoSource = -2;
 
-  // In one line of the cache.
-  struct alignas(16) Face {
+  // Of a face: four times its number, and the place of the vertex in it.
+  using Corner = std::uint32_t;
+  static constexpr Corner kNoCorner = 0xFFFFFFFF;
+  static constexpr Corner corner_of(std::uint32_t face, std::uint32_t place) { return 4 * face + place; }
+  static constexpr std::uint32_t face_of(Corner corner) { return corner / 4; }
+  static constexpr std::uint32_t place_of(Corner corner) { return corner % 4; }
+
+  // All that walks around vertices ask of a face, in one line of the cache.
+  struct alignas(32) Face {
     Triangle corners;
     std::uint32_t plane = kNoPlane;  // kNoPlane where nobody has asked yet
+    std::array<Corner, 3> next;      // corners behind its own in the chains of their vertices
+    bool is_needle = false, is_hole = false, is_changed = false;
   };
 
   // At a vertex; the other corners, in order.
@@ -85,14 +95,11 @@ class PatchMerger {
     bool is_needle, is_hole;
   };
 
-  // Of a face: three times its number, and the place of the vertex in it.
-  using Corner = std::uint32_t;
-  static constexpr Corner kNoCorner = 0xFFFFFFFF;
-
   using Target = std::optional<std::uint32_t> (PatchMerger::*)(std::uint32_t);
   void pull_all(Target target_of);
   void pull(std::uint32_t v, std::uint32_t target);
   void unlink(Corner corner, std::uint32_t vertex);
+  [[nodiscard]] Corner& next_of(Corner corner) { return faces_[face_of(corner)].next[place_of(corner)]; }
 
   void spread(VertexRole role);
   [[nodiscard]] SourcePlanes& planes_of_source(std::int32_t source);
@@ -118,6 +125,7 @@ class PatchMerger {
 
   // What the next ones look at: the faces around `v`, and their planes.
   void find_star(std::uint32_t v);
+  void sort_ring();
   void find_planes(bool with_needles);
   [[nodiscard]] bool is_in_planes(const Vec3& p) const;
   [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
@@ -134,8 +142,8 @@ class PatchMerger {
   std::vector<Plane> planes_;
   std::vector<SourcePlanes> source_planes_;  // a hash table: linear probing, at most half full
   std::size_t sources_ = 0;                  // in it
-  std::vector<std::uint8_t> needles_, changed_;
-  std::vector<Corner> first_, next_;  // the corners at each vertex, in a chain
+  std::size_t last_source_ = 0;              // the place of the last one that was asked for
+  std::vector<Corner> first_;                // of each vertex; its other corners follow in a chain
   std::vector<State> state_;
   std::vector<std::uint8_t> touched_;      // vertices: their faces are others than at first
   std::vector<std::uint8_t> by_geometry_;  // when last looked at, no neighbour was fit, whatever is around that
@@ -143,6 +151,7 @@ class PatchMerger {
   std::vector<StarFace> star_;         // of the vertex that is looked at
   std::vector<std::uint32_t> around_;  // its planes, with or without those of needles, each once
   std::vector<std::uint32_t> ring_;    // its neighbours, increasing
+  std::vector<std::uint32_t> unsorted_;
   std::vector<std::uint32_t> marked_;  // of each vertex, the number of the last mark it got
   std::uint32_t marks_ = 0;
 };

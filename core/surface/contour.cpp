@@ -366,14 +366,11 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
       }
     }
   });
-  if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions());
+  if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions(), nullptr);
   spare.settle_edges();
   const std::uint64_t fewer = cut_polygons(parts, edge_points, face_points.positions(), spare);
-  ContouredSurface contoured = joined(parts, edge_points, face_points.positions());
+  ContouredSurface contoured = joined(parts, edge_points, face_points.positions(), &spare);
   contoured.fewer = fewer;
-  contoured.spare.resize(contoured.surface.mesh.vertices.size());
-  std::ranges::copy(spare.edges, contoured.spare.begin());
-  std::ranges::copy(spare.faces, contoured.spare.begin() + static_cast<std::ptrdiff_t>(spare.edges.size()));
   return contoured;
 }
 

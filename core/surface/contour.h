@@ -21,8 +21,8 @@ struct ContouredSurface {
   SurfaceMesh surface;
   // Of each apex: 6 * cell + the place in kuhn::kTetrahedra; or what kWholeCell or kFaceOfCell say.
   std::vector<std::uint64_t> tetrahedra;
-  std::vector<std::uint8_t> spare;  // of each vertex: whether no triangle has it; empty where each is of one
-  std::uint64_t fewer = 0;          // triangles in planes than there would be without polygons
+  std::size_t first_apex = 0;  // among the vertices
+  std::uint64_t fewer = 0;     // triangles in planes than there would be without polygons
 };
 
 enum class ContourCells : std::uint8_t {
@@ -38,10 +38,10 @@ inline constexpr std::uint64_t kWholeCell = std::uint64_t{1} << 63, kFaceOfCell 
 // Without face points the loop is filled by one or two triangles, else by a cone from a point within the tetrahedron:
 // an end of a crease, else where a crease leaves the tetrahedron through the face with nodes of one kind, else another
 // point of a crease. Where there are none, it is the point where all planes meet, or the mean of the points. Vertices
-// are first the edge points in their order, then the face points, then those apexes. Where `face_points` are sections,
-// points of faces within cells are looked for where they are needed, and are among the apexes. Fronts look from inside
-// to outside. The same for any number of threads. docs/method.md, "Surfaces", shows that the triangles meet nowhere but
-// in shared vertices and edges.
+// are first the edge points in their order, then the face points, then those apexes; without points that no triangle
+// has. Where `face_points` are sections, points of faces within cells are looked for where they are needed, and are
+// among the apexes. Fronts look from inside to outside. The same for any number of threads. docs/method.md, "Surfaces",
+// shows that the triangles meet nowhere but in shared vertices and edges.
 [[nodiscard]] ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
                                        const FacePoints& face_points, const CellCreases& creases, double tolerance,
                                        const SurfaceMargins& margins, ContourCells kind = ContourCells::kTetrahedra);

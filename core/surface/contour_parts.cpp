@@ -59,15 +59,53 @@ struct PartPlace {
   std::size_t triangles = 0, apexes = 0;
 };
 
-void join_triangles(ContourPart& part, const PartPlace& place, std::size_t first_apex, std::vector<Triangle>& all) {
+// The places of points among those that are left.
+struct PointNumbers {
+  std::vector<std::uint32_t> of;  // of edge points, then face points; empty where each is left
+  std::size_t left = 0;
+
+  PointNumbers(std::size_t edges, std::size_t faces, const SparePoints* spare) : left(edges + faces) {
+    if (!spare) return;
+    of = sized_on_all_threads<std::uint32_t>(left);
+    std::uint32_t next = 0;
+    for (std::size_t n = 0; n < edges; ++n) {
+      of[n] = next;
+      next += spare->edges[n] == 0 ? 1 : 0;
+    }
+    for (std::size_t n = 0; n < faces; ++n) {
+      of[edges + n] = next;
+      next += spare->faces[n] == 0 ? 1 : 0;
+    }
+    left = next;
+  }
+
+  [[nodiscard]] std::size_t operator()(std::size_t point) const { return of.empty() ? point : of[point]; }
+};
+
+void join_triangles(ContourPart& part, const PartPlace& place, const PointNumbers& numbers,
+                    std::vector<Triangle>& all) {
   for (std::size_t i = 0; i < part.triangles.size(); ++i) {
     Triangle triangle = part.triangles[i];
     for (std::uint32_t& corner : triangle) {
-      if (corner >= kFirstApex) corner = static_cast<std::uint32_t>(corner - kFirstApex + first_apex + place.apexes);
+      const std::size_t vertex =
+          corner >= kFirstApex ? corner - kFirstApex + numbers.left + place.apexes : numbers(corner);
+      corner = static_cast<std::uint32_t>(vertex);
     }
     all[place.triangles + i] = triangle;
   }
   part.triangles = {};
+}
+
+void join_points(std::span<const EdgePoint> edge_points, std::span<const Vec3> face_points, const PointNumbers& numbers,
+                 const SparePoints* spare, std::vector<Vec3>& vertices) {
+  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (!spare || spare->edges[n] == 0) vertices[numbers(n)] = edge_points[n].position;
+    }
+  });
+  for (std::size_t n = 0; n < face_points.size(); ++n) {
+    if (!spare || spare->faces[n] == 0) vertices[numbers(edge_points.size() + n)] = face_points[n];
+  }
 }
 
 template <class Item>
@@ -95,7 +133,7 @@ std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const Edge
 
 // One kind of items after the other: the memory of parts is given back before the next one needs some.
 ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
-                        std::span<const Vec3> face_points) {
+                        std::span<const Vec3> face_points, const SparePoints* spare) {
   std::vector<PartPlace> places;
   PartPlace end;
   for (const ContourPart& part : parts) {
@@ -103,11 +141,12 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
     end.triangles += part.triangles.size();
     end.apexes += part.apexes.size();
   }
-  const std::size_t first_apex = edge_points.size() + face_points.size(), all_vertices = first_apex + end.apexes;
-  if (all_vertices > kFirstApex || end.triangles > kMaxTriangles)
+  if (edge_points.size() + face_points.size() + end.apexes > kFirstApex || end.triangles > kMaxTriangles)
     throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
+  const PointNumbers numbers(edge_points.size(), face_points.size(), spare);
 
   ContouredSurface contoured;
+  contoured.first_apex = numbers.left;
   TriangleMesh& mesh = contoured.surface.mesh;
   std::vector<std::int32_t>& sources = contoured.surface.sources;
   const auto for_each_part = [&](const auto& join) {
@@ -117,17 +156,14 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
   };
   resize_on_all_threads(mesh.triangles, end.triangles);
   for_each_part(
-      [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, first_apex, mesh.triangles); });
+      [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, numbers, mesh.triangles); });
   resize_on_all_threads(sources, end.triangles);
   for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
-  resize_on_all_threads(mesh.vertices, all_vertices);
-  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t last) {
-    for (std::size_t n = begin; n < last; ++n) mesh.vertices[n] = edge_points[n].position;
-  });
-  std::ranges::copy(face_points, mesh.vertices.begin() + static_cast<std::ptrdiff_t>(edge_points.size()));
+  resize_on_all_threads(mesh.vertices, numbers.left + end.apexes);
+  join_points(edge_points, face_points, numbers, spare, mesh.vertices);
   contoured.tetrahedra.resize(end.apexes);
   for_each_part([&](ContourPart& part, const PartPlace& place) {
-    join_items(part.apexes, first_apex + place.apexes, mesh.vertices);
+    join_items(part.apexes, numbers.left + place.apexes, mesh.vertices);
     join_items(part.tetrahedra, place.apexes, contoured.tetrahedra);
   });
   return contoured;

@@ -48,8 +48,9 @@ struct SparePoints {
 std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                            std::span<const Vec3> face_points, const SparePoints& spare);
 
-// One surface of all parts, which it empties. Its vertices are edge points, face points and apexes, in this order.
+// One surface of all parts, which it empties. Its vertices are edge points, face points and apexes, in this order, but
+// for those that are `spare`; null where none is.
 [[nodiscard]] ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
-                                      std::span<const Vec3> face_points);
+                                      std::span<const Vec3> face_points, const SparePoints* spare);
 
 }  // namespace raycone

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,13 +108,14 @@ class SurfaceMaker {
   std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
                                          ContourCells kind = ContourCells::kTetrahedra) {
     enter("joining them by triangles");
-    auto [surface, tetrahedra, spare, fewer] = contour(cells_, points_, sharp, creases_, tolerance_, margins, kind);
+    auto [surface, tetrahedra, first_apex, fewer] =
+        contour(cells_, points_, sharp, creases_, tolerance_, margins, kind);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     is_right_.reset();
     is_sharpened_ = false;
-    const std::uint64_t places = misplaced_vertices(surface.mesh.vertices, cells_, sharp, tetrahedra, margins);
-    if (!spare.empty()) drop_vertices(surface.mesh, spare);
-    spare = {};
+    const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),
+                                options_.single_precision};
+    const std::uint64_t places = misplaced_vertices(made_of, cells_, sharp, tetrahedra, margins);
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
     settler_.settle(surface);
@@ -188,22 +190,6 @@ class SurfaceMaker {
     }
     sharpener.undo().apply(surface.mesh);
     drop_spares();
-  }
-
-  static void drop_vertices(TriangleMesh& mesh, const std::vector<std::uint8_t>& spare) {
-    std::vector<std::uint32_t> number(spare.size());
-    std::uint32_t count = 0;
-    for (std::size_t v = 0; v < spare.size(); ++v) {
-      number[v] = count;
-      if (spare[v] != 0) continue;
-      mesh.vertices[count++] = mesh.vertices[v];
-    }
-    mesh.vertices.resize(count);
-    parallel_for(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t face = begin; face < end; ++face) {
-        for (std::uint32_t& corner : mesh.triangles[face]) corner = number[corner];
-      }
-    });
   }
 
   static void drop_gone_faces(SurfaceMesh& surface) {

@@ -8,6 +8,7 @@
 
 #include "core/machine/threads.h"
 #include "core/surface/contour.h"
+#include "core/surface/source_plane.h"
 
 namespace raycone {
 namespace {
@@ -64,33 +65,35 @@ std::uint64_t sum_of_wrong(std::size_t count, const WrongAt& wrong_at) {
 
 }  // namespace
 
-std::uint64_t misplaced_vertices(std::span<const Vec3> vertices, const SurfaceCells& cells,
-                                 const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
-                                 const SurfaceMargins& margins) {
+std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells, const FacePoints& face_points,
+                                 std::span<const std::uint64_t> tetrahedra, const SurfaceMargins& margins) {
   const ChainPlace place(cells, margins.inner);
+  const auto as_written = [&](const Vec3& p) { return points.single_precision ? rounded_to_float(p) : p; };
   const auto at_edges = [&](std::size_t n) {
     const SurfaceCell& cell = cells.cells()[n];
     std::uint64_t wrong = 0;
     for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
       if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
-      wrong += place.holds(vertices[cell.edge(direction)], cell, std::array{direction}) ? 0 : 1;
+      wrong +=
+          place.holds(as_written(points.edges[cell.edge(direction)].position), cell, std::array{direction}) ? 0 : 1;
     }
     return wrong;
   };
-  const auto is_out_of_face = [&](std::size_t vertex, std::uint64_t face) {
+  const auto is_out_of_face = [&](const Vec3& p, std::uint64_t face) {
     const auto [first, second] = kuhn::kFaces[face % 16];
     const SurfaceCell& cell = cells.cells()[face / 16];
-    return place.holds(vertices[vertex], cell, std::array{first, second}) ? 0U : 1U;
+    return place.holds(p, cell, std::array{first, second}) ? 0U : 1U;
   };
-  const auto at_face = [&](std::size_t n) { return is_out_of_face(cells.edges() + n, face_points.faces()[n]); };
-  const std::size_t first_apex = cells.edges() + face_points.faces().size();
+  const auto at_face = [&](std::size_t n) {
+    return is_out_of_face(as_written(points.faces[n]), face_points.faces()[n]);
+  };
   const auto at_apex = [&](std::size_t n) {
-    if ((tetrahedra[n] & kWholeCell) != 0)
-      return place.holds(vertices[first_apex + n], cells.cells()[tetrahedra[n] & ~kWholeCell]) ? 0U : 1U;
-    if ((tetrahedra[n] & kFaceOfCell) != 0) return is_out_of_face(first_apex + n, tetrahedra[n] & ~kFaceOfCell);
+    const Vec3 p = as_written(points.apexes[n]);
+    if ((tetrahedra[n] & kWholeCell) != 0) return place.holds(p, cells.cells()[tetrahedra[n] & ~kWholeCell]) ? 0U : 1U;
+    if ((tetrahedra[n] & kFaceOfCell) != 0) return is_out_of_face(p, tetrahedra[n] & ~kFaceOfCell);
     const kuhn::Tetrahedron& tetrahedron = kuhn::kTetrahedra[tetrahedra[n] % kuhn::kTetrahedra.size()];
     const SurfaceCell& cell = cells.cells()[tetrahedra[n] / kuhn::kTetrahedra.size()];
-    return place.holds(vertices[first_apex + n], cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;
+    return place.holds(p, cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;
   };
   return sum_of_wrong(cells.cells().size(), at_edges) + sum_of_wrong(face_points.faces().size(), at_face) +
          sum_of_wrong(tetrahedra.size(), at_apex);

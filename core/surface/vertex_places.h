@@ -11,10 +11,17 @@
 
 namespace raycone {
 
-// How many vertices of contour(), before any merging, are not strictly inside of their edge, face or tetrahedron: less
-// than half the margin from its border, or farther off it than a sixteenth of the margin. `tetrahedra`:
-// ContouredSurface::tetrahedra. The same for any number of threads.
-[[nodiscard]] std::uint64_t misplaced_vertices(std::span<const Vec3> vertices, const SurfaceCells& cells,
+// What contour() is made of, and makes, whether triangles have it or not.
+struct ContourPoints {
+  std::span<const EdgePoint> edges;
+  std::span<const Vec3> faces, apexes;
+  bool single_precision = false;  // they become vertices that are rounded to float
+};
+
+// How many of these, before any merging, are not strictly inside of their edge, face or tetrahedron: less than half the
+// margin from its border, or farther off it than a sixteenth of the margin. `face_points` says which faces the points
+// are of; `tetrahedra`: ContouredSurface::tetrahedra. The same for any number of threads.
+[[nodiscard]] std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells,
                                                const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
                                                const SurfaceMargins& margins);
 

@@ -73,6 +73,10 @@ struct Cells {
   [[nodiscard]] ContouredSurface contoured(ContourCells kind) const {
     return contour(cells, points, face_points, creases, tolerance, kMargins, kind);
   }
+  [[nodiscard]] std::uint64_t misplaced(const ContouredSurface& of) const {
+    const std::span apexes = std::span(of.surface.mesh.vertices).subspan(of.first_apex);
+    return misplaced_vertices({points, face_points.positions(), apexes}, cells, face_points, of.tetrahedra, kMargins);
+  }
 };
 
 Lattice lattice_around(const TriangleMesh& mesh, double h) {
@@ -83,21 +87,6 @@ Lattice lattice_around(const TriangleMesh& mesh, double h) {
         static_cast<std::int64_t>((box.upper[axis] - box.lower[axis]) / h) + 6;
   }
   return lattice;
-}
-
-// Without the vertices that no face has.
-TriangleMesh used_mesh(const ContouredSurface& contoured) {
-  TriangleMesh mesh;
-  std::vector<std::uint32_t> number;
-  for (std::size_t v = 0; v < contoured.spare.size(); ++v) {
-    number.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (contoured.spare[v] == 0) mesh.vertices.push_back(contoured.surface.mesh.vertices[v]);
-  }
-  for (const Triangle& t : contoured.surface.mesh.triangles) {
-    for (const std::uint32_t corner : t) EXPECT_EQ(contoured.spare[corner], 0);
-    mesh.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-  }
-  return mesh;
 }
 
 // The area of the faces of each source.
@@ -125,12 +114,10 @@ TEST(CellPolygons, CloseUpToTheSameSolid) {
     const Cells cells(mesh, lattice_around(mesh, uniform(random, 0.04, 0.2)));
     const ContouredSurface whole = cells.contoured(ContourCells::kTetrahedra);
     const ContouredSurface fewer = cells.contoured(ContourCells::kPolygons);
-    const TriangleMesh used = used_mesh(fewer);
+    const TriangleMesh& used = fewer.surface.mesh;
     const SurfaceFaults faults = faults_of(used, cells.nodes);
     ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
-    EXPECT_EQ(
-        misplaced_vertices(fewer.surface.mesh.vertices, cells.cells, cells.face_points, fewer.tetrahedra, kMargins),
-        0U);
+    EXPECT_EQ(cells.misplaced(fewer), 0U);
     EXPECT_EQ(fewer.surface.sources.size() + fewer.fewer, whole.surface.sources.size()) << round;
     EXPECT_LT(8 * used.triangles.size(), 7 * whole.surface.mesh.triangles.size());
     with_apex += static_cast<std::size_t>(
@@ -149,7 +136,7 @@ TEST(CellPolygons, HaveThePlanesOfTheirSources) {
     const Cells cells(mesh, lattice_around(mesh, h));
     const ContouredSurface whole = cells.contoured(ContourCells::kTetrahedra);
     const ContouredSurface fewer = cells.contoured(ContourCells::kPolygons);
-    const double before = volume_of(whole.surface.mesh), after = volume_of(used_mesh(fewer));
+    const double before = volume_of(whole.surface.mesh), after = volume_of(fewer.surface.mesh);
     // Along a side of length 4.2 in all, tetrahedra leave a strip that is a part of a voxel wide. Polygons go on to
     // where planes meet, beyond what a tetrahedron cuts off.
     EXPECT_GE(after, before - 1e-9);
@@ -253,7 +240,7 @@ TEST(CellPolygons, FollowBothEdgesOfAStripThroughAFace) {
     EXPECT_GT(several.face_points.section_faces().size(), 8U);
     const ContouredSurface before = one.contoured(ContourCells::kPolygons);
     const ContouredSurface after = several.contoured(ContourCells::kPolygons);
-    const TriangleMesh used = used_mesh(after);
+    const TriangleMesh& used = after.surface.mesh;
     const SurfaceFaults faults = faults_of(used, several.nodes);
     ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
     EXPECT_LT(10 * faces_off_planes(after, mesh), 9 * faces_off_planes(before, mesh));
@@ -272,7 +259,7 @@ TEST(CellPolygons, AreInThePlanesBesideFineCreases) {
     const Cells several(mesh, lattice, PointsOfFaces::kSections);
     const ContouredSurface before = one.contoured(ContourCells::kPolygons);
     const ContouredSurface after = several.contoured(ContourCells::kPolygons);
-    const TriangleMesh used = used_mesh(after);
+    const TriangleMesh& used = after.surface.mesh;
     const SurfaceFaults faults = faults_of(used, several.nodes);
     ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
     EXPECT_LT(faces_off_planes(after, mesh) + 20, faces_off_planes(before, mesh)) << round;
@@ -319,7 +306,7 @@ TEST(CellPolygons, LeaveAllPointsOnTheMesh) {
     const TriangleMesh mesh = turned(bumpy_box(random), random);
     const double h = uniform(random, 0.04, 0.06);
     const Cells cells(mesh, lattice_around(mesh, h), PointsOfFaces::kSections);
-    const TriangleMesh used = used_mesh(cells.contoured(ContourCells::kPolygons));
+    const TriangleMesh used = cells.contoured(ContourCells::kPolygons).surface.mesh;
     const DistanceEvaluator from_mesh(mesh);
     std::vector<double> distances(used.vertices.size());
     from_mesh.evaluate(used.vertices, distances);
@@ -360,12 +347,9 @@ TEST(CellPolygons, CloseUpWhereFacesHaveSeveralPoints) {
     EXPECT_GT(cells.face_points.section_faces().size(), 30U);
     for (const ContourCells kind : {ContourCells::kTetrahedra, ContourCells::kPolygons}) {
       const ContouredSurface made = cells.contoured(kind);
-      const TriangleMesh used = kind == ContourCells::kPolygons ? used_mesh(made) : made.surface.mesh;
-      const SurfaceFaults faults = faults_of(used, cells.nodes);
+      const SurfaceFaults faults = faults_of(made.surface.mesh, cells.nodes);
       ASSERT_TRUE(faults.none()) << round << ": " << described(faults);
-      EXPECT_EQ(
-          misplaced_vertices(made.surface.mesh.vertices, cells.cells, cells.face_points, made.tetrahedra, kMargins),
-          0U);
+      EXPECT_EQ(cells.misplaced(made), 0U);
     }
   }
 }

@@ -102,6 +102,16 @@ FacePoints random_face_points(const SurfaceCells& cells, Random& random) {
   return {faces, positions};
 }
 
+// As misplaced_vertices() of all vertices of a contour without spare points.
+std::uint64_t misplaced(std::span<const Vec3> vertices, const SurfaceCells& cells, const FacePoints& face_points,
+                        std::span<const std::uint64_t> tetrahedra) {
+  std::vector<EdgePoint> edges(cells.edges());
+  for (std::size_t n = 0; n < edges.size(); ++n) edges[n].position = vertices[n];
+  const std::span faces = vertices.subspan(edges.size(), face_points.faces().size());
+  const std::span apexes = vertices.subspan(edges.size() + faces.size());
+  return misplaced_vertices({edges, faces, apexes}, cells, face_points, tetrahedra, kMargins);
+}
+
 // Face points next to the margin of others would need a wider one: rounding then spoils what is thin twice over. Such
 // points are dropped by closed_surface().
 SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, bool with_face_points) {
@@ -109,9 +119,9 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   const SurfaceCells cells(nodes);
   const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
   const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-  const auto [surface, tetrahedra, spare, fewer] = contour(cells, points, face_points, {}, 0.0, kMargins);
+  const auto [surface, tetrahedra, first_apex, fewer] = contour(cells, points, face_points, {}, 0.0, kMargins);
   SurfaceFaults faults = faults_of(surface.mesh, nodes);
-  faults.places = misplaced_vertices(surface.mesh.vertices, cells, face_points, tetrahedra, kMargins);
+  faults.places = misplaced(surface.mesh.vertices, cells, face_points, tetrahedra);
   return faults;
 }
 
@@ -330,21 +340,21 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
   const SurfaceCells cells(nodes);
   const FacePoints face_points = random_face_points(cells, random);
-  const auto [surface, tetrahedra, spare, fewer] =
+  const auto [surface, tetrahedra, first_apex, fewer] =
       contour(cells, random_edge_points(cells, random, false), face_points, {}, 0.0, kMargins);
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
-  EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, tetrahedra, kMargins), 0U);
-  const std::size_t first_apex = cells.edges() + face_points.positions().size();
+  EXPECT_EQ(misplaced(vertices, cells, face_points, tetrahedra), 0U);
+  EXPECT_EQ(first_apex, cells.edges() + face_points.positions().size());
   const Vec3 off{1e-7, 2e-7, 3e-7}, away{2.0, 0.0, 0.0};
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     std::vector<Vec3> moved = vertices;
     moved[v] = moved[v] + (v < first_apex ? off : away);
-    EXPECT_EQ(misplaced_vertices(moved, cells, face_points, tetrahedra, kMargins), 1U) << v;
+    EXPECT_EQ(misplaced(moved, cells, face_points, tetrahedra), 1U) << v;
   }
   for (std::size_t n = 0; n < tetrahedra.size(); ++n) {
     std::vector<std::uint64_t> others(tetrahedra.begin(), tetrahedra.end());
     others[n] = others[n] % 6 == 5 ? others[n] - 1 : others[n] + 1;
-    EXPECT_EQ(misplaced_vertices(vertices, cells, face_points, others, kMargins), 1U) << n;
+    EXPECT_EQ(misplaced(vertices, cells, face_points, others), 1U) << n;
   }
   // The ends of an edge are not inside of it.
   const SurfaceCell& cell = cells.cells().front();
@@ -352,7 +362,7 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   for (const unsigned corner : {0U, direction}) {
     std::vector<Vec3> at_end = vertices;
     at_end[cell.edge(direction)] = cells.corner(cell, corner);
-    EXPECT_EQ(misplaced_vertices(at_end, cells, face_points, tetrahedra, kMargins), 1U) << corner;
+    EXPECT_EQ(misplaced(at_end, cells, face_points, tetrahedra), 1U) << corner;
   }
 }
 

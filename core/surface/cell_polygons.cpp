@@ -379,7 +379,10 @@ std::size_t best_fan(std::span<const Vec3> polygon) {
   double best_quality = -std::numeric_limits<double>::infinity();
   for (std::size_t from = 0; from < polygon.size(); ++from) {
     double worst = std::numeric_limits<double>::infinity();
-    const auto corner = [&](std::size_t step) -> const Vec3& { return polygon[(from + step) % polygon.size()]; };
+    const auto corner = [&](std::size_t step) -> const Vec3& {
+      const std::size_t at = from + step;  // divisions would take longer than all else here
+      return polygon[at < polygon.size() ? at : at - polygon.size()];
+    };
     for (std::size_t i = 1; i + 1 < polygon.size() && worst > best_quality; ++i)
       worst = std::min(worst, quality(corner(0), corner(i), corner(i + 1), normal));
     if (!(worst > best_quality)) continue;

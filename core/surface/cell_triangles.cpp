@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "core/exact/projection.h"
 #include "core/machine/threads.h"
@@ -74,19 +75,23 @@ class CellFinder {
 CellTriangles::CellTriangles(const TriangleMesh& mesh, const SurfaceCells& cells)
     : begin_(cells.cells().size() + 1, 0) {
   const CellFinder finder(mesh, cells);
-  std::vector<InCell> all;
+  std::vector<std::vector<InCell>> parts;  // in any order; one vector of all would be moved as it grows
   std::mutex mutex;
   parallel_for(mesh.triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<InCell> found;
     for (std::size_t i = begin; i < end; ++i) finder.find(static_cast<std::uint32_t>(i), found);
     const std::scoped_lock lock(mutex);
-    all.insert(all.end(), found.begin(), found.end());
+    parts.push_back(std::move(found));
   });
-  for (const InCell& one : all) ++begin_[one.cell + 1];
+  for (const std::vector<InCell>& part : parts) {
+    for (const InCell& one : part) ++begin_[one.cell + 1];
+  }
   for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
-  triangles_.resize(all.size());
+  triangles_.resize(begin_.back());
   std::vector<std::uint64_t> next(begin_.begin(), begin_.end() - 1);
-  for (const InCell& one : all) triangles_[next[one.cell]++] = one.triangle;
+  for (const std::vector<InCell>& part : parts) {
+    for (const InCell& one : part) triangles_[next[one.cell]++] = one.triangle;
+  }
   parallel_for(begin_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       const auto at = [&](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(begin_[n]); };

@@ -31,8 +31,9 @@ class FanCutter {
       }
       first += polygon.size;
       const std::size_t from = corners_.size() == 3 ? 0 : best_fan(positions_), size = corners_.size();
+      const auto corner = [&](std::size_t at) { return corners_[at < size ? at : at - size]; };
       for (std::size_t n = 1; n + 1 < size; ++n) {
-        part.triangles.push_back({corners_[from], corners_[(from + n) % size], corners_[(from + n + 1) % size]});
+        part.triangles.push_back({corners_[from], corner(from + n), corner(from + n + 1)});
         part.sources.push_back(polygon.source);
       }
     }
@@ -108,6 +109,9 @@ void join_points(std::span<const EdgePoint> edge_points, std::span<const Vec3> f
   }
 }
 
+// Room for what Sharpener adds, as a rule: else all would be moved. Memory that nobody touches costs nothing.
+std::size_t with_spares(std::size_t count) { return count + count / 8; }
+
 template <class Item>
 void join_items(std::vector<Item>& part, std::size_t place, std::vector<Item>& all) {
   std::ranges::copy(part, all.begin() + static_cast<std::ptrdiff_t>(place));
@@ -154,11 +158,14 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
       for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
     });
   };
+  mesh.triangles.reserve(with_spares(end.triangles));
   resize_on_all_threads(mesh.triangles, end.triangles);
   for_each_part(
       [&](ContourPart& part, const PartPlace& place) { join_triangles(part, place, numbers, mesh.triangles); });
+  sources.reserve(with_spares(end.triangles));
   resize_on_all_threads(sources, end.triangles);
   for_each_part([&](ContourPart& part, const PartPlace& place) { join_items(part.sources, place.triangles, sources); });
+  mesh.vertices.reserve(with_spares(numbers.left + end.apexes));
   resize_on_all_threads(mesh.vertices, numbers.left + end.apexes);
   join_points(edge_points, face_points, numbers, spare, mesh.vertices);
   contoured.tetrahedra.resize(end.apexes);

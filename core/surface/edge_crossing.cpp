@@ -78,28 +78,38 @@ std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, c
 
 void HitFinder::enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   end_ = end;
+  if (mesh_ != &mesh) triangles_.clear();
+  mesh_ = &mesh;
   count_ = 0;
   for (const std::uint32_t triangle : triangles) {
-    const Triangle& t = mesh.triangles[triangle];
     if (count_ == triangles_.size()) triangles_.emplace_back();
     Known& known = triangles_[count_++];
+    known.has_sides = known.has_distance = false;
+    if (known.triangle == triangle) continue;
+    const Triangle& t = mesh.triangles[triangle];
     known.a = &mesh.vertices[t[0]];
     known.b = &mesh.vertices[t[1]];
     known.c = &mesh.vertices[t[2]];
     known.box = box_of_triangle(mesh, triangle);
     known.triangle = triangle;
-    known.has_turns = known.has_normal = false;
+    known.has_plane = false;
   }
 }
 
 HitFinder::Turn HitFinder::turn_of(const Vec3& u, const Vec3& v) { return {cross(u, v), cross_terms(u, v)}; }
 
-void HitFinder::find_turns(Known& t) const {
+void HitFinder::find_plane(Known& t) {
+  t.normal = turn_of(*t.b - *t.a, *t.c - *t.a);
+  t.long_normal = long_normal(*t.a, *t.b, *t.c);
+  t.has_plane = true;
+}
+
+void HitFinder::find_sides(Known& t) const {
+  if (!t.has_plane) find_plane(t);
   const Vec3 a = *t.a - end_, b = *t.b - end_, c = *t.c - end_;
   t.sides = {turn_of(a, b), turn_of(b, c), turn_of(c, a)};
-  t.normal = turn_of(*t.b - *t.a, *t.c - *t.a);
   t.side = plane_side_of(t, end_);
-  t.has_turns = true;
+  t.has_sides = true;
 }
 
 int HitFinder::plane_side_of(const Known& t, const Vec3& p) {
@@ -120,15 +130,14 @@ bool HitFinder::passes_triangle(const Known& t, const Vec3& other) const {
 }
 
 std::optional<double> HitFinder::hit(Known& t, const Vec3& other, bool from_end) const {
-  if (!t.has_turns) find_turns(t);
+  if (!t.has_sides) find_sides(t);
   const int side = plane_side_of(t, other);
   if (side == t.side || !passes_triangle(t, other)) return std::nullopt;  // both 0, too
   if (t.side == 0) return from_end ? 0.0 : 1.0;
   if (side == 0) return from_end ? 1.0 : 0.0;
-  if (!t.has_normal) {
-    t.long_normal = long_normal(*t.a, *t.b, *t.c);
+  if (!t.has_distance) {
     t.of_end = std::abs(long_dot(t.long_normal, long_difference(end_, *t.a)));
-    t.has_normal = true;
+    t.has_distance = true;
   }
   const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
   return from_end ? place_between(t.of_end, of_other) : place_between(of_other, t.of_end);

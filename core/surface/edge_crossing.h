@@ -44,26 +44,29 @@ class HitFinder {
   struct Turn {
     Vec3 value, terms;  // terms: the magnitudes of its products, added
   };
-  // What is not known yet is found when a segment's box meets that of the triangle.
+  // What is not known yet is found when a segment's box meets that of the triangle. What is of the plane alone stays
+  // for the next end, which mostly has the same triangles.
   struct Known {
     const Vec3 *a, *b, *c;
     Box box;
-    std::uint32_t triangle;
-    bool has_turns = false, has_normal = false;
-    int side = 0;               // of its plane, on which the end is
-    Turn normal;                // of its plane
-    std::array<Turn, 3> sides;  // of the planes through the end and a side
+    std::uint32_t triangle = 0xFFFFFFFF;
+    bool has_plane = false, has_sides = false, has_distance = false;
+    Turn normal;  // of its plane
     LongVec3 long_normal;
-    long double of_end = 0;  // how far the end is from its plane, times the normal's length
+    int side = 0;               // of its plane, on which the end is
+    std::array<Turn, 3> sides;  // of the planes through the end and a side
+    long double of_end = 0;     // how far the end is from its plane, times the normal's length
   };
 
-  void find_turns(Known& t) const;
+  static void find_plane(Known& t);
+  void find_sides(Known& t) const;
   [[nodiscard]] static Turn turn_of(const Vec3& u, const Vec3& v);
   [[nodiscard]] static int plane_side_of(const Known& t, const Vec3& p);
   [[nodiscard]] bool passes_triangle(const Known& t, const Vec3& other) const;
   [[nodiscard]] std::optional<double> hit(Known& t, const Vec3& other, bool from_end) const;
 
   Vec3 end_;
+  const TriangleMesh* mesh_ = nullptr;
   std::vector<Known> triangles_;  // the first `count_` of them: others are old
   std::size_t count_ = 0;
 };

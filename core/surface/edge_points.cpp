@@ -74,7 +74,7 @@ void keep_places(std::vector<SegmentHit>& hits) {
 
 void EdgePointFinder::find_hits() {
   std::mutex mutex;
-  parallel_for(cells_.cells().size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(cells_.cells().size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<SegmentHit> hits;
     std::vector<OpenEdge> open;
     HitFinder finder;

@@ -76,21 +76,19 @@ std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, c
   return hit_between(p, q, a, b, c, plane_side(a, b, c, p), plane_side(a, b, c, q));
 }
 
-void HitFinder::enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
+void HitFinder::enter(const Vec3& end, std::span<const std::uint32_t> triangles) {
   end_ = end;
-  if (mesh_ != &mesh) triangles_.clear();
-  mesh_ = &mesh;
   count_ = 0;
   for (const std::uint32_t triangle : triangles) {
     if (count_ == triangles_.size()) triangles_.emplace_back();
     Known& known = triangles_[count_++];
     known.has_sides = known.has_distance = false;
     if (known.triangle == triangle) continue;
-    const Triangle& t = mesh.triangles[triangle];
-    known.a = &mesh.vertices[t[0]];
-    known.b = &mesh.vertices[t[1]];
-    known.c = &mesh.vertices[t[2]];
-    known.box = box_of_triangle(mesh, triangle);
+    const Triangle& t = mesh_.triangles[triangle];
+    known.a = &mesh_.vertices[t[0]];
+    known.b = &mesh_.vertices[t[1]];
+    known.c = &mesh_.vertices[t[2]];
+    known.box = box_of_triangle(mesh_, triangle);
     known.triangle = triangle;
     known.has_plane = false;
   }

@@ -33,8 +33,11 @@ struct LongVec3 {
 // once.
 class HitFinder {
  public:
-  // The mesh must stay where it is until all segments of this end have been asked about.
-  void enter(const Vec3& end, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles);
+  // The mesh must stay as it is.
+  explicit HitFinder(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+  // From now on it is about segments of this end, and these triangles of the mesh.
+  void enter(const Vec3& end, std::span<const std::uint32_t> triangles);
 
   // Sets `hits` to those from the end to `other`, or back; of equal ones the lowest triangle first.
   void find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits);
@@ -66,7 +69,7 @@ class HitFinder {
   [[nodiscard]] std::optional<double> hit(Known& t, const Vec3& other, bool from_end) const;
 
   Vec3 end_;
-  const TriangleMesh* mesh_ = nullptr;
+  const TriangleMesh& mesh_;
   std::vector<Known> triangles_;  // the first `count_` of them: others are old
   std::size_t count_ = 0;
 };

@@ -77,11 +77,11 @@ void EdgePointFinder::find_hits() {
   parallel_for(cells_.cells().size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<SegmentHit> hits;
     std::vector<OpenEdge> open;
-    HitFinder finder;
+    HitFinder finder(mesh_);
     for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
       const SurfaceCell& cell = cells_.cells()[n];
       const Vec3 low = cells_.corner(cell, 0);
-      finder.enter(low, mesh_, triangles_.of(n));
+      finder.enter(low, triangles_.of(n));
       for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
         if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
         const Vec3 high = cells_.corner(cell, direction);

@@ -379,6 +379,47 @@ TEST(SegmentHit, IsExactAboutEnds) {
   EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, a, b, {2, 0, 0}), std::nullopt);  // without area
 }
 
+// Whole numbers, so that many ends and edges are in planes of triangles, on their sides or at their corners.
+TEST(HitFinder, FindsWhatSegmentsHitOneByOne) {
+  const DefaultFloatingPoint guard;
+  Random random(21);
+  const auto point = [&](double size, double step) {
+    const auto number = [&] { return step * std::round(uniform(random, -size, size)); };
+    return Vec3{number(), number(), number()};
+  };
+  std::size_t at_ends = 0, between = 0;
+  for (const double step : {1.0, 0.1, 0x1p-40}) {
+    for (int round = 0; round < 300; ++round) {
+      const TriangleMesh mesh{{point(3, step), point(3, step), point(3, step), point(3, step)},
+                              {{0, 1, 2}, {1, 2, 3}, {0, 3, 1}}};
+      HitFinder finder(mesh);
+      for (int ends = 0; ends < 3; ++ends) {
+        const Vec3 end = point(2, step);
+        finder.enter(end, std::array<std::uint32_t, 3>{0, 1, 2});
+        for (int others = 0; others < 7; ++others) {
+          const Vec3 other = point(2, step);
+          const bool from_end = others % 2 == 0;
+          const Vec3 &p = from_end ? end : other, &q = from_end ? other : end;
+          std::vector<SegmentHit> hits;
+          finder.find(other, from_end, hits);
+          for (std::uint32_t triangle = 0; triangle < 3; ++triangle) {
+            const Triangle& t = mesh.triangles[triangle];
+            const auto hit = std::ranges::find(hits, triangle, &SegmentHit::triangle);
+            const std::optional<double> found = hit == hits.end() ? std::nullopt : std::optional(hit->at);
+            const std::optional<double> here =
+                segment_hit(p, q, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+            ASSERT_EQ(found, here) << step << " " << round << " " << ends << " " << others << " " << triangle;
+            at_ends += here == 0.0 || here == 1.0 ? 1 : 0;
+            between += here && *here > 0.0 && *here < 1.0 ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(at_ends, 1000U);
+  EXPECT_GT(between, 1000U);
+}
+
 // By angles that are no special ones.
 TriangleMesh rotated(TriangleMesh mesh) {
   const Vec3 u{0.36, 0.48, -0.8}, v{-0.8, 0.6, 0.0}, w{0.48, 0.64, 0.6};

@@ -61,7 +61,7 @@ struct PlaneMerger::SecondPass {
   std::vector<std::uint8_t> settled_before, settled_after;
   std::vector<std::uint32_t> into_after;
   std::vector<bool> kept;
-  std::vector<std::vector<std::uint32_t>> unsettled;  // of each brick: vertices that it made so
+  std::vector<std::vector<std::uint32_t>> changed;  // of each brick, as merge_unknown() sets it
 
   // The place of each face of `now` that was there with the same corners; kNone for others.
   [[nodiscard]] std::vector<std::uint32_t> same_faces(const SecondPass& now) const;
@@ -122,13 +122,14 @@ class BrickMerger {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
     });
   }
-  // But for those that are `known`. Sets `unsettled` of the others to the vertices that each has made so.
+  // But for those that are `known`. Sets `changed` of each of the others to the vertices with faces in other bricks,
+  // too, that have other faces in this one now.
   void merge_unknown(const Bricks& bricks, const std::vector<std::uint8_t>& known,
-                     std::vector<std::vector<std::uint32_t>>& unsettled) {
+                     std::vector<std::vector<std::uint32_t>>& changed) {
     local_.assign(vertices_.size(), kNone);
     parallel_for(bricks.count(), 1, [&](std::size_t begin, std::size_t end) {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) {
-        if (known[brick] == 0) merge_one(bricks, brick, &unsettled[brick]);
+        if (known[brick] == 0) merge_one(bricks, brick, &changed[brick]);
       }
     });
   }
@@ -207,7 +208,7 @@ class BrickMerger {
   }
 
   // Bricks change their own faces only, and where their own vertices are pulled.
-  void merge_one(const Bricks& bricks, std::uint32_t brick, std::vector<std::uint32_t>* unsettled = nullptr) {
+  void merge_one(const Bricks& bricks, std::uint32_t brick, std::vector<std::uint32_t>* changed = nullptr) {
     const auto faces =
         std::span(bricks.faces).subspan(bricks.begin[brick], bricks.begin[brick + 1] - bricks.begin[brick]);
     if (faces.size() > PatchMerger::kMostFaces) return;
@@ -224,9 +225,10 @@ class BrickMerger {
     }
     for (std::uint32_t v = 0; v < global.size(); ++v) {
       if (merger.into()[v] != v) work_.into[global[v]] = global[merger.into()[v]];
-      const bool was_settled = patch.settled[v] != 0, is_settled = merger.is_settled(v);
-      if (unsettled && was_settled && !is_settled) unsettled->push_back(global[v]);
-      note_settled(global[v], was_settled, is_settled);
+      note_settled(global[v], patch.settled[v] != 0, merger.is_settled(v));
+      // Of such a vertex another brick may have said so before: what this one does must not depend on that.
+      const bool is_shared = bricks.owner[global[v]] != brick;
+      if (changed && is_shared && merger.has_changed(v)) changed->push_back(global[v]);
     }
   }
 
@@ -351,8 +353,8 @@ void PlaneMerger::SecondPass::repeat(SecondPass& now, const std::vector<std::uin
       const std::uint32_t face = now.bricks.faces[n];
       merged.triangles[face] = after[same[face]];
     }
-    now.unsettled[brick] = unsettled[brick_then[now.bricks.places[brick]]];
-    for (const std::uint32_t v : now.unsettled[brick]) settled[v] = 0;
+    now.changed[brick] = changed[brick_then[now.bricks.places[brick]]];
+    for (const std::uint32_t v : now.changed[brick]) settled[v] = 0;
   }
   for (std::size_t v = 0; v < now.bricks.owner.size(); ++v) {
     if (now.bricks.owner[v] >= known.size() || known[now.bricks.owner[v]] == 0) continue;
@@ -399,14 +401,14 @@ void PlaneMerger::merge_second_bricks(const std::vector<bool>& kept, BrickMerger
   now->before = merged.triangles;
   now->settled_before = settled;
   now->kept = kept;
-  now->unsettled.resize(now->bricks.count());
+  now->changed.resize(now->bricks.count());
   std::vector<std::uint8_t> known(now->bricks.count(), 0);
   if (second_) {
     const std::vector<std::uint32_t> same = second_->same_faces(*now);
     known = second_->same_bricks(*now, same);
     second_->repeat(*now, known, same, merged, settled);
   }
-  merger.merge_unknown(now->bricks, known, now->unsettled);
+  merger.merge_unknown(now->bricks, known, now->changed);
   now->after = merged.triangles;
   now->into_after = merged.into;
   now->settled_after = settled;

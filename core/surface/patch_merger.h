@@ -51,6 +51,9 @@ class PatchMerger {
   // long as the faces around it are these.
   [[nodiscard]] bool is_settled(std::uint32_t v) const;
 
+  // Whether the faces around a vertex are others than at first.
+  [[nodiscard]] bool has_changed(std::uint32_t v) const { return touched_[v] != 0; }
+
  private:
   enum class State : std::uint8_t {
     kWaits,    // to be looked at

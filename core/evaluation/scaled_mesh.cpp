@@ -32,26 +32,6 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
 constexpr double kTriangleSummed = 1.9;  // directly, in units of an exterior edge
 constexpr double kFarShare = 0.75;       // of the tolerance; near triangles round, too
 
-// The far field, where it is asked for and estimated to be cheaper. `direct` is what it stands in for.
-std::unique_ptr<const FarField> make_far_field(const TriangleMesh& mesh, const Boundary& boundary,
-                                               const BoundaryTerm* direct, double tolerance,
-                                               const EvaluatorOptions& options) {
-  if (!direct || !(tolerance >= kLeastTolerance)) return nullptr;
-  const FarSources sources = direct->counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
-  // Many a sample lies in the plane of flat caps, which are ties then.
-  if (sources == FarSources::kCaps && boundary.is_flat()) return nullptr;
-  const bool forced = options.summation == Summation::kFarField;
-  constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
-  const bool may_pay = options.summation == Summation::kCheapest && boundary.exterior_edges() >= kTooFew;
-  if (!forced && !may_pay) return nullptr;
-  auto far = std::make_unique<const FarField>(mesh, boundary, sources, kFarShare * tolerance, options.level);
-  if (far->has_repeated_faces()) return nullptr;
-  constexpr double kSafety = 0.8;  // estimates are no better
-  const double of_direct = sources == FarSources::kCaps ? static_cast<double>(boundary.exterior_edges())
-                                                        : kTriangleSummed * static_cast<double>(mesh.triangles.size());
-  return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
-}
-
 }  // namespace
 
 ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options)
@@ -143,11 +123,44 @@ const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
   return blocks_of_points_.get();
 }
 
+// The far field, where it is asked for and estimated to be cheaper.
+std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
+  if (!term_ || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return nullptr;
+  const bool caps = counts_crossings();
+  // Many a sample lies in the plane of flat caps, which are ties then.
+  if (caps && boundary_.is_flat()) return nullptr;
+  const bool forced = options_.summation == Summation::kFarField;
+  constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
+  const bool may_pay = options_.summation == Summation::kCheapest && boundary_.exterior_edges() >= kTooFew;
+  if (!forced && !may_pay) return nullptr;
+  std::unique_ptr<const FarField> far;
+  if (caps && options_.accuracy.sides_only && has_blocks()) {  // whose tree rough sums need, too
+    if (!blocks().are_sound) return nullptr;
+    const LatticeBlocks& sums = blocks().sums;
+    far = std::make_unique<const FarField>(mesh_, boundary_, blocks().caps, sums.tree(), sums.tree_tolerance(),
+                                           options_.level);
+  } else {
+    far = std::make_unique<const FarField>(mesh_, boundary_, caps ? FarSources::kCaps : FarSources::kTriangles,
+                                           kFarShare * tolerance(), options_.level);
+  }
+  if (far->has_repeated_faces()) return nullptr;
+  constexpr double kSafety = 0.8;  // estimates are no better
+  const double of_direct = caps ? static_cast<double>(boundary_.exterior_edges())
+                                : kTriangleSummed * static_cast<double>(mesh_.triangles.size());
+  return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
+}
+
 const FarField* ScaledMesh::far_field() const {
   std::call_once(far_built_, [this] {
-    if (is_in_scale_) far_ = make_far_field(mesh_, boundary_, term_.get(), tolerance(), options_);
+    far_ = make_far_field();
+    far_is_known_.store(true, std::memory_order_release);
   });
   return far_.get();
+}
+
+const FarField* ScaledMesh::far_field_without_waiting() const {
+  if (!far_is_known_.load(std::memory_order_acquire) && far_is_taken_.test_and_set()) return nullptr;
+  return far_field();
 }
 
 bool ScaledMesh::has_far_field() const {
@@ -159,6 +172,7 @@ bool ScaledMesh::has_far_field() const {
 }
 
 // Where nobody knows how many samples certificates leave, they are counted: so many take about as long as the tree.
+// This may be asked within loops, where the tree is made by one thread: others do without it meanwhile.
 bool ScaledMesh::takes_far_field(std::size_t samples) const {
   constexpr std::uint64_t kEnough = 4'000;
   const bool forced = options_.summation == Summation::kFarField;
@@ -167,7 +181,7 @@ bool ScaledMesh::takes_far_field(std::size_t samples) const {
     samples_.fetch_add(samples, std::memory_order_relaxed);
     return false;
   }
-  return options_.accuracy.sides_only ? far_field() != nullptr : has_far_field();
+  return options_.accuracy.sides_only ? far_field_without_waiting() != nullptr : has_far_field();
 }
 
 // Whether there is one or not, which is not known before it is built.

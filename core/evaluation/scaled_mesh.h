@@ -157,6 +157,9 @@ class ScaledMesh {
   // That of the accuracy, where it is of use: more would not be settled at half-integers.
   [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   [[nodiscard]] bool takes_far_field(std::size_t samples) const;
+  [[nodiscard]] std::unique_ptr<const FarField> make_far_field() const;
+  // None where another thread is making it.
+  [[nodiscard]] const FarField* far_field_without_waiting() const;
   [[nodiscard]] std::unique_ptr<const BlocksOfPoints> make_blocks_of_points() const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values, double doubt) const;
@@ -172,13 +175,15 @@ class ScaledMesh {
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
+  mutable std::atomic_flag far_is_taken_;
+  mutable std::atomic<bool> far_is_known_ = false;
   mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_, points_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
   mutable std::optional<Changes> changes_;
-  mutable std::unique_ptr<const FarField> far_;
   mutable std::unique_ptr<const Blocks> blocks_;
+  mutable std::unique_ptr<const FarField> far_;                     // may refer to blocks_
   mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };

@@ -27,7 +27,14 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
-  tree_.emplace(std::move(faces.triangles), tolerance, level);
+  tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level);
+  set_costs(bounding_box(mesh), tolerance);
+}
+
+FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh& caps, const SourceTree& tree,
+                   double tolerance, SimdLevel level)
+    : boundary_(boundary), sources_(FarSources::kCaps), kernel_(far_kernel(level)), cap_crossings_(caps), tree_(&tree) {
+  doubt_ = std::min(doubt(tolerance, static_cast<double>(tree.triangles().size())), Boundary::kMostDoubt);
   set_costs(bounding_box(mesh), tolerance);
 }
 

@@ -31,6 +31,10 @@ class FarField final : public BoundaryTerm {
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
   // rounds included. `boundary`: of the mesh; it must outlive this.
   FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance, SimdLevel level);
+  // The same of caps of which there is a tree, made with this tolerance. Both must outlive this, too. Precondition: no
+  // cap is repeated.
+  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh& caps, const SourceTree& tree,
+           double tolerance, SimdLevel level);
 
   // Whether a face or a cap is there so often that its error, multiplied, would show: then do not use this.
   [[nodiscard]] bool has_repeated_faces() const { return faces_repeat_; }
@@ -66,7 +70,8 @@ class FarField final : public BoundaryTerm {
   FarKernel kernel_;
   TriangleMesh caps_;  // none of a soup
   CapCrossings cap_crossings_;
-  std::optional<SourceTree> tree_;
+  std::optional<SourceTree> own_tree_;
+  const SourceTree* tree_;
   bool faces_repeat_ = false;
   double doubt_ = 0;
   double cost_ = 0, cost_on_lattice_ = 0;

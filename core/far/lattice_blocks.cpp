@@ -109,6 +109,8 @@ double LatticeBlocks::doubt(double tolerance, double triangles) {
   return tolerance + triangles * (kPerTriangle * HarmonicFit::kLargestWeights + HarmonicFit::kRounding / 2);
 }
 
+double LatticeBlocks::tree_tolerance() const { return LatticeBlocksWalk::kSampleShare * tolerance_; }
+
 double LatticeBlocks::cost(const LatticeAxes& axes) const { return LatticeBlocksWalk(*this, axes).cost(); }
 
 }  // namespace raycone

@@ -57,6 +57,7 @@ class LatticeBlocks {
 
   [[nodiscard]] SimdLevel level() const { return level_; }
   [[nodiscard]] const SourceTree& tree() const { return tree_; }
+  [[nodiscard]] double tree_tolerance() const;                                        // that the tree was made with
   [[nodiscard]] std::span<const TriangleExtent> extents() const { return sources_; }  // of the tree's triangles
   // Of the tree's triangles, where what is near may be summed by its boundary; else null.
   [[nodiscard]] const SharedEdges* edges() const { return edges_ ? &*edges_ : nullptr; }

@@ -487,8 +487,8 @@ MUTANTS = [
     Mutant("surface_polygons_turned", "polygons in cells have what is inside behind their fronts", [
         ("core/surface/cell_polygons.cpp", "return outward * turn < 0;", "return outward * turn > 0;")]),
     Mutant("surface_polygons_open", "a point is left out where neither cell needs it", [
-        ("core/surface/contour_parts.h", "return edge == (kAbove | kBelow | kInline) || edge == kWithinCell;",
-         "return (edge & kInline) != 0 || edge == kWithinCell;")]),
+        ("core/surface/contour_parts.h", "edges[n] | (above[n] & below[n])",
+         "edges[n] | above[n] | below[n]")]),
     Mutant("surface_polygons_without_corners", "polygons in cells meet in corners of the mesh", [
         ("core/surface/cell_polygons.cpp", "has_apex_ = ends.one.has_value();", "has_apex_ = false;")]),
     Mutant("surface_places_on_border", "a vertex on the border of its edge, face or cell is out of place", [
@@ -523,7 +523,7 @@ MUTANTS = [
         ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
          "    if (roles_[target] == VertexRole::kForeign) {\n")]),
     Mutant("all_is_near_the_surface", "nodes of one kind say nothing about where the surface is", [
-        ("core/surface/surface_measures.cpp", "return any && !all;", "return any || !all;")]),
+        ("core/surface/surface_measures.cpp", "return inside != 0 && inside != 8;", "return inside != 0 || inside != 8;")]),
     Mutant("farthest_by_source_alone", "a vertex may be farther from the mesh than the others whose sources are", [
         ("core/surface/surface_measures.cpp", "largest = std::max(largest, std::ranges::max(distances));",
          "largest = std::max(largest, std::ranges::min(distances));")]),
@@ -623,7 +623,7 @@ MUTANTS = [
     Mutant("gaps_from_the_shortest_run_on", "where one way to fill a gap leads nowhere, another one is tried", [
         ("core/surface/fill_gap.cpp", "if (++tries_ > kMostTries) return false;", "if (++tries_ > 1) return false;")]),
     Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [
-        ("core/surface/certificate.cpp", "cells.meets(box_of_triangle(mesh, face))",
+        ("core/surface/certificate.cpp", "cells.meets(range_of(mesh.triangles[face]))",
          "std::ranges::find(change.faces, face) != change.faces.end()")]),
     Mutant("bricks_not_merged_again", "bricks in which something else is kept are merged again", [
         ("core/surface/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",

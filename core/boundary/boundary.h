@@ -20,7 +20,7 @@ struct DirectedEdge {
 
 class Boundary {
  public:
-  // Of a welded mesh with these exterior_edges().
+  // Of a welded mesh with these exterior_edges(). Needs DefaultFloatingPoint.
   Boundary(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
   explicit Boundary(const TriangleMesh& mesh) : Boundary(mesh, raycone::exterior_edges(mesh)) {}
 

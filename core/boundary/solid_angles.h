@@ -20,12 +20,13 @@ struct SolidFaces {
   std::vector<SolidTriangle> triangles;
   bool has_repeated_faces = false;  // one is there so often that its error, multiplied, would show
 };
+// Needs DefaultFloatingPoint.
 [[nodiscard]] SolidFaces solid_faces(const TriangleMesh& mesh);
 
 // Rounding errors of some u per triangle.
 class SolidAngles final : public ExactTerm {
  public:
-  // `boundary`: of the mesh; it must outlive this.
+  // `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
   SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level);
 
   // Whether the sum over the triangles is cheaper than the cone over the exterior edges.

@@ -90,6 +90,8 @@ struct EvaluatorOptions {
   const std::vector<ExteriorEdge>* edges = nullptr;
 };
 
+// What uses threads throws ThreadsUnavailable (core/machine/threads.h) where none can be started, and with
+// RayEngine::kEmbree std::runtime_error where Embree fails.
 class WindingNumberEvaluator {
  public:
   // Prepares what depends on the mesh alone, except what prepare_points() does. Preconditions: `mesh` is welded

@@ -20,7 +20,7 @@ class CapCrossings {
     if (!caps.triangles.empty()) grid_.emplace(caps);
   }
 
-  // The sums of the signs of the crossings, exact: one of each sample, 0 beyond.
+  // The sums of the signs of the crossings, exact: one of each sample, 0 beyond. Needs DefaultFloatingPoint.
   [[nodiscard]] std::array<std::int64_t, kTile> of(const SampleTile& samples) const;
 
  private:

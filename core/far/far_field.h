@@ -29,7 +29,7 @@ enum class FarSources { kTriangles, kCaps };
 class FarField final : public BoundaryTerm {
  public:
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
-  // rounds included. `boundary`: of the mesh; it must outlive this.
+  // rounds included. `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
   FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance, SimdLevel level);
   // The same of caps of which there is a tree, made with this tolerance. Both must outlive this, too. Precondition: no
   // cap is repeated.

@@ -44,11 +44,10 @@ for name in $twice; do
 done
 
 # The second of two headers of one guard is left out.
-guards=$(grep -hoE '^#define RAYCONE_[A-Z0-9_]*_H_$' $(find core io app -name '*.h') | sort | uniq -d)
-for guard in $guards; do
-  [ "$guard" = '#define' ] || { grep -rnE "^#define $guard\$" core io app >&2
-    echo "check_layers: two headers have the guard $guard" >&2
-    status=1; }
+for guard in $(find core io app -name '*.h' -exec sed -nE 's/^#define (RAYCONE_[A-Z0-9_]*_H_)$/\1/p' {} + | sort | uniq -d); do
+  grep -rn "^#define $guard\$" core io app >&2
+  echo "check_layers: two headers have the guard $guard" >&2
+  status=1
 done
 
 only_in Embree '[<"]embree' 'core/crossings/ray_caster\.cpp'

@@ -1,7 +1,6 @@
 #include "app/command_line/slice_options.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,7 +26,7 @@ void check_format(const Values& values, const std::string& output) {
     if (!is_word(values.text("--format"), "png")) invalid("--format", values.text("--format"), "png");
     return;
   }
-  if (output == "-" || ends_with_word(output, ".png")) return;
+  if (output == "-" || has_extension(output, "png")) return;
   throw UsageError(output + ": its extension names no format, expected png, or --format");
 }
 

@@ -68,9 +68,8 @@ double bytes_of_point(FieldFormat format, const OutputDescription& description) 
   const auto numbers = static_cast<double>(description.components());
   switch (format) {
     case FieldFormat::kNpy:
-      return description.fields.size() == 1 && description.fields.front().kind == FieldKind::kLabel
-                 ? sizeof(std::int32_t)
-                 : numbers * bytes_of_real(description, Precision::kDouble);
+      if (description.has_labels_alone()) return sizeof(std::int32_t);
+      return numbers * bytes_of_real(description, Precision::kDouble);
     case FieldFormat::kRawDouble:
       return numbers * sizeof(double);
     case FieldFormat::kRawFloat:

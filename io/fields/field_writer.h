@@ -87,6 +87,8 @@ struct OutputDescription {
   std::vector<std::string> options;               // that were given, each "--name=value" or "--name"
 
   [[nodiscard]] bool is(Precision wanted) const { return precision == wanted; }
+  // Then NPY at points holds integers.
+  [[nodiscard]] bool has_labels_alone() const { return fields.size() == 1 && fields.front().kind == FieldKind::kLabel; }
   // Numbers of a sample.
   [[nodiscard]] std::size_t components() const {
     std::size_t count = 0;

@@ -62,8 +62,8 @@ class NpyPointWriter final : public PointWriter {
     const Precision precision = description.precision.value_or(Precision::kDouble);
     for (FieldDescription field : description.fields) {
       // Columns are of one type, whatever they hold; labels alone are integers.
-      const bool has_own_type = field.kind == FieldKind::kDistance || field.kind == FieldKind::kVector ||
-                                (field.kind == FieldKind::kLabel && description.fields.size() == 1);
+      const bool has_own_type =
+          field.kind == FieldKind::kDistance || field.kind == FieldKind::kVector || description.has_labels_alone();
       if (!has_own_type) field.kind = FieldKind::kReal;
       columns_.push_back(make_array_elements(field, precision, output.name()));
     }

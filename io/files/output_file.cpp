@@ -24,6 +24,13 @@ namespace {
 
 // --- Calls that differ from their POSIX namesakes
 
+// What was reserved beyond the end. Where that cannot be done, no data are lost.
+void give_back_room(int descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) return;
+  [[maybe_unused]] const int ignored = ftruncate(descriptor, status.st_size);
+}
+
 bool write_to_disk(int descriptor) {
   int result = -1;
   do {
@@ -89,6 +96,7 @@ struct OutputFile::State {
   OutputGroup* group;                      // or null
   std::string target;                      // `name` with links followed
   std::optional<TemporaryFile> temporary;  // absent where written to directly
+  bool has_reserved = false;
   int descriptor = -1;
   int directory = -1;  // of `target`, to be synced; -1 where it may be written to, but not opened
   std::optional<FileBuffer> buffer;
@@ -180,7 +188,8 @@ void OutputFile::reserve(std::uint64_t bytes) {
   const double room = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
   if (told && room < static_cast<double>(bytes)) state_->fail_reserving(bytes, room);
   if (!state_->temporary || bytes > static_cast<std::uint64_t>(std::numeric_limits<off_t>::max())) return;
-  if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) return;
+  state_->has_reserved = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0;
+  if (state_->has_reserved) return;
   if (errno == ENOSPC) state_->fail_reserving(bytes, room);
   if (errno == EDQUOT || errno == EFBIG) state_->fail_writing(errno);
 }
@@ -217,11 +226,7 @@ void OutputFile::commit() {
   flush();
   State& state = *state_;
   if (state.temporary) {
-    // Gives back what was reserved beyond the end.
-    struct stat status {};
-    if (fstat(state.descriptor, &status) != 0 || ftruncate(state.descriptor, status.st_size) != 0) {
-      state.fail_writing(errno);
-    }
+    if (state.has_reserved) give_back_room(state.descriptor);
     if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
     if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
   }

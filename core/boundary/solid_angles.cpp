@@ -87,7 +87,7 @@ SolidAngles::SolidAngles(SolidFaces faces, const Boundary& boundary, SimdLevel l
       multiply_(solid_angle_kernel(level)),
       faces_(std::move(faces)) {}
 
-// Per sample a triangle takes 1.1 to 1.3 times as long as an edge.
+// A triangle takes 1.3 times as long as an edge at a scattered point, 1.9 times at a sample of a lattice.
 bool SolidAngles::are_cheaper(std::size_t triangles, std::size_t exterior_edges) {
   return 4 * triangles <= 3 * exterior_edges;
 }

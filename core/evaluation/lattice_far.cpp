@@ -6,42 +6,29 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/evaluation/costs.h"
 #include "core/evaluation/lattice_tile.h"
 
 namespace raycone {
 namespace {
 
-// Times at a sample, in units of that of one of the blocks' triangles: of an exterior edge, and of a triangle among
-// all; of what far fields count as an edge.
-constexpr double kEdge = 0.52;
-constexpr double kFarEdge = 0.46;
-constexpr double kTriangle = 1.0;
-constexpr double kInBlocks = 10.0;  // of a sample of blocks, beside what they sum
-// Of what is made once: the fit; of each edge or triangle, its part of the tree.
-constexpr double kFit = 1.1e6;
-constexpr double kInTree = 3.5e3;
+// An estimate of blocks is 0.95 to 1.4 times what they take, that of the far field no better than this.
+constexpr double kSafetyOfBlocks = 1.03;
+constexpr double kSafety = 0.92;
 // An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples, where that
 // takes so long.
 constexpr double kLeastSamples = 1e5;
-constexpr double kLeastCost = 2e7;
+constexpr double kLeastCost = 4e7;
 // Where a lattice is smaller than this, soups and so many exterior edges are left to the far field: a second tree would
 // take a twentieth of the time.
 constexpr double kSmallLattice = 2e5;  // samples
 constexpr std::uint64_t kManyForSmall = 1500;
-// An estimate of blocks is 0.95 to 1.4 times what they take, that of the far field no better than this.
-constexpr double kSafetyOfBlocks = 1.03;
-constexpr double kSafety = 0.92;
-
-double direct_cost(const ScaledMesh& mesh) {
-  return mesh.counts_crossings() ? kEdge * static_cast<double>(mesh.boundary().exterior_edges())
-                                 : kTriangle * static_cast<double>(mesh.mesh().triangles.size());
-}
-
-double tree_cost(const ScaledMesh& mesh) { return kInTree * direct_cost(mesh); }
 
 double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
-  return mesh.blocks().sums.cost(axes) + kInBlocks;
+  return kOnLattice.in_blocks * mesh.blocks().sums.cost(axes) + kOnLattice.beside_blocks;
 }
+
+double far_field_cost(const ScaledMesh& mesh) { return kFarFieldOnLattice * mesh.far_field()->cost_on_lattice(); }
 
 double samples_of(const Lattice& lattice) {
   double samples = 1.0;
@@ -61,7 +48,7 @@ bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
   if (mesh.options().summation == Summation::kBlocks) return true;
   const bool left_to_far_field =
       samples < kSmallLattice && (!mesh.counts_crossings() || mesh.boundary().exterior_edges() >= kManyForSmall);
-  return samples >= kLeastSamples && direct_cost(mesh) * samples >= kLeastCost && !left_to_far_field;
+  return samples >= kLeastSamples && mesh.direct_cost() * samples >= kLeastCost && !left_to_far_field;
 }
 
 }  // namespace
@@ -79,11 +66,11 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   }
   if (!mesh.blocks().are_sound) return std::nullopt;
   if (mesh.options().summation == Summation::kBlocks) return axes;
-  const double samples = samples_of(lattice), direct = direct_cost(mesh);
+  const double samples = samples_of(lattice), direct = mesh.direct_cost();
   const bool far = takes_far_field_on_lattice(mesh);
-  const double other = far ? std::min(direct, kFarEdge * mesh.far_field()->cost_on_lattice()) : direct;
+  const double other = far ? std::min(direct, far_field_cost(mesh)) : direct;
   // The tree is there by now.
-  if (blocks_cost(mesh, axes) * samples + kFit > kSafetyOfBlocks * other * samples) return std::nullopt;
+  if (blocks_cost(mesh, axes) * samples + kOnLattice.fit > kSafetyOfBlocks * other * samples) return std::nullopt;
   return axes;
 }
 
@@ -100,20 +87,19 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
   // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
-  constexpr double kUnit = 2.5e-9;
+  constexpr double kEdge = 1.3e-9;
   constexpr double kSource = 1e-5;  // in the tree
   if (mesh.is_closed()) return 0.0;
   const double samples = samples_of(lattice);
-  if (!by_far_field) return kUnit * direct_cost(mesh) * samples;
+  if (!by_far_field) return kEdge * mesh.direct_cost() * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kUnit * (blocks_cost(mesh, *axes) * samples + kFit + tree_cost(mesh));
+    return kEdge * (blocks_cost(mesh, *axes) * samples + kOnLattice.fit + kOnLattice.tree * mesh.direct_cost());
   }
   if (takes_far_field_on_lattice(mesh)) {
-    const FarField* const far = mesh.far_field();
-    return kUnit * kFarEdge * far->cost_on_lattice() * samples +
-           kSource * static_cast<double>(far->sources().triangles().size());
+    const auto sources = static_cast<double>(mesh.far_field()->sources().triangles().size());
+    return kEdge * far_field_cost(mesh) * samples + kSource * sources;
   }
-  return kUnit * direct_cost(mesh) * samples;
+  return kEdge * mesh.direct_cost() * samples;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/boundary/cone.h"
 #include "core/boundary/solid_angles.h"
+#include "core/evaluation/costs.h"
 
 namespace raycone {
 namespace {
@@ -29,8 +30,7 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   return std::make_unique<const Cone>(boundary, options.level);
 }
 
-constexpr double kTriangleSummed = 1.9;  // directly, in units of an exterior edge
-constexpr double kFarShare = 0.75;       // of the tolerance; near triangles round, too
+constexpr double kFarShare = 0.75;  // of the tolerance; near triangles round, too
 
 }  // namespace
 
@@ -46,6 +46,11 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
 }
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
+
+double ScaledMesh::direct_cost() const {
+  return counts_crossings() ? static_cast<double>(boundary_.exterior_edges())
+                            : kTriangle * static_cast<double>(mesh_.triangles.size());
+}
 
 const RayCaster& ScaledMesh::rays() const {
   std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
@@ -97,24 +102,22 @@ Box box_for_points(const TriangleMesh& mesh) {
 
 }  // namespace
 
-// Where the estimate says that it takes less time. Times at a point, in units of that of an exterior edge.
+// Where the estimate says that it takes less time.
 std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const {
-  constexpr double kTriangle = 1.6;
-  constexpr double kFit = 1.5e6, kInTree = 1e3;  // once: the fit, and of each edge, its part of the tree
-  constexpr double kSafety = 0.75;               // estimates are no better
-  constexpr double kLeastPoints = 2e5;           // an estimate takes as long as some thousand points, ...
-  constexpr double kLeastCost = 4e7;             // ... of some hundred edges
+  constexpr double kSafety = 0.75;      // estimates are no better
+  constexpr double kLeastPoints = 2e5;  // an estimate takes as long as some thousand points, ...
+  constexpr double kLeastCost = 4e7;    // ... of some hundred edges
   const double points = options_.accuracy.points;
   const bool forced = options_.summation == Summation::kBlocks;
   if (!(points > 0.0) || (!forced && options_.summation != Summation::kCheapest) || !has_blocks()) return nullptr;
-  const double edges = static_cast<double>(boundary_.exterior_edges());
-  const double direct = counts_crossings() ? edges : kTriangleSummed * static_cast<double>(mesh_.triangles.size());
+  const double direct = direct_cost();
   if (!forced && (points < kLeastPoints || direct * points < kLeastCost)) return nullptr;
   if (!blocks().are_sound) return nullptr;
   std::unique_ptr<const BlocksOfPoints> result(
       new BlocksOfPoints{CapCrossings(blocks().caps), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
   const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
-  const double cost = kTriangle * result->sums.cost() * points + kFit + kInTree * direct;
+  const double at_point = kAtPoints.in_blocks * result->sums.cost() + kAtPoints.beside_blocks;
+  const double cost = at_point * points + kAtPoints.fit + kAtPoints.tree * direct;
   return forced || cost < kSafety * other * points ? std::move(result) : nullptr;
 }
 
@@ -145,9 +148,7 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   }
   if (far->has_repeated_faces()) return nullptr;
   constexpr double kSafety = 0.8;  // estimates are no better
-  const double of_direct = caps ? static_cast<double>(boundary_.exterior_edges())
-                                : kTriangleSummed * static_cast<double>(mesh_.triangles.size());
-  return forced || far->cost() < kSafety * of_direct ? std::move(far) : nullptr;
+  return forced || far->cost() < kSafety * direct_cost() ? std::move(far) : nullptr;
 }
 
 const FarField* ScaledMesh::far_field() const {
@@ -167,7 +168,7 @@ bool ScaledMesh::has_far_field() const {
   const bool forced = options_.summation == Summation::kFarField;
   const bool caps = counts_crossings();
   const double sources = static_cast<double>(caps ? boundary_.exterior_edges() : mesh_.triangles.size());
-  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangleSummed)) &&
+  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangle)) &&
          far_field() != nullptr;
 }
 

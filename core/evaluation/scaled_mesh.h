@@ -98,6 +98,8 @@ class ScaledMesh {
 
   // Whether values depend on how many triangles a ray crosses.
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
+  // What the direct sum takes at a sample (costs.h).
+  [[nodiscard]] double direct_cost() const;
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
   [[nodiscard]] bool has_far_field() const;

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
+#include <limits>
 #include <utility>
 
-#include "core/exact/projection.h"
+#include "core/machine/buckets.h"
+#include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -16,54 +17,123 @@ struct InCell {
   std::uint32_t cell, triangle;
 };
 
-constexpr double kMargin = 0x1p-6;  // of a cell's side, far above all rounding
+constexpr double kMargin = 0x1p-6;  // of a cell's side, far above all rounding up to ...
+constexpr double kFar = 0x1p40;     // ... so many cells
 
-// Collects the cells of one triangle after the other.
+struct CellRange {
+  std::int64_t first, last;
+};
+
+// A convex polygon. One of its sides may be a point.
+struct Polygon {
+  std::array<Vec3, 6> corners;
+  std::size_t count = 0;
+};
+
+struct Interval {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+
+  void extend(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+// The part of a segment between the planes at `low` and `high` across an axis: visits its ends, where there is one.
+template <class Visit>
+void clip(const Vec3& p, const Vec3& q, int axis, double low, double high, const Visit& visit) {
+  const double from = p[axis], to = q[axis];
+  if (std::max(from, to) < low || std::min(from, to) > high) return;
+  const auto at = [&](double plane) { return p + ((plane - from) / (to - from)) * (q - p); };
+  visit(from < low ? at(low) : from > high ? at(high) : p);
+  visit(to < low ? at(low) : to > high ? at(high) : q);
+}
+
+// Finds which cells a triangle comes into, layer by layer. In units of cells, from the lowest one on, so that extremes
+// neither over- nor underflow.
 class CellFinder {
  public:
   CellFinder(const TriangleMesh& mesh, const SurfaceCells& cells) : mesh_(mesh), cells_(cells) {}
 
-  void find(std::uint32_t triangle, std::vector<InCell>& found) const {
-    const Triangle& t = mesh_.triangles[triangle];
-    const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
-    const Range x = range(0, a, b, c), y = range(1, a, b, c), z = range(2, a, b, c);
-    const Vec3& h = cells_.lattice().spacing;
-    // In units of cells, so that extremes neither over- nor underflow.
-    const auto scaled = [&](const Vec3& v) { return Vec3{v.x / h.x, v.y / h.y, v.z / h.z}; };
-    const Vec3 u = scaled(b - a), v = scaled(c - a), normal = cross(u, v), terms = cross_terms(u, v);
-    const double reach = (0.5 + kMargin) * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-    for (std::int64_t k = z.first; k <= z.last; ++k) {
-      for (std::int64_t j = y.first; j <= y.last; ++j) {
-        const std::uint32_t end = cells_.row_end(j, k);
-        for (std::uint32_t n = cells_.first_from(cells_.row_begin(j, k), end, x.first); n < end; ++n) {
-          const SurfaceCell& cell = cells_.cells()[n];
-          if (cell.node[0] > x.last) break;
-          const Vec3 low = cells_.position(cell.node);
-          const Vec3 middle = scaled(low - a) + Vec3{0.5, 0.5, 0.5};
-          const double rounding = kTurnTrust * dot(terms, absolute(middle));
-          if (std::abs(dot(normal, middle)) > reach + rounding) continue;  // the plane passes it by
-          found.push_back({n, triangle});
-        }
-      }
+  [[nodiscard]] CellRange layers(std::uint32_t triangle) const { return range(2, extent(corners(triangle), 2)); }
+
+  template <class Found>
+  void find(std::uint32_t triangle, std::int64_t layer, const Found& found) const {
+    const std::array<Vec3, 3> corners = this->corners(triangle);
+    if (is_far(corners)) return find_all(corners, layer, found);
+    const auto low = static_cast<double>(layer) - kMargin, high = static_cast<double>(layer + 1) + kMargin;
+    Polygon part;
+    Interval y;
+    for (std::size_t n = 0; n < 3; ++n) {
+      clip(corners[n], corners[(n + 1) % 3], 2, low, high, [&](const Vec3& p) {
+        part.corners[part.count++] = p;
+        y.extend(p.y);
+      });
     }
+    const CellRange rows = range(1, y);
+    for (std::int64_t row = rows.first; row <= rows.last; ++row) find_in_row(section(part, row), row, layer, found);
   }
 
  private:
-  struct Range {
-    std::int64_t first, last;
-  };
-
-  // Indices of cells along an axis, from 0; none where the triangle is beyond the lattice.
-  [[nodiscard]] Range range(int axis, const Vec3& a, const Vec3& b, const Vec3& c) const {
+  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
     const Lattice& lattice = cells_.lattice();
-    const auto n = static_cast<std::size_t>(axis);
-    const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
-    const auto cell = [&](double coordinate, double margin) {
-      const double index = (coordinate - lattice.origin[axis]) / lattice.spacing[axis] + margin;
-      const double from_0 = std::floor(index) - static_cast<double>(lattice.index_min[n]);
-      return static_cast<std::int64_t>(std::clamp(from_0, -1.0, static_cast<double>(lattice.counts[n])));
+    const Vec3 low = cells_.position({0, 0, 0});
+    const Vec3& h = lattice.spacing;
+    std::array<Vec3, 3> corners;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Vec3 v = mesh_.vertices[mesh_.triangles[triangle][n]] - low;
+      corners[n] = {v.x / h.x, v.y / h.y, v.z / h.z};
+    }
+    return corners;
+  }
+
+  [[nodiscard]] static bool is_far(const std::array<Vec3, 3>& corners) {
+    return !std::ranges::all_of(
+        corners, [](const Vec3& p) { return std::abs(p.x) < kFar && std::abs(p.y) < kFar && std::abs(p.z) < kFar; });
+  }
+
+  [[nodiscard]] static Interval extent(const std::array<Vec3, 3>& corners, int axis) {
+    Interval result;
+    for (const Vec3& p : corners) result.extend(p[axis]);
+    return result;
+  }
+
+  // Of a part of one layer, where it is in a row: its extent along x.
+  [[nodiscard]] static Interval section(const Polygon& part, std::int64_t row) {
+    const auto low = static_cast<double>(row) - kMargin, high = static_cast<double>(row + 1) + kMargin;
+    Interval x;
+    for (std::size_t n = 0; n < part.count; ++n) {
+      clip(part.corners[n], part.corners[n + 1 < part.count ? n + 1 : 0], 1, low, high,
+           [&](const Vec3& p) { x.extend(p.x); });
+    }
+    return x;
+  }
+
+  // Indices of cells along an axis; none where the interval is empty, or beyond the lattice.
+  [[nodiscard]] CellRange range(int axis, const Interval& interval) const {
+    const auto count = cells_.lattice().counts[static_cast<std::size_t>(axis)];
+    const auto cell = [&](double x) {
+      return static_cast<std::int64_t>(std::floor(std::clamp(x, -1.0, static_cast<double>(count))));
     };
-    return {std::max<std::int64_t>(cell(low, -kMargin), 0), std::min(cell(high, kMargin), lattice.counts[n] - 1)};
+    return {std::max<std::int64_t>(cell(interval.low - kMargin), 0),
+            std::min(cell(interval.high + kMargin), count - 1)};
+  }
+
+  template <class Found>
+  void find_in_row(const Interval& x, std::int64_t row, std::int64_t layer, const Found& found) const {
+    const CellRange along = range(0, x);
+    const std::uint32_t end = cells_.row_end(row, layer);
+    std::uint32_t cell = cells_.row_begin(row, layer);
+    if (cell == end) return;
+    cell = cells_.first_from(cell, end, along.first);
+    for (; cell < end && cells_.cells()[cell].node[0] <= along.last; ++cell) found(cell);
+  }
+
+  // All cells of the layer that meet the triangle's box.
+  template <class Found>
+  void find_all(const std::array<Vec3, 3>& corners, std::int64_t layer, const Found& found) const {
+    const CellRange rows = range(1, extent(corners, 1));
+    for (std::int64_t row = rows.first; row <= rows.last; ++row) find_in_row(extent(corners, 0), row, layer, found);
   }
 
   const TriangleMesh& mesh_;
@@ -72,32 +142,43 @@ class CellFinder {
 
 }  // namespace
 
+// Layer by layer, each with its triangles in increasing order.
 CellTriangles::CellTriangles(const TriangleMesh& mesh, const SurfaceCells& cells)
     : begin_(cells.cells().size() + 1, 0) {
   const CellFinder finder(mesh, cells);
-  std::vector<std::vector<InCell>> parts;  // in any order; one vector of all would be moved as it grows
-  std::mutex mutex;
-  parallel_for(mesh.triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<InCell> found;
-    for (std::size_t i = begin; i < end; ++i) finder.find(static_cast<std::uint32_t>(i), found);
-    const std::scoped_lock lock(mutex);
-    parts.push_back(std::move(found));
-  });
-  for (const std::vector<InCell>& part : parts) {
-    for (const InCell& one : part) ++begin_[one.cell + 1];
-  }
-  for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
-  triangles_.resize(begin_.back());
-  std::vector<std::uint64_t> next(begin_.begin(), begin_.end() - 1);
-  for (const std::vector<InCell>& part : parts) {
-    for (const InCell& one : part) triangles_[next[one.cell]++] = one.triangle;
-  }
-  parallel_for(begin_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      const auto at = [&](std::size_t n) { return triangles_.begin() + static_cast<std::ptrdiff_t>(begin_[n]); };
-      std::sort(at(cell), at(cell + 1));
+  const auto count = static_cast<std::size_t>(cells.lattice().counts[2]);
+  const Buckets<std::uint32_t> triangles(mesh.triangles.size(), count,
+                                         [&](std::size_t begin, std::size_t end, const auto& emit) {
+                                           for (std::size_t i = begin; i < end; ++i) {
+                                             const auto triangle = static_cast<std::uint32_t>(i);
+                                             const CellRange layers = finder.layers(triangle);
+                                             for (std::int64_t k = layers.first; k <= layers.last; ++k)
+                                               emit(static_cast<std::size_t>(k), triangle);
+                                           }
+                                         });
+  std::vector<std::vector<InCell>> layers(count);
+  const auto for_each_layer = [&](const auto& visit) {
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) visit(k);
+    });
+  };
+  for_each_layer([&](std::size_t k) {
+    for (const std::uint32_t triangle : triangles[k]) {
+      finder.find(triangle, static_cast<std::int64_t>(k), [&](std::uint32_t cell) {
+        layers[k].push_back({cell, triangle});
+        ++begin_[cell + 1];
+      });
     }
   });
+  for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
+  resize_on_all_threads(triangles_, begin_.back());
+  for_each_layer([&](std::size_t k) {
+    for (const InCell& one : layers[k]) triangles_[begin_[one.cell]++] = one.triangle;
+    layers[k] = {};
+  });
+  // Each is where the next one begins now.
+  for (std::size_t cell = begin_.size() - 1; cell > 0; --cell) begin_[cell] = begin_[cell - 1];
+  begin_[0] = 0;
 }
 
 }  // namespace raycone

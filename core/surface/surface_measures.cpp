@@ -106,30 +106,33 @@ double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, co
   return largest;
 }
 
-// The centres of n^2 equal parts of each triangle, and what area each of them stands for.
+// The centres of parts of triangles, all about as large, and what area each of them stands for.
 struct AreaSamples {
   std::vector<Vec3> points;
   std::vector<double> areas;  // in squares of sample_step()
   std::vector<std::uint32_t> triangles;
 };
 
+// In rows along the shortest side, so that needles have as few as their area asks for.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
-  constexpr double kMost = 128.0;  // of so many along a side, each is a small part
+  constexpr double kMost = 180.0;   // of so many rows, each is a small part
+  constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a square of a step
   const Triangle& t = mesh.triangles[triangle];
-  const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a;
-  const double longest = std::max({length_of_vector(u), length_of_vector(v), length_of_vector(v - u)});
-  const double parts = std::clamp(std::ceil(longest / step), 1.0, kMost);
-  const double area = length_of_vector(cross((1.0 / step) * u, (1.0 / step) * v)) / 2.0 / (parts * parts);
-  const auto n = static_cast<int>(parts);
-  const auto add = [&](double s, double r) {
-    samples.points.push_back(a + (s / parts) * u + (r / parts) * v);
-    samples.areas.push_back(area);
-    samples.triangles.push_back(triangle);
-  };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; i + j < n; ++j) {
-      add(i + 1.0 / 3.0, j + 1.0 / 3.0);
-      if (i + j + 1 < n) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
+  const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
+  const std::array lengths{length_of_vector(side(0)), length_of_vector(side(1)), length_of_vector(side(2))};
+  const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
+  const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
+  const double area = length_of_vector(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
+  const auto parts_of = [&](double length) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMost); };
+  const double rows = parts_of(std::ranges::max(lengths)), in_last_row = parts_of(lengths[apex]);
+  for (double row = 0.0; row < rows; row += 1.0) {
+    const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
+    const double centre = (to * to * to - from * from * from) * 2.0 / 3.0 / part;
+    const double count = std::ceil(to * in_last_row);
+    for (double n = 0.5; n < count; n += 1.0) {
+      samples.points.push_back(a + centre * (along + (n / count) * across));
+      samples.areas.push_back(area * part / count);
+      samples.triangles.push_back(triangle);
     }
   }
 }

@@ -1091,6 +1091,22 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   EXPECT_FALSE(measure_surface(surface, box, inside).drops);
 }
 
+// A triangle as one, and as a fan of needles, has the same area.
+TEST(SurfaceMeasures, AddUpNeedles) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh needles = box;
+  const auto first = static_cast<std::uint32_t>(box.vertices.size());
+  needles.vertices.push_back({0.5, 0.2, 0.2});
+  constexpr std::uint32_t kNeedles = 200;
+  for (std::uint32_t n = 0; n <= kNeedles; ++n) {
+    needles.vertices.push_back({0.5, 0.8 - 0.6 * n / kNeedles, 0.2 + 0.6 * n / kNeedles});
+    if (n > 0) needles.triangles.push_back({first, first + n, first + n + 1});
+  }
+  const auto [surface, lattice] = surface_of(box, 20);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  EXPECT_NEAR(measure_surface(surface, needles, inside).dropped_area, 0.18, 1e-12);  // a sum of some thousand parts
+}
+
 // They find most distances without a search.
 TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
   Random random(26);

@@ -307,55 +307,67 @@ const EdgePoint& FacePoints::piece_behind(std::uint32_t point) const {
   return std::ranges::lower_bound(pieces_, point, {}, &Piece::point)->plane;
 }
 
+void FacePoints::add_face(const FacePoints& of, std::size_t begin, std::size_t end) {
+  const auto here = static_cast<std::uint32_t>(faces_.size()), first = static_cast<std::uint32_t>(begin);
+  if (end - begin > 1) {  // else it has no pieces
+    auto piece = std::ranges::lower_bound(of.pieces_, first, {}, &Piece::point);
+    for (; piece != of.pieces_.end() && piece->point < end; ++piece)
+      pieces_.push_back({here + (piece->point - first), piece->plane});
+  }
+  for (std::size_t n = begin; n < end; ++n) add(of.faces_[n], of.positions_[n]);
+}
+
+std::size_t FacePoints::end_of_face(std::size_t point) const {
+  const std::uint64_t face = faces_[point];
+  while (point < faces_.size() && faces_[point] == face) ++point;
+  return point;
+}
+
 void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
                                   std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
                                   const SurfaceMargins& margins) {
-  CreasesHere creases_here(creases);
-  std::size_t count = 0, pieces = 0, piece = 0, sections = 0, section = 0;
-  for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
-    const std::uint64_t face = faces_[i];
+  constexpr std::size_t kPointsPerPart = 1024;
+  std::vector<FacePoints> parts((faces_.size() + kPointsPerPart - 1) / kPointsPerPart);
+  const auto is_of_polygons = [&](std::uint32_t cell) { return cells_of_polygons[cell] != 0; };
+  const auto add_face_to = [&](FacePoints& part, CreasesHere& creases_here, std::size_t begin, std::size_t end) {
+    const std::uint64_t face = faces_[begin];
     const auto cell = static_cast<std::uint32_t>(face / 16);
-    for (end = i + 1; end < faces_.size() && faces_[end] == face;) ++end;
-    const auto is_of_polygons = [&](std::uint32_t c) { return cells_of_polygons[c] != 0; };
-    const bool is_section = section < sections_.size() && sections_[section] == face;
-    section += is_section ? 1 : 0;
-    const bool stays = !is_section || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons);
-    if (is_section && stays) sections_[sections++] = face;
-    std::size_t left = end - i;
-    if (!stays) {
-      creases_here.enter(cell);
-      const auto one = face_point(cells, edge_points, cell, face % 16, creases_here, tolerance, margins);
-      if (one) positions_[i] = *one;
-      left = one ? 1 : 0;
+    const bool is_section = std::ranges::binary_search(sections_, face);
+    if (!is_section || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons)) {
+      if (is_section) part.sections_.push_back(face);
+      part.add_face(*this, begin, end);
+      return;
     }
-    for (; piece < pieces_.size() && pieces_[piece].point < end; ++piece) {
-      const auto number = static_cast<std::uint32_t>(count + pieces_[piece].point - i);
-      if (stays) pieces_[pieces++] = {number, pieces_[piece].plane};
+    creases_here.enter(cell);
+    const auto one = face_point(cells, edge_points, cell, face % 16, creases_here, tolerance, margins);
+    if (one) part.add(face, *one);
+  };
+  parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
+    CreasesHere creases_here(creases);
+    for (std::size_t n = first; n < last; ++n) {
+      std::size_t point = n * kPointsPerPart;
+      if (point > 0 && faces_[point] == faces_[point - 1]) point = end_of_face(point);
+      while (point < std::min((n + 1) * kPointsPerPart, faces_.size())) {
+        const std::size_t end = end_of_face(point);
+        add_face_to(parts[n], creases_here, point, end);
+        point = end;
+      }
     }
-    for (std::size_t n = i; n < i + left; ++n, ++count) {
-      faces_[count] = face;
-      positions_[count] = positions_[n];
-    }
-  }
-  faces_.resize(count);
-  positions_.resize(count);
-  pieces_.resize(pieces);
-  sections_.resize(sections);
-  number_cells();
+  });
+  FacePoints left;
+  left.kind_ = kind_;
+  left.join(parts);
+  *this = std::move(left);
 }
 
 FacePoints FacePoints::without(const std::vector<bool>& dropped) const {
   FacePoints left;
   left.kind_ = kind_;
-  auto piece = pieces_.begin();
-  for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
-    bool is_dropped = false;
-    for (end = i; end < faces_.size() && faces_[end] == faces_[i]; ++end) is_dropped = is_dropped || dropped[end];
-    for (; piece != pieces_.end() && piece->point < end; ++piece) {
-      const std::size_t number = left.faces_.size() + piece->point - i;
-      if (!is_dropped) left.pieces_.push_back({static_cast<std::uint32_t>(number), piece->plane});
-    }
-    for (std::size_t n = i; n < end && !is_dropped; ++n) left.add(faces_[n], positions_[n]);
+  for (std::size_t begin = 0, end = 0; begin < faces_.size(); begin = end) {
+    end = end_of_face(begin);
+    const auto first = dropped.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = dropped.begin() + static_cast<std::ptrdiff_t>(end);
+    if (std::find(first, last, true) == last) left.add_face(*this, begin, end);
   }
   left.number_cells();
   return left;

@@ -83,6 +83,9 @@ class FacePoints {
   void add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
                    std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
                    const SurfaceMargins& margins);
+  // The points of one face: `begin` to `end` of others.
+  void add_face(const FacePoints& of, std::size_t begin, std::size_t end);
+  [[nodiscard]] std::size_t end_of_face(std::size_t point) const;
   void join(std::vector<FacePoints>& parts);
   void number_cells();
 

@@ -211,8 +211,14 @@ void PatchMerger::find_star(std::uint32_t v) {
   sort_ring();
 }
 
-// Few: how many come before each is found without branches, which nobody could foresee.
+// Of few, as most are, how many come before each is found without branches, which nobody could foresee.
 void PatchMerger::sort_ring() {
+  constexpr std::size_t kFew = 24;
+  if (unsorted_.size() > kFew) {
+    ring_ = unsorted_;
+    std::ranges::sort(ring_);
+    return;
+  }
   ring_.resize(unsorted_.size());
   for (std::size_t n = 0; n < unsorted_.size(); ++n) {
     std::size_t before = 0;

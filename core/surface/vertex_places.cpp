@@ -58,7 +58,9 @@ template <class WrongAt>
 std::uint64_t sum_of_wrong(std::size_t count, const WrongAt& wrong_at) {
   std::atomic<std::uint64_t> wrong = 0;
   parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) wrong += wrong_at(n);
+    std::uint64_t here = 0;
+    for (std::size_t n = begin; n < end; ++n) here += wrong_at(n);
+    wrong += here;
   });
   return wrong;
 }

@@ -20,7 +20,7 @@ std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const Fi
 
 double tolerance_of_evaluation(const FieldOptions& options) {
   if (!(options.tolerance > 0.0) || !options.rule_only()) return options.tolerance;
-  return thresholds_to_settle(options.rule).empty() ? 3e-5 : 1e-6;
+  return tolerance_for_sides(options.rule);
 }
 
 FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, const std::vector<ExteriorEdge>* edges,

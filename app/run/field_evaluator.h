@@ -17,8 +17,7 @@
 namespace raycone {
 
 // The tolerance that winding numbers are evaluated with, turns. Rules do not depend on it: where nothing else is asked
-// for, it is what they are cheapest with. With a larger one far more values would be close to a threshold, and those
-// are summed again: many at once near half-integers, near others one by one.
+// for, it is what they are cheapest with.
 [[nodiscard]] double tolerance_of_evaluation(const FieldOptions& options);
 
 class FieldEvaluator {

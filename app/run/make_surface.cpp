@@ -30,6 +30,32 @@ void check_inside(const std::string& name, const NodeSet& inside, const Rule& ru
   }
 }
 
+// What tells the sides of nodes, and the values at points.
+class SurfaceEvaluators {
+ public:
+  SurfaceEvaluators(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const Rule& rule, double nodes)
+      : mesh_(mesh),
+        edges_(edges),
+        of_nodes_(mesh, {.accuracy = {.tolerance = tolerance_for_sides(rule), .samples = nodes, .sides_only = true},
+                         .edges = &edges}) {}
+
+  [[nodiscard]] const WindingNumberEvaluator& of_nodes() const { return of_nodes_; }
+
+  // Call it once. `points`: about how many there will be.
+  [[nodiscard]] const WindingNumberEvaluator& of_points(double points) {
+    constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
+    if (edges_.empty()) return of_nodes_;
+    const Accuracy accuracy{.tolerance = kTolerance, .samples = points, .points = points};
+    return of_points_.emplace(mesh_, EvaluatorOptions{.accuracy = accuracy, .edges = &edges_});
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const std::vector<ExteriorEdge>& edges_;
+  WindingNumberEvaluator of_nodes_;
+  std::optional<WindingNumberEvaluator> of_points_;  // of an open mesh
+};
+
 FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
                            const NodeSet& inside, const SurfaceOptions& options) {
   try {
@@ -80,14 +106,20 @@ std::optional<Warning> warning_about(const ThinParts& thin) {
 
 }  // namespace
 
-MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
+  constexpr double kPointsPerCell = 8.0;  // at most, where there are few holes
   check_memory(name, node_set_bytes(lattice), memory);
-  NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
+  double nodes = 1.0;
+  for (const std::int64_t count : lattice.counts) nodes *= static_cast<double>(count);
+  SurfaceEvaluators evaluators(mesh, edges, options.rule, nodes);
+  NodeSet inside = nodes_inside(evaluators.of_nodes(), options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
   check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
+  const auto points = kPointsPerCell * static_cast<double>(mixed_cells(inside));
+  const WindingNumberEvaluator& evaluator = evaluators.of_points(points);
   FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");

@@ -10,7 +10,7 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
-#include "core/evaluation/winding_number.h"
+#include "core/mesh/exterior_edges.h"
 #include "core/surface/surface.h"
 
 namespace raycone {
@@ -21,12 +21,12 @@ struct MadeSurface {
   std::vector<Warning> warnings;  // `not-merged`, `not-simplified`, `thin-parts`: those that apply
 };
 
-// The surface between the inside and the outside nodes of `lattice`, by `evaluator` of `mesh`; it has been checked.
-// `name`: the file concerned. `done`, where given, grows by one per node. Throws InputError (nothing is inside, or the
-// inside reaches the lattice's border), LimitError (`memory`, bytes, does not do for the nodes or, as
-// soon as these are known, for the surface; or numbers do not do for it), SurfaceFailure.
+// The surface between the inside and the outside nodes of `lattice`, by winding numbers of `mesh`; it has been checked.
+// `name`: the file concerned. `edges`: the exterior edges of `mesh`. `done`, where given, grows by one per node. Throws
+// InputError (nothing is inside, or the inside reaches the lattice's border), LimitError (`memory`, bytes, does not do
+// for the nodes or, as soon as these are known, for the surface; or numbers do not do for it), SurfaceFailure.
 [[nodiscard]] MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh,
-                                       const WindingNumberEvaluator& evaluator, const Lattice& lattice,
+                                       const std::vector<ExteriorEdge>& edges, const Lattice& lattice,
                                        const SurfaceOptions& options, std::uint64_t memory,
                                        std::atomic<std::uint64_t>* done = nullptr);
 

@@ -206,12 +206,11 @@ Lattice solid_lattice(const LatticeCommand& command, const PlacedLattice& lattic
 // The surface that `raycone surface` would make.
 TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const TriangleMesh& mesh) {
   return timed(run.report.seconds.prepare, [&] {
-    const WindingNumberEvaluator evaluator(mesh);
     const Lattice lattice = solid_lattice(command, *run.report.lattice);
     SurfaceOptions options{command.field.rule};
     options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
-    MadeSurface made = make_surface(run.report.mesh, mesh, evaluator, lattice, options, run.limits().memory(),
-                                    run.start_progress(sample_count(lattice)));
+    MadeSurface made = make_surface(run.report.mesh, mesh, exterior_edges(mesh), lattice, options,
+                                    run.limits().memory(), run.start_progress(sample_count(lattice)));
     run.report.surface = made.report;
     // How its faces are merged does not concern distances.
     for (const Warning& warning : made.warnings) {

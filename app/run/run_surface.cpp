@@ -13,7 +13,6 @@
 #include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
 #include "app/run/written_files.h"
-#include "core/evaluation/winding_number.h"
 #include "io/files/file_error.h"
 #include "io/mesh/write_surface.h"
 
@@ -56,17 +55,14 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   report.samples = choose_for(grid ? grid->path : command.mesh.path, [&] { return sample_count(lattice); });
   run.print_warnings();
 
-  const WindingNumberEvaluator evaluator = timed(report.seconds.prepare, [&] {
-    const std::vector<ExteriorEdge> edges = run.take_edges();
-    return WindingNumberEvaluator(mesh, {.edges = &edges});
-  });
-  report.exterior_edges = evaluator.exterior_edges();
+  const std::vector<ExteriorEdge> edges = run.take_edges();
+  report.exterior_edges = edges.size();
   SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
                          is_single_precision(command.format)};
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   MadeSurface made = timed(report.seconds.evaluate, [&] {
-    return make_surface(report.mesh, mesh, evaluator, lattice, options, limits.memory(), done);
+    return make_surface(report.mesh, mesh, edges, lattice, options, limits.memory(), done);
   });
   report.surface = made.report;
   for (const Warning& warning : made.warnings) run.warn(warning);

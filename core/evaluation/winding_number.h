@@ -68,6 +68,10 @@ struct Accuracy {
   double points = 0.0;
 };
 
+// The tolerance that sides of a rule are cheapest with, turns. With a larger one far more values would be close to a
+// threshold, and those are summed again: many at once near half-integers, near others one by one.
+[[nodiscard]] double tolerance_for_sides(const Rule& rule);
+
 // What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.
 struct Terms {
   std::uint64_t near = 0;

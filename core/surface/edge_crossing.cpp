@@ -116,7 +116,7 @@ int HitFinder::plane_side_of(const Known& t, const Vec3& p) {
 }
 
 // Of the line through the end and another point, which is not parallel to the triangle.
-bool HitFinder::passes_triangle(const Known& t, const Vec3& other) const {
+HitFinder::Passage HitFinder::passage(const Known& t, const Vec3& other) const {
   const Vec3 step = other - end_;
   const std::array<const Vec3*, 4> corners{t.a, t.b, t.c, t.a};
   std::array<int, 3> sides;
@@ -124,21 +124,26 @@ bool HitFinder::passes_triangle(const Known& t, const Vec3& other) const {
     sides[n] = sure_sign(t.sides[n].value, t.sides[n].terms, step);
     if (sides[n] == 0) sides[n] = plane_side(end_, other, *corners[n], *corners[n + 1]);
   }
-  return sides[0] * sides[1] >= 0 && sides[0] * sides[2] >= 0 && sides[1] * sides[2] >= 0;
+  if (sides[0] * sides[1] < 0 || sides[0] * sides[2] < 0 || sides[1] * sides[2] < 0) return Passage::kBeside;
+  return sides[0] * sides[1] * sides[2] == 0 ? Passage::kAtSide : Passage::kInside;
 }
 
-std::optional<double> HitFinder::hit(Known& t, const Vec3& other, bool from_end) const {
+std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, bool from_end) const {
   if (!t.has_sides) find_sides(t);
   const int side = plane_side_of(t, other);
-  if (side == t.side || !passes_triangle(t, other)) return std::nullopt;  // both 0, too
-  if (t.side == 0) return from_end ? 0.0 : 1.0;
-  if (side == 0) return from_end ? 1.0 : 0.0;
+  if (side == t.side) return std::nullopt;  // both 0, too
+  const Passage how = passage(t, other);
+  if (how == Passage::kBeside) return std::nullopt;
+  if (t.side == 0) return SegmentHit{from_end ? 0.0 : 1.0, t.triangle};
+  if (side == 0) return SegmentHit{from_end ? 1.0 : 0.0, t.triangle};
   if (!t.has_distance) {
     t.of_end = std::abs(long_dot(t.long_normal, long_difference(end_, *t.a)));
     t.has_distance = true;
   }
   const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
-  return from_end ? place_between(t.of_end, of_other) : place_between(of_other, t.of_end);
+  const double at = from_end ? place_between(t.of_end, of_other) : place_between(of_other, t.of_end);
+  const int behind = from_end ? side : t.side;  // of the plane, in front of which w is less by one
+  return SegmentHit{at, t.triangle, static_cast<std::int8_t>(how == Passage::kInside ? -behind : 0)};
 }
 
 void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits) {
@@ -150,7 +155,7 @@ void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& 
         upper.z < t.box.lower.z || lower.z > t.box.upper.z) {
       continue;
     }
-    if (const std::optional<double> at = hit(t, other, from_end)) hits.push_back({*at, t.triangle});
+    if (const std::optional<SegmentHit> one = hit(t, other, from_end)) hits.push_back(*one);
   }
   if (hits.size() > 1)
     std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });

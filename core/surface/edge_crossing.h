@@ -16,6 +16,7 @@ namespace raycone {
 struct SegmentHit {
   double at = 0.0;  // p + at (q - p); within 1e-15 of the exact number, unless the triangle is a needle
   std::uint32_t triangle = 0;
+  std::int8_t jump = 0;  // by how much the triangle changes w there, on the way from p to q; 0: nobody knows
 };
 
 // The point that the closed segment and the closed triangle have in common, where there is just one: nothing where the
@@ -39,7 +40,8 @@ class HitFinder {
   // From now on it is about segments of this end, and these triangles of the mesh.
   void enter(const Vec3& end, std::span<const std::uint32_t> triangles);
 
-  // Sets `hits` to those from the end to `other`, or back; of equal ones the lowest triangle first.
+  // Sets `hits` to those from the end to `other`, or back; of equal ones the lowest triangle first. Jumps are known
+  // where the segment leads from one side of the triangle to the other, through its inside.
   void find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits);
 
  private:
@@ -65,8 +67,9 @@ class HitFinder {
   void find_sides(Known& t) const;
   [[nodiscard]] static Turn turn_of(const Vec3& u, const Vec3& v);
   [[nodiscard]] static int plane_side_of(const Known& t, const Vec3& p);
-  [[nodiscard]] bool passes_triangle(const Known& t, const Vec3& other) const;
-  [[nodiscard]] std::optional<double> hit(Known& t, const Vec3& other, bool from_end) const;
+  enum class Passage : std::uint8_t { kBeside, kAtSide, kInside };
+  [[nodiscard]] Passage passage(const Known& t, const Vec3& other) const;
+  [[nodiscard]] std::optional<SegmentHit> hit(Known& t, const Vec3& other, bool from_end) const;
 
   Vec3 end_;
   const TriangleMesh& mesh_;

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <span>
+#include <optional>
 
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
@@ -22,7 +22,7 @@ constexpr double kSameHit = 0x1p-40;
 struct OpenEdge {
   MixedEdge edge;
   std::vector<SegmentHit> hits;  // one for each place
-  std::size_t first_probe = 0;
+  std::size_t first_probe = 0;   // of those that each hit has
 };
 
 class EdgePointFinder {
@@ -38,7 +38,7 @@ class EdgePointFinder {
 
   std::vector<EdgePoint> find() {
     find_hits();
-    decide_open_edges();
+    rule_.is_closed() ? decide_closed() : decide_open();
     find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
     for (const Bracket& bracket : brackets_) {
       points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), kHole};
@@ -48,8 +48,9 @@ class EdgePointFinder {
 
  private:
   void find_hits();
-  void decide_open_edges();
-  void decide(const OpenEdge& open, std::span<const double> probes);
+  void decide_closed();
+  void decide_open();
+  void decide(const OpenEdge& open);
 
   void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
     points_[edge.number] = {edge.point(within(hit.at)), static_cast<std::int32_t>(hit.triangle)};
@@ -63,13 +64,24 @@ class EdgePointFinder {
   double margin_;
   std::vector<EdgePoint> points_;
   std::vector<OpenEdge> open_;
+  struct Sides {
+    bool before, behind;  // whether the rule holds there
+  };
+  std::vector<Sides> sides_;  // of each hit of the edge at hand
   std::vector<Bracket> brackets_;
 };
 
 // Places where the edge meets triangles, one hit for each.
 void keep_places(std::vector<SegmentHit>& hits) {
-  const auto same = [](const SegmentHit& a, const SegmentHit& b) { return b.at - a.at <= kSameHit; };
-  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+  std::size_t left = 0;
+  for (const SegmentHit& hit : hits) {
+    if (left > 0 && hit.at - hits[left - 1].at <= kSameHit) {
+      hits[left - 1].jump = 0;
+    } else {
+      hits[left++] = hit;
+    }
+  }
+  hits.resize(left);
 }
 
 void EdgePointFinder::find_hits() {
@@ -102,46 +114,83 @@ void EdgePointFinder::find_hits() {
   std::ranges::sort(open_, {}, [](const OpenEdge& open) { return open.edge.number; });
 }
 
-// Just before and just behind each place, or between places where w is constant there.
-std::vector<double> probes_of(const OpenEdge& open, bool closed) {
-  constexpr double kStep = 0x1p-24;
-  std::vector<double> probes;
-  for (std::size_t i = 0; i < open.hits.size(); ++i) {
-    const double before = i > 0 ? open.hits[i - 1].at : 0.0, here = open.hits[i].at;
-    const double behind = i + 1 < open.hits.size() ? open.hits[i + 1].at : 1.0;
-    if (!closed) probes.push_back(here - std::min(kStep, (here - before) / 4));
-    probes.push_back(closed ? here + (behind - here) / 2 : here + std::min(kStep, (behind - here) / 4));
-  }
-  return probes;
+// Between places, where w of a closed mesh is constant; the last one is not asked for.
+double behind_in_closed(const std::vector<SegmentHit>& hits, std::size_t i) {
+  const double here = hits[i].at, next = i + 1 < hits.size() ? hits[i + 1].at : 1.0;
+  return here + (next - here) / 2;
 }
 
-void EdgePointFinder::decide_open_edges() {
+// Just before and just behind a place.
+constexpr double kStep = 0x1p-24;
+double before(const std::vector<SegmentHit>& hits, std::size_t i) {
+  const double here = hits[i].at, last = i > 0 ? hits[i - 1].at : 0.0;
+  return here - std::min(kStep, (here - last) / 4);
+}
+double behind(const std::vector<SegmentHit>& hits, std::size_t i) {
+  const double here = hits[i].at, next = i + 1 < hits.size() ? hits[i + 1].at : 1.0;
+  return here + std::min(kStep, (next - here) / 4);
+}
+
+void EdgePointFinder::decide_closed() {
   std::vector<Vec3> points;
   for (OpenEdge& open : open_) {
     open.first_probe = points.size();
-    for (const double probe : probes_of(open, rule_.is_closed())) points.push_back(open.edge.point(probe));
+    for (std::size_t i = 0; i < open.hits.size(); ++i)
+      points.push_back(open.edge.point(behind_in_closed(open.hits, i)));
   }
   const std::vector<double> values = rule_.at(points);
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    const std::size_t end = i + 1 < open_.size() ? open_[i + 1].first_probe : values.size();
-    decide(open_[i], std::span(values).subspan(open_[i].first_probe, end - open_[i].first_probe));
+  for (const OpenEdge& open : open_) {
+    sides_.clear();
+    for (std::size_t i = 0; i < open.hits.size(); ++i) sides_.push_back({true, values[open.first_probe + i] >= 0.0});
+    decide(open);
   }
 }
 
-void EdgePointFinder::decide(const OpenEdge& open, std::span<const double> probes) {
-  const std::size_t probes_per_hit = rule_.is_closed() ? 1 : 2;
+// What is behind a place follows from what is before it where one triangle makes the difference, and leaves the rule in
+// no doubt.
+void EdgePointFinder::decide_open() {
+  constexpr double kClear = 0x1p-10;  // far more than w changes by itself from just before a place to just behind it
+  std::vector<Vec3> points;
+  for (OpenEdge& open : open_) {
+    open.first_probe = points.size();
+    for (std::size_t i = 0; i < open.hits.size(); ++i) points.push_back(open.edge.point(before(open.hits, i)));
+  }
+  const std::vector<double> w = rule_.winding_numbers(points);
+  const auto clear_behind = [&](const OpenEdge& open, std::size_t i) -> std::optional<bool> {
+    const int jump = open.hits[i].jump;
+    const double value = jump != 0 ? rule_.from_threshold(w[open.first_probe + i] + jump) : 0.0;
+    return std::abs(value) > kClear ? std::optional(value > 0.0) : std::nullopt;
+  };
+  points.clear();
+  for (const OpenEdge& open : open_) {
+    for (std::size_t i = 0; i < open.hits.size(); ++i) {
+      if (!clear_behind(open, i)) points.push_back(open.edge.point(behind(open.hits, i)));
+    }
+  }
+  const std::vector<double> values_behind = rule_.at(points);
+  std::size_t next = 0;
+  for (const OpenEdge& open : open_) {
+    sides_.clear();
+    for (std::size_t i = 0; i < open.hits.size(); ++i) {
+      const std::optional<bool> clear = clear_behind(open, i);
+      const bool is_behind = clear ? *clear : values_behind[next++] >= 0.0;
+      sides_.push_back({rule_.from_threshold(w[open.first_probe + i]) >= 0.0, is_behind});
+    }
+    decide(open);
+  }
+}
+
+// Next to an end the rule is what it is there, whatever rounding makes of the probe.
+void EdgePointFinder::decide(const OpenEdge& open) {
   double inside_until = 0.0;
   for (std::size_t i = 0; i < open.hits.size(); ++i) {
     const double here = open.hits[i].at;
-    const bool last = i + 1 == open.hits.size();
-    // Next to an end the rule is what it is there, whatever rounding makes of the probe.
-    const bool before = rule_.is_closed() || here == 0.0 || probes[probes_per_hit * i] >= 0.0;
-    const bool behind = !(last && (rule_.is_closed() || here == 1.0)) && probes[probes_per_hit * (i + 1) - 1] >= 0.0;
-    if (!before) {
+    const bool is_last = i + 1 == open.hits.size();
+    if (!sides_[i].before && here != 0.0) {
       brackets_.push_back({open.edge, inside_until, here});
       return;
     }
-    if (!behind) {
+    if (!sides_[i].behind || (is_last && (rule_.is_closed() || here == 1.0))) {
       set_hit(open.edge, open.hits[i]);
       return;
     }

@@ -1,41 +1,75 @@
 #include "core/surface/edge_roots.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace raycone {
 namespace {
 
-// The next place to look at: by the secant, with the value of an end that stays halved (the Illinois rule; Dowell,
-// Jarratt 1971); halfway where that does not get on.
-double next_place(const Bracket& bracket, int round) {
-  constexpr int kEveryRound = 3;
-  const double middle = bracket.low + (bracket.high - bracket.low) / 2;
-  if (round % kEveryRound == kEveryRound - 1) return middle;
-  const double weight = bracket.low_value / (bracket.low_value - bracket.high_value);
-  const double secant = bracket.low + weight * (bracket.high - bracket.low);
-  return secant > bracket.low && secant < bracket.high ? secant : middle;
-}
+constexpr double kNarrow = 0x1p-34;  // of an edge
 
-void narrow(Bracket& bracket, double at, double value) {
-  constexpr double kHalf = 0.5;
-  if (value >= 0.0) {
-    bracket.low = at;
-    bracket.low_value = value;
-    bracket.stays = std::min(bracket.stays, 0) - 1;
-    if (bracket.stays < -1) bracket.high_value *= kHalf;
-  } else {
-    bracket.high = at;
-    bracket.high_value = value;
-    bracket.stays = std::max(bracket.stays, 0) + 1;
-    if (bracket.stays > 1) bracket.low_value *= kHalf;
+// The search in one bracket: by inverse quadratic interpolation through the last three places where that is sure to be
+// of use, else by halving (Chandrupatla, Advances in Engineering Software 28, 1997).
+class RootSearch {
+ public:
+  // Values at triangles may be those of their other side.
+  RootSearch(Bracket& bracket, double low_value, double high_value)
+      : bracket_(&bracket),
+        last_{bracket.low, std::max(low_value, 0.0), true},
+        across_{bracket.high, std::min(high_value, 0.0), false} {}
+
+  [[nodiscard]] Vec3 next() const { return bracket_->edge.point(next_place()); }
+
+  // `value`: at next().
+  void narrow(double value, int round) {
+    const Place here{next_place(), value, value >= 0.0};
+    const Place before = here.is_inside == last_.is_inside ? last_ : across_;
+    if (here.is_inside != last_.is_inside) across_ = last_;
+    last_ = here;
+    (last_.is_inside ? bracket_->low : bracket_->high) = last_.at;
+    (last_.is_inside ? bracket_->high : bracket_->low) = across_.at;
+    part_ = round < kRoundsAtFirst ? part_by(before) : 0.5;
   }
-}
+
+  [[nodiscard]] bool is_narrow() const { return bracket_->high - bracket_->low <= kNarrow; }
+
+ private:
+  static constexpr int kRoundsAtFirst = 40;
+
+  struct Place {
+    double at, value;
+    bool is_inside;
+  };
+
+  [[nodiscard]] double next_place() const { return last_.at + part_ * (across_.at - last_.at); }
+
+  // Of the way from the last place to the one across. A root that is nearly found is overtaken, as only places on both
+  // sides of it narrow the bracket.
+  [[nodiscard]] double part_by(const Place& before) const {
+    const double a = last_.value, b = across_.value, c = before.value;
+    const double width = across_.at - last_.at, least = 0.75 * kNarrow / std::abs(width);
+    const double xi = (last_.at - across_.at) / (before.at - across_.at), phi = (a - b) / (c - b);
+    const bool is_sure = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;  // false where there are NaN
+    if (!is_sure || a == b || b == c || a == c) return 0.5;
+    const double part = a / (b - a) * c / (b - c) + (before.at - last_.at) / width * a / (c - a) * b / (c - b);
+    return std::min(std::max(part, least), 1.0 - least);
+  }
+
+  Bracket* bracket_;
+  Place last_, across_;
+  double part_ = 0.5;
+};
 
 }  // namespace
 
-std::vector<double> RuleAlong::at(const std::vector<Vec3>& points) const {
+std::vector<double> RuleAlong::winding_numbers(const std::vector<Vec3>& points) const {
   std::vector<double> values(points.size());
   if (!points.empty()) evaluator_.evaluate(points, values);  // which prepares for points, many or none
+  return values;
+}
+
+std::vector<double> RuleAlong::at(const std::vector<Vec3>& points) const {
+  std::vector<double> values = winding_numbers(points);
   for (double& w : values) w = from_threshold(w);
   return values;
 }
@@ -49,31 +83,23 @@ std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
 
 void find_roots(std::vector<Bracket>& brackets,
                 const std::function<std::vector<double>(const std::vector<Vec3>&)>& values_at) {
-  constexpr int kRounds = 90;          // a third of them halve the bracket
-  constexpr double kNarrow = 0x1p-34;  // of an edge
-  std::vector<Bracket*> waiting;
+  constexpr int kRounds = 90;  // halving alone would take 34
   std::vector<Vec3> points;
-  for (Bracket& bracket : brackets) {
-    waiting.push_back(&bracket);
+  for (const Bracket& bracket : brackets) {
     points.push_back(bracket.edge.point(bracket.low));
     points.push_back(bracket.edge.point(bracket.high));
   }
-  // At a triangle the value may be that of its other side.
   const std::vector<double> ends = values_at(points);
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    waiting[i]->low_value = std::max(ends[2 * i], 0.0);
-    waiting[i]->high_value = std::min(ends[2 * i + 1], 0.0);
-  }
-  for (int round = 0; round < kRounds && !waiting.empty(); ++round) {
-    std::vector<double> places;
+  std::vector<RootSearch> searches;
+  searches.reserve(brackets.size());
+  for (std::size_t i = 0; i < brackets.size(); ++i) searches.emplace_back(brackets[i], ends[2 * i], ends[2 * i + 1]);
+  for (int round = 0; round < kRounds; ++round) {
+    std::erase_if(searches, [](const RootSearch& search) { return search.is_narrow(); });
+    if (searches.empty()) return;
     points.clear();
-    for (const Bracket* const bracket : waiting) {
-      places.push_back(next_place(*bracket, round));
-      points.push_back(bracket->edge.point(places.back()));
-    }
+    for (const RootSearch& search : searches) points.push_back(search.next());
     const std::vector<double> values = values_at(points);
-    for (std::size_t i = 0; i < waiting.size(); ++i) narrow(*waiting[i], places[i], values[i]);
-    std::erase_if(waiting, [](const Bracket* bracket) { return bracket->high - bracket->low <= kNarrow; });
+    for (std::size_t i = 0; i < searches.size(); ++i) searches[i].narrow(values[i], round);
   }
 }
 

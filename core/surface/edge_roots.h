@@ -25,15 +25,16 @@ class RuleAlong {
   RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
 
   [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const;
+  // The winding numbers themselves, on the side of half-integers where w is; and what such a one is, as at() has it.
+  [[nodiscard]] std::vector<double> winding_numbers(const std::vector<Vec3>& points) const;
+  [[nodiscard]] double from_threshold(double w) const {
+    return holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
+  }
   // The same for the search of roots, sooner: off by rounding also where that makes it another sign.
   [[nodiscard]] std::vector<double> near(const std::vector<Vec3>& points) const;
   [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
 
  private:
-  [[nodiscard]] double from_threshold(double w) const {
-    return holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
-  }
-
   const WindingNumberEvaluator& evaluator_;
   const Rule& rule_;
 };
@@ -41,14 +42,12 @@ class RuleAlong {
 // Two places of an edge, between which it leaves the set.
 struct Bracket {
   MixedEdge edge;
-  double low, high;                          // inside, outside
-  double low_value = 0.0, high_value = 0.0;  // positive or 0, negative or 0
-  int stays = 0;                             // how often in a row the same end was kept: > 0 low, < 0 high
+  double low, high;  // inside, outside
 
   [[nodiscard]] double middle() const { return low + (high - low) / 2; }
 };
 
-// Narrows brackets to 2^-34 of their edges. `values` answers for many points at once.
+// Narrows brackets to 2^-34 of their edges (Chandrupatla 1997). `values` answers for many points at once.
 void find_roots(std::vector<Bracket>& brackets,
                 const std::function<std::vector<double>(const std::vector<Vec3>&)>& values);
 

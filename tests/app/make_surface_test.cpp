@@ -20,7 +20,7 @@ constexpr std::uint64_t kAllMemory = std::numeric_limits<std::uint64_t>::max();
 MadeSurface made(const SurfaceOptions& options) {
   const TriangleMesh mesh = weld(sphere(8), {});
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
-  return make_surface("m", mesh, WindingNumberEvaluator(mesh), lattice, options, kAllMemory);
+  return make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory);
 }
 
 // With the number, once the nodes are known, and before any other work. Half of what is predicted is too little; what
@@ -35,7 +35,7 @@ TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
   SurfaceOptions options;
   options.at_stage = [&](const char*) { ++stages; };
   const auto make = [&](double share) {
-    return make_surface("m", mesh, evaluator, lattice, options,
+    return make_surface("m", mesh, exterior_edges(mesh), lattice, options,
                         static_cast<std::uint64_t>(memory_in_use() + share * predicted));
   };
   try {
@@ -85,7 +85,7 @@ TEST(MakeSurface, TellsThatPartsAreTooThin) {
     for (const Triangle& t : plate.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     SurfaceOptions options;
     options.thickness = thickness;
-    const MadeSurface made = make_surface("m", mesh, WindingNumberEvaluator(mesh), lattice, options, kAllMemory);
+    const MadeSurface made = make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory);
     return made.warnings.empty() ? std::string() : line_of(made.warnings.at(0));
   };
   EXPECT_EQ(names(0.5, 0.0), "");

@@ -35,8 +35,12 @@ fi
   cat <<'END'
 # Accuracy on real meshes
 
-The table compares raycone's winding numbers with the direct sum over all triangles in extended precision (64 bits; 113
-where that cancels). `sh tests/accuracy/run.sh` makes it.
+The table compares raycone's winding numbers at `--tolerance 0`, where nothing is left out, with the direct sum over all
+triangles in extended precision (64 bits; 113 where that cancels). `sh tests/accuracy/run.sh` makes it.
+
+By default values may be off by 1e-10. At 50³ samples of three large open meshes they then differ from those of
+`--tolerance 0` by 2.1e-12 at most (mountain), 2.0e-12 (head) and 3.8e-12 (pedestal), with medians of 3e-14, 3e-13 and
+5e-13 (2026-11-26).
 
 A *boundary edge* is an edge whose faces do not cancel; the literature and the code call it an exterior edge. Meshes
 without boundary edges are closed, and raycone gives integers exactly. What is shown for them is the rounding of the

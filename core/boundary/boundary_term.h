@@ -33,8 +33,9 @@ class BoundaryTerm {
   virtual void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                                std::span<double> w) const = 0;
 
-  // No value is off by more, turns; at most Boundary::kMostDoubt. Closer to a critical value of a rule than this, a
-  // value is to be settled (Boundary::settle()).
+  // No value is off by more, turns, but for its last rounding to double, which moves none past a critical value of a
+  // rule (docs/method.md, "Rules"); at most Boundary::kMostDoubt. Closer to a critical value than this, a value is to
+  // be settled (Boundary::settle()).
   [[nodiscard]] virtual double doubt() const = 0;
 
   // How far `w`, which winding_numbers() has set for q, is off at most, turns: rigorous and close, all that doubt()

@@ -20,7 +20,7 @@ struct Rule {
 };
 
 // Rules take numbers of turns that differ by less as equal. No decision then depends on how well 113 bits tell them
-// apart: values that differ at all differ by more, unless mesh and sample are next to 0.
+// apart. Of samples that nobody chose for it, about one in 10^24 is so near to a threshold without being equal.
 inline constexpr double kIndistinguishable = 1e-24;
 
 // The thresholds of the rule that are not half-integers. A value near one of them must be settled before holds() is

@@ -106,7 +106,7 @@ class ScaledMesh {
   // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 
-  // No value is off by more.
+  // No value is off by more, but for its last rounding (BoundaryTerm::doubt()).
   [[nodiscard]] double doubt() const {
     return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
   }

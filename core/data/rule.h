@@ -27,10 +27,10 @@ inline constexpr double kIndistinguishable = 1e-24;
 // asked (core/evaluation/winding_number.h). Near half-integers, values need no settling.
 [[nodiscard]] std::vector<double> thresholds_to_settle(const Rule& rule);
 
-// How far w, below 2^51, is from the nearest half-integer.
+// How far what was rounded to w, below 2^51, is from the nearest half-integer at least, but for rounding this.
 [[nodiscard]] inline double distance_to_half_integer(double w) {
   const double nearest_integer = (w + 0x1.8p52) - 0x1.8p52;
-  return 0.5 - std::abs(w - nearest_integer);
+  return 0.5 - std::abs(w - nearest_integer) - 0x1p-53 * std::abs(w);
 }
 
 // How far w (finite) is from the nearest number where the rule changes its mind, at most: numbers that are nearer to w

@@ -1,0 +1,117 @@
+#include "core/surface/edge_roots.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "core/surface/edge_crossing.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+constexpr double kNarrow = 0x1p-34;
+
+// The number of values that it took to find the root of f along an edge of length 1.
+std::size_t values_for(const std::function<double(double)>& f, double root) {
+  std::vector<Bracket> brackets{{{{0, 0, 0}, {1, 0, 0}, 0}, 0.0, 1.0}};
+  std::size_t count = 0;
+  find_roots(brackets, [&](const std::vector<Vec3>& places) {
+    std::vector<double> values;
+    for (const Vec3& p : places) values.push_back(f(p.x));
+    count += places.size();
+    return values;
+  });
+  EXPECT_LE(brackets[0].high - brackets[0].low, kNarrow);
+  EXPECT_LE(brackets[0].low, root);
+  EXPECT_GE(brackets[0].high, root);
+  return count;
+}
+
+// As winding numbers are along an edge: nearly straight, or with a bend where a boundary edge is near.
+TEST(EdgeRoots, AreFoundInFewValues) {
+  Random random(5);
+  std::size_t straight = 0, bent = 0;
+  constexpr std::size_t kCount = 200;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    const double root = uniform(random, 0.02, 0.98), slope = std::exp(uniform(random, -12.0, 0.0));
+    const double curve = uniform(random, -0.4, 0.4), steep = uniform(random, 1.0, 30.0);
+    straight += values_for([&](double x) { return slope * (root - x) * (1 + curve * (root - x)); }, root);
+    bent += values_for([&](double x) { return slope * std::atan(steep * (root - x)); }, root);
+  }
+  EXPECT_LT(straight, 9 * kCount);
+  EXPECT_LT(bent, 12 * kCount);
+}
+
+// Halving finds what interpolation does not.
+TEST(EdgeRoots, AreFoundOfAnyFunction) {
+  const double root = 0.3141592653589793;
+  const auto from = [&](double x) { return root - x; };
+  EXPECT_LT(values_for([&](double x) { return from(x) >= 0 ? 1.0 : -1.0; }, root), 80U);
+  EXPECT_LT(values_for([&](double x) { return from(x) >= 0 ? 1e-12 : -1e3; }, root), 80U);
+  EXPECT_LT(values_for([&](double x) { return std::pow(from(x), 9); }, root), 80U);
+  EXPECT_LT(values_for([&](double x) { return std::copysign(std::sqrt(std::abs(from(x))), from(x)); }, root), 80U);
+  EXPECT_LT(values_for([&](double x) { return from(x) >= 0 ? 0.0 : -0.1; }, root), 80U);
+}
+
+// At triangles values may be those of their other side.
+TEST(EdgeRoots, MayHaveWrongValuesAtTheEnds) {
+  const double root = 0.7;
+  const auto f = [&](double x) { return x == 0.0 ? -0.5 : x == 1.0 ? 0.5 : 0.01 * (root - x); };
+  EXPECT_LT(values_for(f, root), 20U);
+}
+
+// Jumps are what a triangle changes in w, as sums of solid angles on both sides tell.
+TEST(EdgeCrossing, JumpsAreThoseOfTheWindingNumber) {
+  Random random(6);
+  int known = 0;
+  const auto point = [&] { return Vec3{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)}; };
+  for (int n = 0; n < 400; ++n) {
+    const TriangleMesh mesh{{point(), point(), point()}, {{0, 1, 2}}};
+    const WindingNumberEvaluator evaluator(mesh);
+    const Vec3 end = point(), other = point();
+    HitFinder finder(mesh);
+    finder.enter(end, std::vector<std::uint32_t>{0});
+    for (const bool from_end : {true, false}) {
+      std::vector<SegmentHit> hits;
+      finder.find(other, from_end, hits);
+      if (hits.empty()) continue;
+      ASSERT_EQ(hits.size(), 1U);
+      const Vec3 &p = from_end ? end : other, &q = from_end ? other : end;
+      constexpr double kStep = 0x1p-20;
+      const std::vector<Vec3> places{p + (hits[0].at - kStep) * (q - p), p + (hits[0].at + kStep) * (q - p)};
+      std::vector<double> w(2);
+      evaluator.evaluate(places, w);
+      EXPECT_EQ(std::round(w[1] - w[0]), hits[0].jump);
+      ++known;
+    }
+  }
+  EXPECT_GT(known, 30);
+}
+
+// Through a side, or to a point of the plane, nobody knows.
+TEST(EdgeCrossing, JumpsAreNotKnownAtSides) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  HitFinder finder(mesh);
+  const auto jump = [&](const Vec3& end, const Vec3& other) {
+    finder.enter(end, std::vector<std::uint32_t>{0});
+    std::vector<SegmentHit> hits;
+    finder.find(other, true, hits);
+    return hits.empty() ? 99 : int{hits[0].jump};
+  };
+  EXPECT_EQ(jump({0.25, 0.25, -1}, {0.25, 0.25, 1}), -1);  // to its front, where w is less
+  EXPECT_EQ(jump({0.25, 0.25, 1}, {0.25, 0.25, -1}), 1);
+  EXPECT_EQ(jump({0.5, 0.0, -1}, {0.5, 0.0, 1}), 0);
+  EXPECT_EQ(jump({0.0, 0.0, -1}, {0.0, 0.0, 1}), 0);
+  EXPECT_EQ(jump({0.25, 0.25, 0}, {0.25, 0.25, 1}), 0);
+  EXPECT_EQ(jump({2.0, 2.0, -1}, {2.0, 2.0, 1}), 99);
+}
+
+}  // namespace
+}  // namespace raycone

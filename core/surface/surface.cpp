@@ -16,9 +16,9 @@
 #include "core/surface/cell_polygons.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/checked_merge.h"
+#include "core/surface/checked_sharpen.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
-#include "core/surface/sharpen.h"
 #include "core/surface/simplify.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
@@ -154,55 +154,13 @@ class SurfaceMaker {
     return result.has_value();
   }
 
-  // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells. Around faults
-  // nothing is pulled; where that does not help, nothing at all.
+  // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
   void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
-    constexpr int kPartialRounds = 6, kSharpeningRounds = 11;
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    const std::size_t vertices = surface.mesh.vertices.size(), faces = surface.sources.size();
-    const auto drop_spares = [&] {
-      surface.mesh.vertices.resize(vertices);
-      surface.mesh.triangles.resize(faces);
-      surface.sources.resize(faces);
-    };
-    Sharpener sharpener(surface, mesh_, normals_,
-                        {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
-    SurfaceEdit change = sharpener.sharpen();
-    if (sharpener.pulls() == 0) return drop_spares();
-    NodesSinceFirst nodes(inside_.lattice());
-    for (int round = 0; round < kSharpeningRounds; ++round) {
-      change.apply(surface.mesh);
-      NearFaults near = faults_near(surface.mesh, change, inside_.lattice());
-      const NodeSet& misplaced = nodes.after(change, surface.mesh, near.faults, [&] { return sharpener.changes(); });
-      if (near.faults.none() && misplaced.empty()) {
-        sharpener.set_sources(surface.sources);
-        drop_gone_faces(surface);
-        is_sharpened_ = true;
-        return;
-      }
-      sharpener.for_each_target([&](std::uint32_t vertex, const Vec3& p) {
-        if (is_beside(p, misplaced)) near.vertices.push_back(vertex);
-      });
-      change = sharpener.keep(near.vertices, round >= kPartialRounds);
-      if (change.faces.empty()) break;  // such faults do not come from pulls
-    }
-    sharpener.undo().apply(surface.mesh);
-    drop_spares();
-  }
-
-  static void drop_gone_faces(SurfaceMesh& surface) {
-    std::size_t left = 0;
-    for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-      const Triangle t = surface.mesh.triangles[face];
-      if (is_gone(t)) continue;
-      surface.sources[left] = surface.sources[face];
-      surface.mesh.triangles[left++] = t;
-    }
-    surface.mesh.triangles.resize(left);
-    surface.sources.resize(left);
-    surface.mesh = used_part(surface.mesh.vertices, std::move(surface.mesh.triangles));
+    is_sharpened_ = checked_sharpen(surface, mesh_, normals_, inside_.lattice(),
+                                    {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
@@ -225,14 +183,12 @@ class SurfaceMaker {
       MergedFaces merged = simplify(surface, inside_, kept, most);
       TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
       const SurfaceFaults faults = faults_of(compact, inside_);
-
       if (faults.none()) {
         surface = {std::move(compact), std::move(merged.sources)};
         return true;
       }
       if (faults.intersections.pairs == 0) return false;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
-
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
     }
     return false;
@@ -278,10 +234,6 @@ double largest_coordinate(const Lattice& lattice) {
   }
   return largest;
 }
-
-}  // namespace
-
-namespace {
 
 // What the surface is made of.
 struct SurfaceInput {

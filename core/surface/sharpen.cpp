@@ -11,6 +11,7 @@
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/edge_points.h"
+#include "core/surface/fault_places.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/strip_pulls.h"
 
@@ -18,13 +19,17 @@ namespace raycone {
 
 Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
                      const SharpenLimits& limits)
-    : vertices_(surface.mesh.vertices), input_(input), limits_(limits) {
+    : surface_(surface),
+      first_vertices_(surface.mesh.vertices.size()),
+      first_faces_(surface.mesh.triangles.size()),
+      input_(input),
+      limits_(limits) {
   auto of_all = sized_on_all_threads<Placed>(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t face = begin; face < end; ++face)
       of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face], normals);
   });
-  find_strips(surface, of_all);
+  find_strips(of_all);
   if (strip_vertices_.empty()) return;
   now_ = first_;
   distances_.emplace(input_);
@@ -37,15 +42,16 @@ Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, cons
   if (source == kHole) return Placed::kInPlane;
   const auto triangle = static_cast<std::uint32_t>(source);
   const SourcePlane plane{input_.vertices[input_.triangles[triangle][0]], normals.of(triangle), source};
-  const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
+  const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+  const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
   const double farthest = std::max({std::abs(plane.height(a)), std::abs(plane.height(b)), std::abs(plane.height(c))});
   if (farthest <= limits_.off) return Placed::kInPlane;
   return std::abs(dot(plane.normal, unit_normal(a, b, c))) < kTurned ? Placed::kAcross : Placed::kOff;
 }
 
-void Sharpener::find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all) {
-  const std::vector<Triangle>& triangles = surface.mesh.triangles;
-  place_.assign(vertices_.size(), kNoPlace);
+void Sharpener::find_strips(const std::vector<Placed>& of_all) {
+  const std::vector<Triangle>& triangles = surface_.mesh.triangles;
+  place_.assign(first_vertices_, kNoPlace);
   const auto is_across = [&](std::uint32_t face) { return of_all[face] == Placed::kAcross; };
   for (const std::uint32_t face : numbers_where(of_all.size(), is_across)) add_to_strips(triangles[face]);
   extend_strips(triangles, of_all);
@@ -60,11 +66,11 @@ void Sharpener::find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_
   if (4 * (in_planes + limits_.fewer) < 3 * (of_all.size() + limits_.fewer))
     drop_parts(triangles, of_all, at_strips, part);
   if (strip_vertices_.empty()) return;
-  number_vertices(part, triangles, of_all, at_strips, surface.mesh.vertices);
-  add_faces(surface, of_all, at_strips);
+  number_vertices(part, triangles, of_all, at_strips);
+  add_faces(of_all, at_strips);
   for (const std::uint32_t vertex : strip_vertices_) {
     first_.into.push_back(place_[vertex]);
-    first_.places.push_back(vertices_[vertex]);
+    first_.places.push_back(surface_.mesh.vertices[vertex]);
   }
   kept_.assign(strip_vertices_.size(), 0);
 }
@@ -156,8 +162,7 @@ void Sharpener::drop_parts(const std::vector<Triangle>& triangles, const std::ve
 // Vertices are numbered anew, part by part, with spare ones behind those of each. Most gaps have two faces and more,
 // and one corner of the mesh at most.
 void Sharpener::number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
-                                const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips,
-                                std::vector<Vec3>& vertices) {
+                                const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips) {
   for (const std::uint32_t face : at_strips) {
     const std::uint32_t first = place_[triangles[face][0]];
     if (of_all[face] == Placed::kAcross && first != kNoPlace) ++parts_[part[first]].spares;
@@ -181,6 +186,7 @@ void Sharpener::number_vertices(const std::vector<std::uint32_t>& part, const st
     part_of_[place] = to;
   };
   for (std::size_t v = 0; v < known.size(); ++v) add(known[v], part[v]);
+  std::vector<Vec3>& vertices = surface_.mesh.vertices;
   for (std::uint32_t n = 0; n < parts_.size(); ++n) {
     for (std::uint32_t spare = 0; spare < parts_[n].spares; ++spare) {
       place_.push_back(kNoPlace);
@@ -198,9 +204,8 @@ std::uint32_t Sharpener::part_of_face(const Triangle& t) const {
   return kNoPlace;
 }
 
-void Sharpener::add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all,
-                          const std::vector<std::uint32_t>& at_strips) {
-  for (const std::uint32_t face : at_strips) ++parts_[part_of_face(surface.mesh.triangles[face])].faces;
+void Sharpener::add_faces(const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips) {
+  for (const std::uint32_t face : at_strips) ++parts_[part_of_face(surface_.mesh.triangles[face])].faces;
   std::vector<std::uint32_t> next;
   std::uint32_t count = 0;
   for (Part& each : parts_) {
@@ -215,23 +220,42 @@ void Sharpener::add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_al
   first_.placed.assign(count, Placed::kInPlane);
   first_.hopeless.assign(count, 0);
   for (const std::uint32_t face : at_strips) {
-    const std::uint32_t n = next[part_of_face(surface.mesh.triangles[face])]++;
+    const std::uint32_t n = next[part_of_face(surface_.mesh.triangles[face])]++;
     faces_[n] = face;
-    first_.triangles[n] = surface.mesh.triangles[face];
-    first_.sources[n] = surface.sources[face];
+    first_.triangles[n] = surface_.mesh.triangles[face];
+    first_.sources[n] = surface_.sources[face];
     first_.placed[n] = of_all[face];
   }
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     for (std::uint32_t spare = 0; spare < 2 * parts_[part].spares; ++spare) {
-      faces_[next[part]++] = static_cast<std::uint32_t>(surface.mesh.triangles.size());
-      surface.mesh.triangles.push_back({});
-      surface.sources.push_back(kHole);
+      faces_[next[part]++] = static_cast<std::uint32_t>(surface_.mesh.triangles.size());
+      surface_.mesh.triangles.push_back({});
+      surface_.sources.push_back(kHole);
     }
   }
 }
 
-void Sharpener::set_sources(std::vector<std::int32_t>& sources) const {
-  for (std::size_t n = 0; n < faces_.size(); ++n) sources[faces_[n]] = now_.sources[n];
+void Sharpener::undo() {
+  for (std::size_t v = 0; v < strip_vertices_.size(); ++v)
+    surface_.mesh.vertices[strip_vertices_[v]] = first_.places[v];
+  for (std::size_t n = 0; n < faces_.size(); ++n) surface_.mesh.triangles[faces_[n]] = first_.triangles[n];
+  surface_.mesh.vertices.resize(first_vertices_);
+  surface_.mesh.triangles.resize(first_faces_);
+  surface_.sources.resize(first_faces_);
+}
+
+void Sharpener::finish() {
+  for (std::size_t n = 0; n < faces_.size(); ++n) surface_.sources[faces_[n]] = now_.sources[n];
+  std::size_t left = 0;
+  for (std::size_t face = 0; face < surface_.sources.size(); ++face) {
+    const Triangle t = surface_.mesh.triangles[face];
+    if (is_gone(t)) continue;
+    surface_.sources[left] = surface_.sources[face];
+    surface_.mesh.triangles[left++] = t;
+  }
+  surface_.mesh.triangles.resize(left);
+  surface_.sources.resize(left);
+  surface_.mesh = used_part(surface_.mesh.vertices, std::move(surface_.mesh.triangles));
 }
 
 std::size_t Sharpener::pulls() const {
@@ -242,7 +266,10 @@ std::size_t Sharpener::pulls() const {
 SurfaceEdit Sharpener::sharpen() {
   std::vector<std::uint32_t> all(parts_.size());
   std::iota(all.begin(), all.end(), 0U);
-  return pull_parts(all);
+  pull(all);
+  SurfaceEdit edit = changes();
+  edit.apply(surface_.mesh);
+  return edit;
 }
 
 SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all) {
@@ -267,7 +294,9 @@ SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all
     pull(left);
     std::erase_if(left, [&](std::uint32_t part) { return has_changed(parts_[part], before); });
   }
-  return changes_of(parts, before, named);
+  SurfaceEdit edit = changes_of(parts, before, named);
+  edit.apply(surface_.mesh);
+  return edit;
 }
 
 void Sharpener::keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all) {
@@ -291,17 +320,6 @@ SurfaceEdit Sharpener::changes() const {
   std::vector<std::uint32_t> all(parts_.size());
   std::iota(all.begin(), all.end(), 0U);
   return changes_of(all, first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
-}
-
-SurfaceEdit Sharpener::undo() {
-  std::ranges::fill(kept_, kKeptFrom);
-  return sharpen();
-}
-
-SurfaceEdit Sharpener::pull_parts(const std::vector<std::uint32_t>& parts) {
-  const State before = now_;
-  pull(parts);
-  return changes_of(parts, before, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
 }
 
 void Sharpener::pull(const std::vector<std::uint32_t>& parts) {

@@ -31,26 +31,28 @@ struct SharpenLimits {
 class Sharpener {
  public:
   // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
-  // `input`, or kHole. Both meshes must stay, but for what edits change. `normals`: of `input`.
+  // `input`, or kHole. Both meshes must stay, and nobody else may change them. `normals`: of `input`.
   Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
             const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 
-  // What pulls change. What is left of strips may turn over on the way, and may then cross other faces.
+  // Pulls. Returns what that has changed. What is left of strips may turn over on the way, and may then cross other
+  // faces.
   SurfaceEdit sharpen();
-  // What changes if vertices are not pulled: those that were pulled into one of `vertices`, and these; and all that
-  // hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled anew, and do
-  // not turn over. Numbers of other vertices are ignored. The edit has the faces at `vertices` in any case, so that
-  // faults there are looked for again. Takes time in proportion to these strips.
+  // Makes the surface what it is if vertices are not pulled: those that were pulled into one of `vertices`, and these;
+  // and all that hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled
+  // anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the faces at
+  // `vertices` in any case, so that faults there are looked for again.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
   // All that has changed since the surface was as at first.
   [[nodiscard]] SurfaceEdit changes() const;
-  // Back to the surface as it was at first.
-  SurfaceEdit undo();
 
-  // Sets those of faces to what they are of now.
-  void set_sources(std::vector<std::int32_t>& sources) const;
+  // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
+  void undo();
+  // Gives faces the sources that they have now, and drops those that are gone, and vertices that no face has.
+  void finish();
+
   [[nodiscard]] std::size_t pulls() const;
   // Where pulled vertices are now; each once for all that were pulled there.
   template <class Visit>
@@ -84,7 +86,7 @@ class Sharpener {
   };
 
   [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source, const TriangleNormals& normals) const;
-  void find_strips(SurfaceMesh& surface, const std::vector<Placed>& of_all);
+  void find_strips(const std::vector<Placed>& of_all);
   void add_to_strips(const Triangle& t);
   void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);
   std::vector<std::uint32_t> find_parts(const std::vector<Triangle>& triangles,
@@ -92,18 +94,17 @@ class Sharpener {
   void drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
                   std::vector<std::uint32_t>& at_strips, std::vector<std::uint32_t>& part);
   void number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
-                       const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips,
-                       std::vector<Vec3>& vertices);
-  void add_faces(SurfaceMesh& surface, const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
+                       const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
+  void add_faces(const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
   [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
-  [[nodiscard]] SurfaceEdit pull_parts(const std::vector<std::uint32_t>& parts);
   void pull(const std::vector<std::uint32_t>& parts);
   void keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all);
   [[nodiscard]] bool has_changed(const Part& part, const State& before) const;
   [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before,
                                        const std::vector<std::uint8_t>& named) const;
 
-  const std::vector<Vec3>& vertices_;  // those of no strip stay where they are
+  SurfaceMesh& surface_;                      // at strips as now_ has it, but for sources; elsewhere as it was
+  std::size_t first_vertices_, first_faces_;  // how many there are without spare ones
   const TriangleMesh& input_;
   SharpenLimits limits_;
   std::optional<DistanceEvaluator> distances_;  // where there are strips

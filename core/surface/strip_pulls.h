@@ -32,7 +32,7 @@ class StripPulls {
 
   [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return all_.place_[vertex]; }
   [[nodiscard]] const Vec3& position(std::uint32_t vertex) const {
-    return place(vertex) == Sharpener::kNoPlace ? all_.vertices_[vertex] : state_.places[place(vertex)];
+    return place(vertex) == Sharpener::kNoPlace ? all_.surface_.mesh.vertices[vertex] : state_.places[place(vertex)];
   }
   [[nodiscard]] std::uint32_t last_of(std::uint32_t vertex) const {
     std::uint32_t at = place(vertex);

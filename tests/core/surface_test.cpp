@@ -23,6 +23,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/mesh/weld.h"
+#include "core/surface/checked_sharpen.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
@@ -641,14 +642,14 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   for (std::int32_t& source : surface.sources) source %= 24;  // triangles of the whole boxes
   SourceSettler(whole_box, TriangleNormals(whole_box), 0.01).settle(surface);
   Sharpener of_whole(surface, whole_box, TriangleNormals(whole_box), limits);
-  of_whole.sharpen().apply(surface.mesh);
+  of_whole.sharpen();
   EXPECT_EQ(of_whole.pulls(), 1U);  // the gap between four planes
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
   // One end of the cut stays: so does what would be pulled into it. The other one is pulled.
-  of_whole.keep({0}, false).apply(surface.mesh);
+  of_whole.keep({0}, false);
   EXPECT_EQ(of_whole.pulls(), 1U);
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0 - 0.005 / 3, 1e-12);
-  of_whole.keep({0}, true).apply(surface.mesh);
+  of_whole.keep({0}, true);
   EXPECT_EQ(of_whole.pulls(), 0U);
   EXPECT_EQ(first_of(surface.mesh, cut).triangles, cut.triangles);
   EXPECT_EQ(first_of(surface.mesh, cut).vertices, cut.vertices);
@@ -667,10 +668,9 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
   SourceSettler(whole, TriangleNormals(whole), 0.01).settle(surface);
   Sharpener sharpener(surface, whole, TriangleNormals(whole), {1e-9, 0.2, false});
-  sharpener.sharpen().apply(surface.mesh);
+  sharpener.sharpen();
   ASSERT_EQ(sharpener.pulls(), 2U);
   const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, false);
-  change.apply(surface.mesh);
   EXPECT_EQ(sharpener.pulls(), 1U);
   EXPECT_EQ(change.vertices.size(), 2U);
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 4.0 - 0.005, 1e-12);
@@ -679,9 +679,43 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   EXPECT_TRUE(no_change.vertices.empty());
   EXPECT_TRUE(std::ranges::all_of(no_change.corners, [](const auto& face) { return face.before == face.after; }));
   EXPECT_TRUE(std::ranges::find(no_change.faces, 0U) != no_change.faces.end());
-  sharpener.undo().apply(surface.mesh);
-  EXPECT_EQ(first_of(surface.mesh, cut).triangles, cut.triangles);
-  EXPECT_EQ(first_of(surface.mesh, cut).vertices, cut.vertices);
+  sharpener.undo();
+  EXPECT_EQ(surface.mesh.triangles, cut.triangles);
+  EXPECT_EQ(surface.mesh.vertices, cut.vertices);
+}
+
+// Something stands where the cut would be taken back to; from 0.95 downwards it stands in the cut as well.
+struct OccupiedCut {
+  SurfaceMesh surface;
+  TriangleMesh input;
+};
+
+OccupiedCut occupied_cut(double lower) {
+  const TriangleMesh inner = test::box_mesh({lower, 0.4, lower}, {1.05, 0.6, 1.05});
+  const TriangleMesh others = test::joined(inner, test::box_mesh({2, 0, 0}, {3, 1, 1}));
+  const TriangleMesh cut = test::joined(cut_box(), others);
+  OccupiedCut made{{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)},
+                   test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), others)};
+  SourceSettler(made.input, TriangleNormals(made.input), 0.01).settle(made.surface);
+  return made;
+}
+
+bool is_sharpened(OccupiedCut& cut, int rounds) {
+  const Lattice lattice{{-1.01, -1.02, -1.03}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 30, 30}};
+  return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), lattice, {1e-9, 0.2, false}, rounds);
+}
+
+// What the last round had put back was left as it had been pulled, with corners that are no more.
+TEST(Sharpening, LeavesTheSurfaceAsItWasWhereFaultsAreLeft) {
+  const DefaultFloatingPoint guard;
+  for (const int rounds : {0, 1, 2, 11}) {
+    OccupiedCut cut = occupied_cut(0.96);
+    const SurfaceMesh before = cut.surface;
+    EXPECT_FALSE(is_sharpened(cut, rounds));
+    EXPECT_EQ(cut.surface.mesh.triangles, before.mesh.triangles) << rounds;
+    EXPECT_EQ(cut.surface.mesh.vertices, before.mesh.vertices) << rounds;
+    EXPECT_EQ(cut.surface.sources, before.sources) << rounds;
+  }
 }
 
 // The surface over the opening of a box meets the walls at the rim.

@@ -26,7 +26,7 @@ bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const Tria
       if (is_beside(p, misplaced)) near.vertices.push_back(vertex);
     });
     change = sharpener.keep(near.vertices, round >= kPartialRounds);
-    if (change.faces.empty()) break;  // such faults do not come from pulls
+    if (change.changes_nothing()) break;  // such faults do not come from pulls
   }
   sharpener.undo();
   return false;

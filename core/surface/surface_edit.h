@@ -1,6 +1,7 @@
 // What differs between two states of a surface, whose vertices and faces have the same numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,6 +26,11 @@ struct SurfaceEdit {
   // Of vertices, each once, that are elsewhere.
   std::vector<std::uint32_t> vertices;
   std::vector<Place> places;
+
+  // Whether both states are the same.
+  [[nodiscard]] bool changes_nothing() const {
+    return vertices.empty() && std::ranges::all_of(corners, [](const Corners& c) { return c.before == c.after; });
+  }
 
   // Turns the state before into the one after.
   void apply(TriangleMesh& mesh) const {

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -676,39 +677,42 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 4.0 - 0.005, 1e-12);
   // Faults that are left where nothing changes any more would else not be found.
   const SurfaceEdit no_change = sharpener.keep({0, 1, 2, 3}, false);
-  EXPECT_TRUE(no_change.vertices.empty());
-  EXPECT_TRUE(std::ranges::all_of(no_change.corners, [](const auto& face) { return face.before == face.after; }));
+  EXPECT_FALSE(change.changes_nothing());
+  EXPECT_TRUE(no_change.changes_nothing());
   EXPECT_TRUE(std::ranges::find(no_change.faces, 0U) != no_change.faces.end());
   sharpener.undo();
   EXPECT_EQ(surface.mesh.triangles, cut.triangles);
   EXPECT_EQ(surface.mesh.vertices, cut.vertices);
 }
 
-// Something stands where the cut would be taken back to; from 0.95 downwards it stands in the cut as well.
+// Two boxes with cuts, and what they are cut off. Something stands where the first cut would be taken back to; from
+// 0.95 downwards it stands in the cut as well.
 struct OccupiedCut {
   SurfaceMesh surface;
   TriangleMesh input;
 };
 
 OccupiedCut occupied_cut(double lower) {
-  const TriangleMesh inner = test::box_mesh({lower, 0.4, lower}, {1.05, 0.6, 1.05});
-  const TriangleMesh others = test::joined(inner, test::box_mesh({2, 0, 0}, {3, 1, 1}));
-  const TriangleMesh cut = test::joined(cut_box(), others);
-  OccupiedCut made{{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)},
-                   test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), others)};
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1}), other = test::moved(box, {1, 1, 1}, {2, 0, 0});
+  const TriangleMesh others = test::joined(test::box_mesh({lower, 0.4, lower}, {1.05, 0.6, 1.05}), other);
+  const auto with_others = [&](const TriangleMesh& mesh) {
+    return test::joined(test::joined(mesh, test::moved(mesh, {1, 1, 1}, {0, 3, 0})), others);
+  };
+  const TriangleMesh cut = with_others(cut_box());
+  OccupiedCut made{{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)}, with_others(box)};
   SourceSettler(made.input, TriangleNormals(made.input), 0.01).settle(made.surface);
   return made;
 }
 
 bool is_sharpened(OccupiedCut& cut, int rounds) {
-  const Lattice lattice{{-1.01, -1.02, -1.03}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 30, 30}};
+  const Lattice lattice{{-1.08, -1.08, -1.08}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 70, 30}};  // no node in a cut
   return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), lattice, {1e-9, 0.2, false}, rounds);
 }
 
 // What the last round had put back was left as it had been pulled, with corners that are no more.
 TEST(Sharpening, LeavesTheSurfaceAsItWasWhereFaultsAreLeft) {
   const DefaultFloatingPoint guard;
-  for (const int rounds : {0, 1, 2, 11}) {
+  for (const int rounds : {0, 1}) {
     OccupiedCut cut = occupied_cut(0.96);
     const SurfaceMesh before = cut.surface;
     EXPECT_FALSE(is_sharpened(cut, rounds));
@@ -716,6 +720,19 @@ TEST(Sharpening, LeavesTheSurfaceAsItWasWhereFaultsAreLeft) {
     EXPECT_EQ(cut.surface.mesh.vertices, before.mesh.vertices) << rounds;
     EXPECT_EQ(cut.surface.sources, before.sources) << rounds;
   }
+  OccupiedCut cut = occupied_cut(0.96);
+  const double before = mesh_statistics(cut.surface.mesh).signed_volume.value_or(0.0);
+  EXPECT_TRUE(is_sharpened(cut, 2));
+  EXPECT_NEAR(mesh_statistics(cut.surface.mesh).signed_volume.value_or(0.0), before + 0.005, 1e-12);  // the free one
+}
+
+// Else nobody would wait for so many rounds.
+TEST(Sharpening, EndsWhereFaultsDoNotComeFromPulls) {
+  const DefaultFloatingPoint guard;
+  OccupiedCut cut = occupied_cut(0.93);
+  const SurfaceMesh before = cut.surface;
+  EXPECT_FALSE(is_sharpened(cut, std::numeric_limits<int>::max()));
+  EXPECT_EQ(cut.surface.mesh.triangles, before.mesh.triangles);
 }
 
 // The surface over the opening of a box meets the walls at the rim.

@@ -324,16 +324,7 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
 NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
   const std::vector<ExteriorEdge> none;
   const WindingNumberEvaluator between(mesh_between(mesh, change), {.edges = &none});
-  return nodes_inside(between, Rule{RuleKind::kNonzero}, lattice);
-}
-
-// A node that the mesh goes around twice on the way changes without changing sides: then it has flipped once too often.
-const NodeSet& NodesSinceFirst::after(const SurfaceEdit& change, const TriangleMesh& mesh, const SurfaceFaults& faults,
-                                      const std::function<SurfaceEdit()>& since_first) {
-  nodes_.flip(changed_nodes(mesh, change, nodes_.lattice()));
-  if (has_changed_ && faults.none() && !nodes_.empty()) nodes_ = changed_nodes(mesh, since_first(), nodes_.lattice());
-  has_changed_ = true;
-  return nodes_;
+  return nodes_inside(between, Rule{RuleKind::kOdd}, lattice);
 }
 
 std::string described(const SurfaceFaults& faults) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,24 +50,11 @@ struct NearFaults {
 // changed_nodes().
 [[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
-// The nodes of a lattice that were on the other side of a mesh before it was changed. Precondition: it is closed, and
-// was so before.
+// The nodes of a lattice that a mesh goes around an odd number of times more, or less, since it was changed: that were
+// on the other side of it, where it does not pass through itself, now or before. What follows one after the other adds
+// up: of several changes, a node has changed sides if an odd number of them has it. Precondition: the mesh is closed,
+// and was so before.
 [[nodiscard]] NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
-
-// The nodes of a lattice that are on another side of a mesh, changed again and again, than they were of it at first.
-class NodesSinceFirst {
- public:
-  explicit NodesSinceFirst(const Lattice& lattice) : nodes_(lattice) {}
-
-  // Call it after each change. Where the mesh passes through itself, these may be others. `since_first`: tells all that
-  // differs from the mesh at first; asked where that may be so.
-  const NodeSet& after(const SurfaceEdit& change, const TriangleMesh& mesh, const SurfaceFaults& faults,
-                       const std::function<SurfaceEdit()>& since_first);
-
- private:
-  NodeSet nodes_;
-  bool has_changed_ = false;
-};
 
 // "3 edges without a twin, 1 pairs of faces that intersect"
 [[nodiscard]] std::string described(const SurfaceFaults& faults);

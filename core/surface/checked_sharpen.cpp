@@ -14,10 +14,10 @@ bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const Tria
   constexpr int kPartialRounds = 6;
   Sharpener sharpener(surface, input, normals, limits);
   SurfaceEdit change = sharpener.sharpen();
-  NodesSinceFirst nodes(lattice);
+  NodeSet misplaced(lattice);
   for (int round = 0; round < rounds && sharpener.pulls() > 0; ++round) {
     NearFaults near = faults_near(surface.mesh, change, lattice);
-    const NodeSet& misplaced = nodes.after(change, surface.mesh, near.faults, [&] { return sharpener.changes(); });
+    misplaced.flip(changed_nodes(surface.mesh, change, lattice));
     if (near.faults.none() && misplaced.empty()) {
       sharpener.finish();
       return true;

@@ -267,7 +267,7 @@ SurfaceEdit Sharpener::sharpen() {
   std::vector<std::uint32_t> all(parts_.size());
   std::iota(all.begin(), all.end(), 0U);
   pull(all);
-  SurfaceEdit edit = changes();
+  SurfaceEdit edit = changes_of(all, first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
   edit.apply(surface_.mesh);
   return edit;
 }
@@ -314,12 +314,6 @@ bool Sharpener::has_changed(const Part& part, const State& before) const {
     if (before.triangles[face] != now_.triangles[face]) return true;
   }
   return false;
-}
-
-SurfaceEdit Sharpener::changes() const {
-  std::vector<std::uint32_t> all(parts_.size());
-  std::iota(all.begin(), all.end(), 0U);
-  return changes_of(all, first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
 }
 
 void Sharpener::pull(const std::vector<std::uint32_t>& parts) {

@@ -45,8 +45,6 @@ class Sharpener {
   // anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the faces at
   // `vertices` in any case, so that faults there are looked for again.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
-  // All that has changed since the surface was as at first.
-  [[nodiscard]] SurfaceEdit changes() const;
 
   // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
   void undo();

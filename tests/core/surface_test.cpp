@@ -292,30 +292,24 @@ SurfaceEdit both(SurfaceEdit a, const SurfaceEdit& b) {
 }
 
 // Of two boxes the second one comes over the node in the first one, which it goes around twice then; both leave; the
-// first one comes back. The node has changed three times, and is where it was at first.
-TEST(SurfaceCertificate, CountsNodesAnewThatAMeshWentAroundTwice) {
+// first one comes back. When both have left, the node is on another side than at first, but in two steps at once.
+TEST(SurfaceCertificate, AddsUpNodesThatAMeshWentAroundTwice) {
   const DefaultFloatingPoint guard;
   const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {8, 8, 8}};
   const TriangleMesh at_first =
       test::joined(test::box_mesh({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}), test::box_mesh({3.7, 1.6, 1.6}, {3.9, 2.4, 2.4}));
   const std::uint32_t second = 8;
   TriangleMesh mesh = at_first;
-  NodesSinceFirst nodes(lattice);
-  SurfaceFaults overlaps;
-  overlaps.intersections.pairs = 1;
-  const auto not_asked = [] {
-    ADD_FAILURE();
-    return SurfaceEdit{};
-  };
-  const auto after = [&](const SurfaceEdit& change, const SurfaceFaults& faults,
-                         const std::function<SurfaceEdit()>& all) {
+  NodeSet nodes(lattice);
+  const auto after = [&](const SurfaceEdit& change) {
     change.apply(mesh);
-    return nodes.after(change, mesh, faults, all).size();
+    nodes.flip(changed_nodes(mesh, change, lattice));
+    return nodes.size();
   };
-  EXPECT_EQ(after(shifted(at_first, second, 0.0, -1.8), overlaps, not_asked), 1U);
-  after(both(shifted(at_first, 0, 0.0, 3.0), shifted(at_first, second, -1.8, 0.5)), overlaps, not_asked);
-  const auto since_first = [&] { return shifted(at_first, second, 0.0, 0.5); };
-  EXPECT_EQ(after(shifted(at_first, 0, 3.0, 0.0), {}, since_first), 0U);
+  EXPECT_EQ(after(shifted(at_first, second, 0.0, -1.8)), 1U);
+  EXPECT_EQ(after(both(shifted(at_first, 0, 0.0, 3.6), shifted(at_first, second, -1.8, 0.5))), 2U);
+  EXPECT_TRUE(nodes.holds(2, 2, 2));
+  EXPECT_EQ(after(shifted(at_first, 0, 3.6, 0.0)), 0U);
 }
 
 // A node that has changed sides stays so.
@@ -323,16 +317,14 @@ TEST(SurfaceCertificate, CountsNodesThatHaveChangedSides) {
   const DefaultFloatingPoint guard;
   const TriangleMesh at_first = test::box_mesh({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});
   TriangleMesh mesh = at_first;
-  NodesSinceFirst nodes({{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {8, 8, 8}});
-  int asked = 0;
+  NodeSet nodes({{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {8, 8, 8}});
   for (const auto& [before, now, changed] :
        {std::tuple{0.0, 0.4, 0U}, {0.4, 1.2, 2U}, {1.2, 1.3, 2U}, {1.3, 0.1, 0U}}) {
     const SurfaceEdit change = shifted(at_first, 0, before, now);
     change.apply(mesh);
-    const auto since_first = [&, to = now] { return ++asked, shifted(at_first, 0, 0.0, to); };
-    EXPECT_EQ(nodes.after(change, mesh, {}, since_first).size(), changed) << now;
+    nodes.flip(changed_nodes(mesh, change, nodes.lattice()));
+    EXPECT_EQ(nodes.size(), changed) << now;
   }
-  EXPECT_EQ(asked, 2);
 }
 
 // Vertices that have left their edge, face or tetrahedron by less than anything else would notice.

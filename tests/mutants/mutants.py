@@ -507,8 +507,8 @@ MUTANTS = [
         ("core/surface/cell_creases.cpp", "    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);\n", "")]),
     Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
         ("core/surface/face_points.cpp", "return cells_of_polygons[c] != 0;", "return cells_of_polygons[c] < 9;")]),
-    Mutant("nodes_counted_once", "nodes that a mesh went around twice are counted anew", [
-        ("core/surface/certificate.cpp", "if (has_changed_ && faults.none() && !nodes_.empty()) nodes_", "if (has_changed_ && faults.none() && nodes_.empty()) nodes_")]),
+    Mutant("nodes_counted_once", "nodes that a mesh went around twice have not changed sides", [
+        ("core/surface/certificate.cpp", "Rule{RuleKind::kOdd}, lattice)", "Rule{RuleKind::kNonzero}, lattice)")]),
     Mutant("faults_that_stay", "faces that intersected others are looked at again", [
         ("core/surface/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
     Mutant("faces_beside_gone_ones", "faces at corners of those that have changed are looked at", [

@@ -75,8 +75,11 @@ class SurfaceMaker {
         if (is_sharpened_) {
           if (std::optional<FinishedSurface> made = attempt(sharp, margins, false)) return std::move(*made);
         }
-        sharp = sharp.without(involved(sharp));
+        const std::vector<bool> dropped = involved(sharp);
+        if (std::ranges::find(dropped, true) == dropped.end()) break;  // another round would be the same
+        sharp = sharp.without(dropped);
       }
+      if (margins.inner == kMostMargin) break;  // and so would another margin
     }
     throw SurfaceFailure(described(faults_));
   }
@@ -189,7 +192,9 @@ class SurfaceMaker {
       }
       if (faults.intersections.pairs == 0) return false;
       const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
+      const std::vector<bool> before = kept;
       for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
+      if (kept == before) return false;  // another round would be the same
     }
     return false;
   }

@@ -23,36 +23,27 @@ namespace {
 constexpr int kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
 constexpr double kFirstReach = 0.25;  // voxels; then 1, 2, 4, ...
 
+using Node = NodeSet::Node;
+
 // The nodes that are at most `reach` from one of `nodes` along an axis, too. Where merging moves an edge of the surface
 // over a node that it leads through, it does so at any other node that the edge leads through.
 NodeSet along_axes(const NodeSet& nodes, std::int64_t reach) {
   NodeSet result = nodes;
-  const auto spread = [&](const std::array<std::int64_t, 3>& node) {
+  const auto spread = [&](const Node& node) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::array<std::int64_t, 3> at = node;
+      Node at = node;
       const std::int64_t end = std::min(node[axis] + reach, nodes.lattice().counts[axis] - 1);
       for (at[axis] = std::max<std::int64_t>(node[axis] - reach, 0); at[axis] <= end; ++at[axis])
         result.insert(at[0], at[1], at[2]);
     }
   };
-  for (std::int64_t k = 0; k < nodes.count(2); ++k) {
-    for (std::int64_t j = 0; j < nodes.count(1); ++j) {
-      const std::uint64_t* const row = nodes.row(j, k);
-      for (std::int64_t i = 0; i < nodes.count(0); ++i) {
-        if (row[i / 64] == 0)
-          i |= 63;
-        else if (nodes.holds(i, j, k))
-          spread({i, j, k});
-      }
-    }
-  }
+  nodes.for_each(spread);
   return result;
 }
 
-// Whether the box of a triangle, a voxel larger on each side, has one of the nodes.
-bool is_near(const TriangleMesh& mesh, const Triangle& t, const NodeSet& nodes) {
-  const Lattice& lattice = nodes.lattice();
-  std::array<std::int64_t, 3> low{}, high{};
+// Whether the box of a triangle, a voxel larger on each side, has one of the nodes, which are in the order of NodeSet.
+bool is_near(const TriangleMesh& mesh, const Triangle& t, const Lattice& lattice, const std::vector<Node>& nodes) {
+  Node low{}, high{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const auto index = [&](double x) {
@@ -61,17 +52,15 @@ bool is_near(const TriangleMesh& mesh, const Triangle& t, const NodeSet& nodes) 
     };
     const auto [least, most] =
         std::minmax({mesh.vertices[t[0]][axis], mesh.vertices[t[1]][axis], mesh.vertices[t[2]][axis]});
-    low[a] = std::max<std::int64_t>(index(least) - 1, 0);
-    high[a] = std::min(index(most) + 2, lattice.counts[a] - 1);
+    low[a] = index(least) - 1;
+    high[a] = index(most) + 2;
   }
-  for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-    for (std::int64_t j = low[1]; j <= high[1]; ++j) {
-      for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-        if (nodes.holds(i, j, k)) return true;
-      }
-    }
-  }
-  return false;
+  const auto layer = [](const Node& node) { return node[2]; };
+  const auto begin = std::ranges::lower_bound(nodes, low[2], {}, layer);
+  const auto end = std::ranges::upper_bound(nodes, high[2], {}, layer);
+  return std::any_of(begin, end, [&](const Node& node) {
+    return low[0] <= node[0] && node[0] <= high[0] && low[1] <= node[1] && node[1] <= high[1];
+  });
 }
 
 class CheckedMerger {
@@ -110,12 +99,13 @@ class CheckedMerger {
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     bool to_corners = false;
-    for (int round = 0; round < (all ? kRounds + kWideRounds : kRounds); ++round) {
+    const int rounds = all ? kRounds + kWideRounds : kRounds;
+    for (int round = 0; round < rounds; ++round) {
       MergedFaces merged = merger.merge(kept_);
       TriangleMesh compact = used_part(vertices, merged.triangles);
       if (round > 0 && to_corners) move_to_corners(compact, unit);
       SurfaceFaults faults = check.faults(merged, compact, misplaced);
-      check.remember(merged, compact, faults);
+      if (!faults.none()) check.remember(merged, compact, faults);
       if (round == 0 && faults.nodes > 0)
         to_corners = is_better_at_corners(merged, unit, check, compact, faults, misplaced);
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
@@ -124,10 +114,9 @@ class CheckedMerger {
       const bool no_better = round > 0 && count >= faults_before;
       if ((no_better || round == kRounds) && !is_right()) return std::nullopt;
       faults_before = count;
-      if (round < kRounds) {
-        keep_near(merged, faults, misplaced, round == 0 ? kFirstReach : std::exp2(round - 1));
-      } else {
-        keep_around(merged, faults, misplaced, round - kRounds);
+      // With nothing more kept, the next round would find the same.
+      while (!keep({merged, compact, faults, misplaced}, round)) {
+        if (++round == rounds || !is_right()) return std::nullopt;
       }
     }
     return std::nullopt;
@@ -163,41 +152,80 @@ class CheckedMerger {
     return !is_wrong_;
   }
 
-  // Large faces are undone near the vertices that they have left, first: `most` voxels from them.
-  void keep_near(const MergedFaces& merged, const SurfaceFaults& faults, const NodeSet& misplaced, double most) {
-    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
-    const std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
+  // What is left of a surface, and what is wrong with that.
+  struct Faulty {
+    const MergedFaces& merged;
+    const TriangleMesh& mesh;  // its faces, in their order
+    const SurfaceFaults& faults;
+    const NodeSet& misplaced;
+  };
+
+  // Returns whether more is kept than before.
+  bool keep(const Faulty& found, int round) {
+    if (round >= kRounds) return keep_around(found, round - kRounds);
+    return keep_near(found, round == 0 ? kFirstReach : std::exp2(round - 1));
+  }
+
+  // Whether more is kept now.
+  template <class MayStay>
+  bool keep_where(const MayStay& may_stay) {
+    bool is_more = false;
     for (std::size_t v = 0; v < kept_.size(); ++v) {
-      const Vec3 &from = vertices[v], &to = vertices[merged.into[v]];
-      const bool undone = touched[merged.into[v]] && voxels_between(from, to) <= most;
-      kept_[v] = kept_[v] || undone || is_beside(from, misplaced);
+      if (kept_[v] || !may_stay(v)) continue;
+      kept_[v] = is_more = true;
     }
+    return is_more;
+  }
+
+  // Those that faces with faults have: that intersect others, or have no area.
+  [[nodiscard]] std::vector<bool> vertices_at_faults(const Faulty& found) const {
+    std::vector<bool> touched = faulty_vertices(kept_.size(), found.merged.triangles, found.faults);
+    for (std::size_t face = 0; face < found.merged.triangles.size() && found.faults.degenerate_faces > 0; ++face) {
+      const Triangle& t = found.mesh.triangles[face];
+      if (!collinear(found.mesh.vertices[t[0]], found.mesh.vertices[t[1]], found.mesh.vertices[t[2]])) continue;
+      for (const std::uint32_t corner : found.merged.triangles[face]) touched[corner] = true;
+    }
+    return touched;
+  }
+
+  // Large faces are undone near the vertices that they have left, first: `most` voxels from them.
+  bool keep_near(const Faulty& found, double most) {
+    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+    const std::vector<bool> touched = vertices_at_faults(found);
+    const bool has_misplaced = found.faults.nodes > 0;
+    return keep_where([&](std::size_t v) {
+      const std::uint32_t into = found.merged.into[v];
+      const bool undone = touched[into] && voxels_between(vertices[v], vertices[into]) <= most;
+      return undone || (has_misplaced && is_beside(vertices[v], found.misplaced));
+    });
   }
 
   // Each time more: all that was pulled into faces with faults and into those around them, in twice as many rings; what
   // is beside nodes on the lines of misplaced ones, four times as far. At last, misplaced nodes are faults of the faces
   // next to them.
-  void keep_around(const MergedFaces& merged, const SurfaceFaults& faults, const NodeSet& misplaced, int wide) {
+  bool keep_around(const Faulty& found, int wide) {
     const std::vector<Vec3>& vertices = surface_.mesh.vertices;
-    std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
-    const auto touch = [&](const Triangle& t) {
-      for (const std::uint32_t corner : t) touched[corner] = true;
-    };
-    for (const Triangle& t : merged.triangles) {
-      const bool is_flat = faults.degenerate_faces > 0 && collinear(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-      if (is_flat || (wide >= kFacesFrom && is_near(surface_.mesh, t, misplaced))) touch(t);
-    }
+    std::vector<bool> touched = vertices_at_faults(found);
+    if (wide >= kFacesFrom) touch_beside(found, touched);
     for (int ring = 0; ring < 1 << wide; ++ring) {
       std::vector<bool> wider = touched;
-      for (const Triangle& t : merged.triangles) {
+      for (const Triangle& t : found.merged.triangles) {
         if (!touched[t[0]] && !touched[t[1]] && !touched[t[2]]) continue;
         for (const std::uint32_t corner : t) wider[corner] = true;
       }
       touched = std::move(wider);
     }
-    const NodeSet lines = along_axes(misplaced, std::int64_t{2} << 2 * wide);
-    for (std::size_t v = 0; v < kept_.size(); ++v)
-      kept_[v] = kept_[v] || touched[merged.into[v]] || is_beside(vertices[v], lines);
+    const NodeSet lines = along_axes(found.misplaced, std::int64_t{2} << 2 * wide);
+    return keep_where([&](std::size_t v) { return touched[found.merged.into[v]] || is_beside(vertices[v], lines); });
+  }
+
+  void touch_beside(const Faulty& found, std::vector<bool>& touched) const {
+    std::vector<Node> nodes;
+    found.misplaced.for_each([&](const Node& node) { nodes.push_back(node); });
+    for (const Triangle& t : found.merged.triangles) {
+      if (!is_near(surface_.mesh, t, inside_.lattice(), nodes)) continue;
+      for (const std::uint32_t corner : t) touched[corner] = true;
+    }
   }
 
   // Along the axis where that is most.

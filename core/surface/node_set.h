@@ -1,7 +1,10 @@
 // The nodes of a lattice that are inside.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +18,8 @@ namespace raycone {
 // A bit for each node of a lattice, in rows along x. Nodes are numbered x fastest, from 0.
 class NodeSet {
  public:
+  using Node = std::array<std::int64_t, 3>;
+
   // Empty.
   explicit NodeSet(const Lattice& lattice);
 
@@ -39,6 +44,17 @@ class NodeSet {
     return words_.data() + (k * count(1) + j) * words_per_row_;
   }
   [[nodiscard]] std::int64_t words_per_row() const { return words_per_row_; }
+
+  // Calls visit(node) for each, in the order of their numbers.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t word = 0; word < words_.size(); ++word) {
+      const auto row = static_cast<std::int64_t>(word) / words_per_row_;
+      const std::int64_t first = (static_cast<std::int64_t>(word) - row * words_per_row_) * 64;
+      for (std::uint64_t bits = words_[word]; bits != 0; bits &= bits - 1)
+        visit(Node{first + std::countr_zero(bits), row % count(1), row / count(1)});
+    }
+  }
 
   // Those of `others`, of the same lattice, change: in it if they were not, and the other way round.
   void flip(const NodeSet& others);

@@ -540,7 +540,7 @@ MUTANTS = [
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
-        ("core/surface/checked_merge.cpp", " || is_beside(from, misplaced);", ";")]),
+        ("core/surface/checked_merge.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
         ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [

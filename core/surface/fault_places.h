@@ -10,13 +10,13 @@
 
 namespace raycone {
 
-// Vertices near faces that intersect: those of these faces, and of their neighbours. `count`: of all vertices;
-// `triangles`: of the mesh that the faults are of.
+// The vertices of faces that intersect. `count`: of all vertices; `triangles`: of the mesh that the faults are of.
 [[nodiscard]] std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
                                                 const SurfaceFaults& faults);
 
-// Whether a corner of the cell that a point is in is one of `nodes`. Points beyond the lattice are in its outermost
-// cells.
+// Whether a corner of the cell that a point is in is one of `nodes`. A point between cells, as vertices of a contour
+// are, is in the one of larger coordinates, as far as rounding can tell. Points beyond the lattice are in its
+// outermost cells.
 [[nodiscard]] bool is_beside(const Vec3& p, const NodeSet& nodes);
 
 // A mesh without the vertices that no triangle uses.

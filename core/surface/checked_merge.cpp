@@ -78,6 +78,7 @@ class CheckedMerger {
   // as well as that have faults, they are merged where they agree better. None where faults are left even so.
   std::optional<SurfaceMesh> merge(bool once) {
     constexpr double kWell = 2.5, kBetter = 0.25;
+    static_assert(kNeedle + kWell <= kMostMerging);
     std::optional<SurfaceMesh> result = merged_within(kWell, false);
     if (!result && !is_wrong_ && !once) result = merged_within(kBetter, true);
     return result;

@@ -10,6 +10,9 @@
 
 namespace raycone {
 
+// How far that moves points of a surface at most: to corners of the input, and within planes. In margins, as below.
+inline constexpr double kMostMerging = 16.0 + 2.5;
+
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
 // of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
 // fewer, vertices next to the input's are moved there. None where all that did not help. `input`: the mesh that it is

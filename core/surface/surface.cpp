@@ -171,11 +171,11 @@ class SurfaceMaker {
     return thickness + std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}) / 4;
   }
 
-  // What is left of `simplify` for pulls. Merging has moved points by a few margins already.
+  // What is left of `simplify` for pulls, as merging has moved points already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
-    constexpr double kMargins = 16.0, kMargin = 1.0 - 1e-6;
+    constexpr double kMargin = 1.0 - 1e-6;
     const Vec3& h = inside_.lattice().spacing;
-    return kMargin * options_.simplify - kMargins * margins.inner * std::max({h.x, h.y, h.z});
+    return kMargin * options_.simplify - kMostMerging * margins.inner * std::max({h.x, h.y, h.z});
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.

@@ -106,6 +106,20 @@ TEST(StarChange, OfFacesInOnePlaneIsNothing) {
   }
 }
 
+// Merging moves points by up to 18.5 margins, which used to be taken for 16.
+TEST(SimplifiedSurface, LeavesWhatMergingMayMove) {
+  const TriangleMesh mesh = test::sphere(8);
+  const WindingNumberEvaluator evaluator(mesh);
+  const Lattice lattice{{-1.25, -1.25, -1.25}, {0.125, 0.125, 0.125}, {0, 0, 0}, {21, 21, 21}};
+  const NodeSet inside = nodes_inside(evaluator, {}, lattice);
+  const double margin = surface_margin(lattice, false) * lattice.spacing.x;
+  for (const double margins : {17.0, 18.4, 18.6}) {
+    SurfaceOptions options;
+    options.simplify = margins * margin;
+    EXPECT_EQ(closed_surface(mesh, evaluator, inside, options).bound_too_small, margins < 18.5) << margins;
+  }
+}
+
 TEST(StarChange, SeesNodesBetween) {
   // A tip of height 0.5 over a square that becomes flat.
   const std::vector<Vec3> ring{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};

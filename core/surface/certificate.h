@@ -44,8 +44,8 @@ struct NearFaults {
   std::vector<std::uint32_t> vertices;  // increasing; not those of misplaced nodes
 };
 
-// The faults that faults_of() finds in a mesh since it was changed, in time and memory of what is near the change:
-// each that a changed face has part in, and equal vertices nearby. `mesh`: after the change; within the lattice, or not
+// The faults that faults_of() finds in a mesh since it was changed: each that a changed face has part in, and equal
+// vertices nearby. Sorts what is near the change, after a look at each face, in a bit or more per cell of the lattice. `mesh`: after the change; within the lattice, or not
 // far from it; without the faces that are gone, and the vertices that no face has. But for nodes: these are
 // changed_nodes().
 [[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);

@@ -317,7 +317,7 @@ bool Sharpener::has_changed(const Part& part, const State& before) const {
 }
 
 void Sharpener::pull(const std::vector<std::uint32_t>& parts) {
-  parallel_for(parts.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       Part& part = parts_[parts[n]];
       part.pulls = StripPulls(*this, part, now_).pull_all();

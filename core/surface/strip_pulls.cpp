@@ -92,7 +92,7 @@ std::size_t StripPulls::fill_gaps() {
     Gap gap{gap_from(first, seen), {}, {}, {}};
     if (!is_hopeless(gap.faces)) gaps.push_back(std::move(gap));
   }
-  parallel_for(gaps.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(gaps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) find_fill(gaps[n]);
   });
   std::size_t filled = 0;

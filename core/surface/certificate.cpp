@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -271,6 +272,21 @@ TriangleMesh mesh_between(const TriangleMesh& mesh, const SurfaceEdit& change) {
   return between;
 }
 
+// The rows that a box may have nodes of.
+LatticeBlock rows_at(const Box& box, const Lattice& lattice) {
+  LatticeBlock rows = whole(lattice);
+  for (const int axis : {1, 2}) {
+    const auto a = static_cast<std::size_t>(axis);
+    const auto first = static_cast<double>(lattice.index_min[a]), last = static_cast<double>(lattice.index_max(axis));
+    const auto index = [&](double x) { return std::floor((x - lattice.origin[axis]) / lattice.spacing[axis]); };
+    const double low = std::clamp(index(box.lower[axis]) - 1.0, first, last);
+    const double high = std::clamp(index(box.upper[axis]) + 2.0, first, last);
+    rows.first[a] = static_cast<std::int64_t>(low);
+    rows.counts[a] = static_cast<std::int64_t>(high - low) + 1;
+  }
+  return rows;
+}
+
 }  // namespace
 
 NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const std::vector<ExteriorEdge>* edges) {
@@ -323,8 +339,11 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
 
 NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice) {
   const std::vector<ExteriorEdge> none;
-  const WindingNumberEvaluator between(mesh_between(mesh, change), {.edges = &none});
-  return nodes_inside(between, Rule{RuleKind::kOdd}, lattice);
+  TriangleMesh between = mesh_between(mesh, change);
+  if (between.triangles.empty()) return NodeSet(lattice);
+  const LatticeBlock rows = rows_at(bounding_box(between), lattice);
+  const WindingNumberEvaluator evaluator(std::move(between), {.edges = &none});
+  return nodes_inside_of(rows, evaluator, Rule{RuleKind::kOdd}, lattice);
 }
 
 std::string described(const SurfaceFaults& faults) {

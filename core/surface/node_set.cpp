@@ -1,6 +1,7 @@
 #include "core/surface/node_set.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <numeric>
@@ -22,11 +23,29 @@ std::uint64_t bits_of(const std::uint8_t* bytes) {
   return word * (std::endian::native == std::endian::little ? kFromLow : kFromHigh) >> 56U;
 }
 
-LatticeBlock slab_of_nodes(const Lattice& lattice, std::int64_t first_layer) {
-  const std::int64_t layers = std::max<std::int64_t>(1, kSlabNodes / (lattice.counts[0] * lattice.counts[1]));
-  LatticeBlock slab = whole(lattice);
+// Of 64 of them. Most are alike.
+std::uint64_t word_of(const std::uint8_t* bytes) {
+  constexpr std::uint64_t kOnes = 0x0101'0101'0101'0101;
+  std::array<std::uint64_t, 8> words;
+  std::memcpy(words.data(), bytes, sizeof words);
+  std::uint64_t any = 0, all = kOnes;
+  for (const std::uint64_t eight : words) {
+    any |= eight;
+    all &= eight;
+  }
+  if (any == 0) return 0;
+  if (all == kOnes) return ~std::uint64_t{0};
+  std::uint64_t word = 0;
+  for (unsigned n = 0; n < 64; n += 8) word |= bits_of(bytes + n) << n;
+  return word;
+}
+
+// The layers of a block from one on, as many as take the memory of a slab.
+LatticeBlock slab_of(const LatticeBlock& block, std::int64_t first_layer) {
+  const std::int64_t layers = std::max<std::int64_t>(1, kSlabNodes / (block.counts[0] * block.counts[1]));
+  LatticeBlock slab = block;
   slab.first[2] += first_layer;
-  slab.counts[2] = std::min(layers, lattice.counts[2] - first_layer);
+  slab.counts[2] = std::min(layers, block.counts[2] - first_layer);
   return slab;
 }
 
@@ -44,14 +63,11 @@ NodeSet NodeSet::on(const Lattice& lattice) const {
 }
 
 void NodeSet::set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds) {
-  std::uint64_t* const words = words_.data() + (k * count(1) + j) * words_per_row_;
-  for (std::size_t first = 0; first < holds.size(); first += 64) {
-    const std::size_t count = std::min<std::size_t>(holds.size() - first, 64);
-    std::uint64_t word = 0;
-    std::size_t n = 0;
-    for (; n + 8 <= count; n += 8) word |= bits_of(holds.data() + first + n) << n;
-    for (; n < count; ++n) word |= std::uint64_t{holds[first + n]} << n;
-    words[first / 64] = word;
+  std::uint64_t* words = words_.data() + (k * count(1) + j) * words_per_row_;
+  for (; holds.size() >= 64; holds = holds.subspan(64)) *words++ = word_of(holds.data());
+  for (std::size_t n = 0; n < holds.size(); ++n) {
+    if (n == 0) *words = 0;
+    *words |= std::uint64_t{holds[n]} << n;
   }
 }
 
@@ -84,18 +100,24 @@ bool NodeSet::reaches_border() const {
 
 NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
                      std::atomic<std::uint64_t>* done) {
+  return nodes_inside_of(whole(lattice), evaluator, rule, lattice, done);
+}
+
+NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator& evaluator, const Rule& rule,
+                        const Lattice& lattice, std::atomic<std::uint64_t>* done) {
   NodeSet nodes(lattice);
   std::vector<std::uint8_t> sides;
-  for (std::int64_t layer = 0; layer < lattice.counts[2];) {
-    const LatticeBlock slab = slab_of_nodes(lattice, layer);
+  for (std::int64_t layer = 0; layer < block.counts[2];) {
+    const LatticeBlock slab = slab_of(block, layer);
     sides.resize(static_cast<std::size_t>(slab.size()));
     evaluator.evaluate_sides(rule, lattice, slab, sides, done);
+    const std::int64_t first_j = slab.first[1] - lattice.index_min[1], first_k = slab.first[2] - lattice.index_min[2];
     const auto rows = static_cast<std::size_t>(slab.counts[1] * slab.counts[2]);
     parallel_for(rows, 64, [&](std::size_t begin, std::size_t end) {
       for (auto row = static_cast<std::int64_t>(begin); row < static_cast<std::int64_t>(end); ++row) {
         const auto of_row = std::span<const std::uint8_t>(sides).subspan(static_cast<std::size_t>(row * slab.counts[0]),
                                                                          static_cast<std::size_t>(slab.counts[0]));
-        nodes.set_row(row % slab.counts[1], layer + row / slab.counts[1], of_row);
+        nodes.set_row(first_j + row % slab.counts[1], first_k + row / slab.counts[1], of_row);
       }
     });
     layer += slab.counts[2];

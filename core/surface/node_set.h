@@ -74,6 +74,11 @@ class NodeSet {
 [[nodiscard]] NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
                                    std::atomic<std::uint64_t>* done = nullptr);
 
+// The same of some rows alone: none are found elsewhere. Precondition: rows of `block` are whole.
+[[nodiscard]] NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator& evaluator,
+                                      const Rule& rule, const Lattice& lattice,
+                                      std::atomic<std::uint64_t>* done = nullptr);
+
 // What nodes_inside() takes at most, in bytes.
 [[nodiscard]] double node_set_bytes(const Lattice& lattice);
 

@@ -17,10 +17,10 @@ inline constexpr double kMostMerging = 16.0 + 2.5;
 // of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
 // fewer, vertices next to the input's are moved there. None where all that did not help. `input`: the mesh that it is
 // of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `single_precision`: vertices are
-// floats, and stay so; `is_right`: whether the surface has no faults before, asked where that matters. The same for any
-// number of threads.
+// floats, and stay so; `is_right`: whether the surface has no faults before, asked where that matters; `once`: not
+// again within less, as who calls can make another surface. The same for any number of threads.
 [[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
                                                        const NodeSet& inside, double margin, bool single_precision,
-                                                       const std::function<bool()>& is_right, bool once = false);
+                                                       const std::function<bool()>& is_right, bool once);
 
 }  // namespace raycone

@@ -53,6 +53,7 @@ class SurfaceMaker {
     enter("finding points on the mesh");
     constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
     const double least = surface_margin(inside_.lattice(), options_.single_precision);
+    Attempt last;
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
       points_ = options_.thickness > 0.0
@@ -61,32 +62,37 @@ class SurfaceMaker {
                     : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
       if (may_use_polygons()) {
         const FacePoints sharp = points_of_sections(margins);
-        if (std::optional<FinishedSurface> made = attempt(sharp, margins, true, ContourCells::kPolygons))
-          return std::move(*made);
+        if (Attempt first = attempt(sharp, margins, true, ContourCells::kPolygons); first.made)
+          return *std::move(first.made);
       }
       FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
         if (may_use_polygons()) {
-          if (std::optional<FinishedSurface> made = attempt(sharp, margins, true, ContourCells::kPolygons))
-            return std::move(*made);
+          last = attempt(sharp, margins, true, ContourCells::kPolygons);
+          if (last.made) return *std::move(last.made);
         }
-        if (std::optional<FinishedSurface> made = attempt(sharp, margins, true)) return std::move(*made);
-        // Faults are looked for in what contour() made, which has vertices of known numbers.
-        if (is_sharpened_) {
-          if (std::optional<FinishedSurface> made = attempt(sharp, margins, false)) return std::move(*made);
-        }
-        const std::vector<bool> dropped = involved(sharp);
+        last = attempt(sharp, margins, true);
+        if (last.is_sharpened && !last.made) last = attempt(sharp, margins, false);
+        if (last.made) return *std::move(last.made);
+        const std::vector<bool> dropped = involved(sharp, last);
         if (std::ranges::find(dropped, true) == dropped.end()) break;  // another round would be the same
         sharp = sharp.without(dropped);
       }
       if (margins.inner == kMostMargin) break;  // and so would another margin
     }
-    throw SurfaceFailure(described(faults_));
+    throw SurfaceFailure(described(last.faults.value_or(SurfaceFaults())));
   }
 
  private:
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr int kRounds = 4;
+
+  struct Attempt {
+    std::optional<FinishedSurface> made;
+    bool is_sharpened = false;
+    std::optional<SurfaceFaults> faults{};  // of the surface before merging, where they have been looked for
+    TriangleMesh failed{};                  // that surface, where it has any
+  };
 
   // What thickens has points off the mesh.
   [[nodiscard]] bool may_use_polygons() const { return !(options_.thickness > 0.0); }
@@ -108,49 +114,50 @@ class SurfaceMaker {
 
   // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
   // has, or nothing is merged.
-  std::optional<FinishedSurface> attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
-                                         ContourCells kind = ContourCells::kTetrahedra) {
+  Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
+                  ContourCells kind = ContourCells::kTetrahedra) {
     enter("joining them by triangles");
     auto [surface, tetrahedra, first_apex, fewer] =
         contour(cells_, points_, sharp, creases_, tolerance_, margins, kind);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
-    is_right_.reset();
-    is_sharpened_ = false;
+    Attempt result;
     const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),
                                 options_.single_precision};
     const std::uint64_t places = misplaced_vertices(made_of, cells_, sharp, tetrahedra, margins);
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
     settler_.settle(surface);
-    if (sharpens && places == 0 && options_.thickness == 0.0) sharpen(surface, margins, fewer);
-    if (is_sharpened_) settler_.settle(surface);
-    if ((places > 0 || !options_.merge_planes) && !is_right(surface, places)) return std::nullopt;
+    if (sharpens && places == 0 && options_.thickness == 0.0) result.is_sharpened = sharpen(surface, margins, fewer);
+    if (result.is_sharpened) settler_.settle(surface);
+    if ((places > 0 || !options_.merge_planes) && !is_right(surface, places, result)) return result;
     FinishedSurface made{std::move(surface)};
-    if (options_.merge_planes) made.merged = merge(made.surface, margins, kind);
-    if (options_.merge_planes && !made.merged && kind == ContourCells::kPolygons) return std::nullopt;
-    if (!is_right_.value_or(true) || (!made.merged && !is_right(made.surface, places))) return std::nullopt;
+    if (options_.merge_planes) made.merged = merge(made.surface, margins, kind, result);
+    if (options_.merge_planes && !made.merged && kind == ContourCells::kPolygons) return result;
+    if (result.faults && !result.faults->none()) return result;
+    if (!made.merged && !is_right(made.surface, places, result)) return result;
     if (options_.simplify > 0.0) {
       const double most = farthest_pull(margins);
       made.bound_too_small = !(most > 0.0);
       made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
       if (made.simplified) settler_.settle(made.surface);
     }
-    return made;
+    result.made = std::move(made);
+    return result;
   }
 
-  bool is_right(const SurfaceMesh& surface, std::uint64_t places) {
-    if (is_right_) return *is_right_;
+  // Of the surface before merging; looked for once.
+  bool is_right(const SurfaceMesh& surface, std::uint64_t places, Attempt& attempt) const {
+    if (attempt.faults) return attempt.faults->none();
     enter("checking");
-    faults_ = faults_of(surface.mesh, inside_);
-    faults_.places = places;
-    is_right_ = faults_.none();
-    if (!*is_right_) failed_ = surface.mesh;
-    return *is_right_;
+    attempt.faults = faults_of(surface.mesh, inside_);
+    attempt.faults->places = places;
+    if (!attempt.faults->none()) attempt.failed = surface.mesh;
+    return attempt.faults->none();
   }
 
-  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind) {
+  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
-    const auto is_right_unmerged = [&] { return is_right(surface, 0); };
+    const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
     std::optional<SurfaceMesh> result = checked_merge(surface, mesh_, inside_, margins.inner, options_.single_precision,
                                                       is_right_unmerged, kind == ContourCells::kPolygons);
     if (result) surface = std::move(*result);
@@ -158,12 +165,12 @@ class SurfaceMaker {
   }
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
-  void sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) {
+  [[nodiscard]] bool sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) const {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    is_sharpened_ = checked_sharpen(surface, mesh_, normals_, inside_.lattice(),
-                                    {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
+    return checked_sharpen(surface, mesh_, normals_, inside_.lattice(),
+                           {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
@@ -199,12 +206,14 @@ class SurfaceMaker {
     return false;
   }
 
-  // The face points of cells with faces that intersect. Where faults are of other kinds, all of them.
-  [[nodiscard]] std::vector<bool> involved(const FacePoints& sharp) const {
+  // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of
+  // tetrahedra, and not sharpened, so that vertices have the numbers that contour() gave them.
+  [[nodiscard]] std::vector<bool> involved(const FacePoints& sharp, const Attempt& attempt) const {
     const std::size_t count = sharp.positions().size(), first = points_.size();
-    std::vector<bool> dropped(count, faults_.intersections.pairs == 0);
-    const std::vector<bool> near = faulty_vertices(failed_.vertices.size(), failed_.triangles, faults_);
-    for (const Triangle& t : failed_.triangles) {
+    std::vector<bool> dropped(count, attempt.faults->intersections.pairs == 0);
+    const TriangleMesh& failed = attempt.failed;
+    const std::vector<bool> near = faulty_vertices(failed.vertices.size(), failed.triangles, *attempt.faults);
+    for (const Triangle& t : failed.triangles) {
       if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
       for (const std::uint32_t corner : t) {
         if (corner >= first && corner < first + count) dropped[corner - first] = true;
@@ -225,10 +234,6 @@ class SurfaceMaker {
 
   double tolerance_;
   std::vector<EdgePoint> points_;
-  std::optional<bool> is_right_;  // the surface of this attempt, before merging, where that is known
-  bool is_sharpened_ = false;     // likewise
-  SurfaceFaults faults_;          // of the last one that is not
-  TriangleMesh failed_;
 };
 
 double largest_coordinate(const Lattice& lattice) {

@@ -73,13 +73,6 @@ void take_care(const PlacedTriangle& placed, std::size_t first, LaneMask sure, A
   }
 }
 
-// Whether squares that are not sure are above `least` with care, too.
-HWY_INLINE LaneMask is_farther(const TrianglePack& pack, std::size_t slot, Lanes squares, Lanes least) {
-  const double off = 1e-12 * pack.direction_from[slot];  // more than the square of what the closest point is off by
-  const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
-  return hn::Gt(hn::Sub(squares, hn::Set(d, off)), reach);
-}
-
 // Returns the largest of the group's least squares.
 HWY_INLINE double lower_to(const PlacedTriangle& placed, AccurateTriangles& accurate, Group& group) {
   const TrianglePack& pack = placed.pack;
@@ -91,7 +84,9 @@ HWY_INLINE double lower_to(const PlacedTriangle& placed, AccurateTriangles& accu
     const Lanes before = hn::Load(d, &group.least[n]);
     const Lanes least = hn::IfThenElse(some.sure, hn::Min(before, some.values), before);
     hn::Store(least, d, &group.least[n]);
-    const LaneMask settled = hn::Or(some.sure, is_farther(pack, slot, some.values, least));
+    const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
+    const Lanes direction_from = hn::Set(d, pack.direction_from[slot]);
+    const LaneMask settled = hn::Or(some.sure, hn::Gt(least_with_care(some.values, direction_from), reach));
     if (!hn::AllTrue(d, settled)) take_care(placed, n, settled, accurate, group);
     largest = hn::Max(largest, hn::Load(d, &group.least[n]));
   }

@@ -32,25 +32,73 @@ HWY_INLINE void set_bounds(const Boxes& boxes, const VectorLanes& from, const Ve
   }
 }
 
-// The least square of a pack, of those that may be below `reach`.
-HWY_INLINE double least_of(const TrianglePack& pack, const Vec3& p, const VectorLanes& ps, double reach) {
-  alignas(64) Bounds squares;
-  Lanes least = hn::Set(d, std::numeric_limits<double>::infinity());
-  double with_care = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < TrianglePack::kWidth; i += hn::Lanes(d)) {
-    const Squares some = squared(PackedTriangles(pack, i), ps);
-    least = hn::Min(least, hn::IfThenElse(some.sure, some.values, least));
-    if (hn::AllTrue(d, some.sure)) continue;
-    set_bounds(pack, ps, ps, squares);
-    alignas(64) std::array<double, TrianglePack::kWidth> sure;
-    hn::Store(hn::IfThenElseZero(some.sure, hn::Set(d, 1.0)), d, sure.data());
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (sure[lane] != 0.0 || squares[i + lane] >= reach) continue;
-      with_care = std::min(with_care, pack.triangle(i + lane).squared(p));
+// The least square of triangles that are looked at one pack after the other, of those that may be below a limit.
+class LeastSquare {
+ public:
+  // What a triangle's own distance may be below that of its box, it may be below the least so far.
+  LeastSquare(const Vec3& p, double limit) : p_(p), ps_(in_all_lanes(p)), reach_(beyond_error(limit)) {}
+
+  // What is not below this need not be looked at.
+  [[nodiscard]] double reach() const { return reach_; }
+  // So far, but for what is in doubt; after settle(), at all.
+  [[nodiscard]] double least() const { return least_; }
+
+  HWY_INLINE void look_at(const TrianglePack& pack) {
+    for (std::size_t i = 0; i < TrianglePack::kWidth; i += hn::Lanes(d)) {
+      const Squares some = squared(PackedTriangles(pack, i), ps_);
+      if (hn::AllTrue(d, some.sure)) {
+        lower_to(least_of(some.values));
+        continue;
+      }
+      lower_to(least_of(hn::IfThenElse(some.sure, some.values, hn::Set(d, std::numeric_limits<double>::infinity()))));
+      // Where they are not sure, they are distances from points of the triangles all the same, but for rounding.
+      reach_ = std::min(reach_, beyond_error(beyond_error(least_of(some.values))));
+      const Lanes bounds = least_with_care(some.values, hn::Load(d, &pack.direction_from[i]));
+      const LaneMask settled = hn::Or(some.sure, hn::Ge(bounds, hn::Set(d, reach_)));
+      if (!hn::AllTrue(d, settled)) doubt(pack, i, settled, bounds);
     }
   }
-  return std::min(with_care, hn::GetLane(hn::MinOfLanes(d, least)));
-}
+
+  // Takes care of those that may be the nearest ones, the likeliest first.
+  void settle() {
+    const auto end = doubtful_.begin() + static_cast<std::ptrdiff_t>(count_);
+    std::sort(doubtful_.begin(), end, [](const Doubtful& a, const Doubtful& b) { return a.bound < b.bound; });
+    for (auto it = doubtful_.begin(); it != end && it->bound < reach_; ++it)
+      lower_to(it->pack->triangle(it->slot).squared(p_));
+    count_ = 0;
+  }
+
+ private:
+  struct Doubtful {
+    const TrianglePack* pack;
+    std::size_t slot;
+    double bound;
+  };
+
+  static HWY_INLINE double least_of(Lanes squares) { return hn::GetLane(hn::MinOfLanes(d, squares)); }
+
+  void lower_to(double square) {
+    least_ = std::min(least_, square);
+    reach_ = std::min(reach_, beyond_error(least_));
+  }
+
+  HWY_INLINE void doubt(const TrianglePack& pack, std::size_t first, LaneMask settled, Lanes bounds) {
+    alignas(64) std::array<double, TrianglePack::kWidth> is_settled, bound;
+    hn::Store(hn::IfThenElseZero(settled, hn::Set(d, 1.0)), d, is_settled.data());
+    hn::Store(bounds, d, bound.data());
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (is_settled[lane] != 0.0) continue;
+      if (count_ == doubtful_.size()) settle();
+      doubtful_[count_++] = {&pack, first + lane, bound[lane]};
+    }
+  }
+
+  const Vec3& p_;
+  VectorLanes ps_;
+  double least_ = std::numeric_limits<double>::infinity(), reach_;
+  std::array<Doubtful, 32> doubtful_;
+  std::size_t count_ = 0;
+};
 
 // At most 7 siblings wait per level, of 11 levels for 2^32 triangles.
 constexpr std::size_t kMostWaiting = 12 * TrianglePack::kWidth;
@@ -64,22 +112,20 @@ double search_nearest(const DistanceTree& tree, const Vec3& p, double limit) {
   std::array<Candidate, kMostWaiting> stack;
   std::size_t waiting = 0;
   stack[waiting++] = {0.0, static_cast<std::uint32_t>(tree.levels().size()), 0};
-  double least = std::numeric_limits<double>::infinity();
-  // What a triangle's own distance may be below that of its box, it may be below the least so far.
-  double reach = beyond_error(limit);
+  LeastSquare found(p, limit);
   const VectorLanes ps = in_all_lanes(p);
   alignas(64) Bounds bounds;
   while (waiting > 0) {
     const Candidate here = stack[--waiting];
-    if (here.bound >= reach) continue;
+    if (here.bound >= found.reach()) continue;
     if (here.level == 0) {
-      least = std::min(least, least_of(tree.packs()[here.index], p, ps, reach));
-      if (least == 0.0) return least;
-      reach = std::min(reach, beyond_error(least));
+      found.look_at(tree.packs()[here.index]);
+      if (found.least() == 0.0) return 0.0;
       continue;
     }
     set_bounds(tree.levels()[here.level - 1][here.index], ps, ps, bounds);
     const std::size_t first = waiting;
+    const double reach = found.reach();
     for (std::size_t i = 0; i < TrianglePack::kWidth; ++i) {
       if (!(bounds[i] < reach)) continue;
       // The farthest first: the nearest is on top of the stack.
@@ -88,7 +134,8 @@ double search_nearest(const DistanceTree& tree, const Vec3& p, double limit) {
       stack[at] = {bounds[i], here.level - 1, static_cast<std::uint32_t>(here.index * TrianglePack::kWidth + i)};
     }
   }
-  return least;
+  found.settle();
+  return found.least();
 }
 
 void search_packs(const DistanceTree& tree, const Box& box, double limit, std::size_t most,

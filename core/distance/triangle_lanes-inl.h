@@ -115,6 +115,12 @@ HWY_INLINE Squares squared(const Triangles& t, const VectorLanes& p) {
   return {least, hn::Or(hn::Ge(least, t(pack.sure_from)), hn::Le(least, t(pack.sure_up_to))), rest};
 }
 
+// What squares that are not sure are with care, at least. `direction_from`: of their triangles.
+HWY_INLINE Lanes least_with_care(Lanes squares, Lanes direction_from) {
+  constexpr double kOff = 1e-12;  // times this, more than the square of what the closest point is off by
+  return hn::Sub(squares, hn::Mul(hn::Set(d, kOff), direction_from));
+}
+
 // Squares of the distances from boxes to boxes, but for rounding.
 HWY_INLINE Lanes squared_between(const VectorLanes& lower, const VectorLanes& upper, const VectorLanes& from,
                                  const VectorLanes& to) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/data/distance_blocks.h"
+#include "core/distance/triangle_distance.h"
 #include "core/exact/direct_distance.h"
 #include "tests/support/shapes.h"
 
@@ -56,6 +57,39 @@ TEST(Distance, OfPointsIsThatOfTheOracle) {
   for (std::size_t n = 0; n < points.size(); ++n) {
     // Some dozens of roundings of numbers below 10.
     EXPECT_NEAR(distances[n], static_cast<double>(direct_distance(mesh, points[n])), 1e-13);
+  }
+}
+
+// Cones of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
+TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const std::uint32_t segments : {60U, 3000U, 40000U, 500000U}) {
+    constexpr std::uint32_t kNeedles = 1500;  // as many of them
+    TriangleMesh mesh{{{0.1, 0.2, 0.9}}, {}};
+    for (std::uint32_t n = 0; n <= std::min(kNeedles, segments); ++n) {
+      const double angle = 6.283185307179586 * n / segments;
+      mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0.1 * std::sin(3 * angle)});
+      if (n > 0) mesh.triangles.push_back({0, n, n + 1});
+    }
+    std::vector<Vec3> points;
+    std::vector<TriangleDistance> triangles;
+    for (const Triangle& t : mesh.triangles)
+      triangles.emplace_back(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    for (int n = 0; n < 400; ++n) {
+      const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
+      const double v = std::abs(uniform(random)), w = std::abs(uniform(random)) * (1 - v);
+      const Vec3& a = mesh.vertices[t[0]];
+      const Vec3 on = a + v * (mesh.vertices[t[1]] - a) + w * (mesh.vertices[t[2]] - a);
+      const double off = std::pow(10.0, 8 * uniform(random) - 8);
+      points.push_back(on + off * Vec3{uniform(random), uniform(random), uniform(random)});
+    }
+    const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const TriangleDistance& triangle : triangles) least = std::min(least, triangle.squared(points[n]));
+      EXPECT_EQ(distances[n], std::sqrt(least)) << segments << " segments, point " << n;
+    }
   }
 }
 

@@ -296,9 +296,15 @@ MUTANTS = [
         ("core/mesh/selection_kernel.cpp", "hn::Lt(hn::Load(d, &keys[other]), key)",
          "hn::Gt(hn::Load(d, &keys[other]), key)")]),
     Mutant("distances_below_the_limit_only", "a limit of 0 is reached by samples on the surface", [
-        ("core/distance/tree_kernel.cpp", "double reach = beyond_error(limit);", "double reach = limit;")]),
+        ("core/distance/tree_kernel.cpp", "reach_(beyond_error(limit)) {}", "reach_(limit) {}")]),
     Mutant("distances_of_boxes_are_exact", "a triangle's distance may be less than that of its box, by its error", [
-        ("core/distance/tree_kernel.cpp", "std::min(reach, beyond_error(least))", "std::min(reach, least)")]),
+        ("core/distance/tree_kernel.cpp", "std::min(reach_, beyond_error(least_))", "std::min(reach_, least_)")]),
+    Mutant("squares_in_doubt_are_exact", "what a square is off by without care is left to the nearest triangle", [
+        ("core/distance/tree_kernel.cpp", "beyond_error(beyond_error(least_of(some.values)))",
+         "0.99 * least_of(some.values)")]),
+    Mutant("care_never_finds_less", "squares in doubt may be less with care", [
+        ("core/distance/triangle_lanes-inl.h", "hn::Sub(squares, hn::Mul(hn::Set(d, kOff), direction_from))",
+         "hn::Add(squares, hn::Mul(hn::Set(d, kOff), direction_from))")]),
     Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
         ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + norm(center - from))",
          "std::min(band_, distance + norm(center - from))")]),
@@ -311,8 +317,7 @@ MUTANTS = [
         ("core/distance/block_kernel.cpp", "if (!hn::AllTrue(d, settled)) take_care(placed, n, settled, accurate, group);",
          "")]),
     Mutant("packs_without_care", "triangles of a pack that are not sure are evaluated again", [
-        ("core/distance/tree_kernel.cpp", "if (sure[lane] != 0.0 || squares[i + lane] >= reach) continue;",
-         "if (sure[lane] != 0.0 || squares[i + lane] >= 0) continue;")]),
+        ("core/distance/tree_kernel.cpp", "if (!hn::AllTrue(d, settled)) doubt(pack, i, settled, bounds);", "")]),
     Mutant("no_sample_is_far", "lattices may be larger than what squares hold", [
         ("core/distance/distance.cpp", "return std::abs(to_unit(coordinate)) <= far_beyond;",
          "return std::abs(to_unit(coordinate)) <= std::numeric_limits<double>::max();")]),
@@ -359,8 +364,8 @@ MUTANTS = [
     Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [
         ("core/evaluation/settler.cpp", " + std::nearbyint(value - direct[i])", "")]),
     Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
-        ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_)",
-         "if (std::abs(w - threshold) <= -doubt_)")]),
+        ("core/evaluation/side_of.h", "if (std::abs(w - threshold) <= doubt_ + rounded)",
+         "if (std::abs(w - threshold) <= -doubt_ - rounded)")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",
          "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), hn::Mul(hn::Set(d, 3.0), square));")]),

@@ -83,8 +83,6 @@ MUTANTS = [
         ("core/crossings/triangle_sections.h", "kSlopeUnderflow * std::abs(reach) + ", "")]),
     Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
         ("core/evaluation/gradient.cpp", "fits ? sum_in_scale(point)", "true || fits ? sum_in_scale(point)")]),
-    Mutant("changes_out_of_scale", "squares of gaps overflow in a mesh that cannot be scaled", [
-        ("core/evaluation/sides.cpp", "!mesh.is_in_scale() || ", "")]),
     Mutant("source_areas_vanish", "squares of areas underflow", [
         ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
     Mutant("cap_areas_vanish", "squares of areas underflow", [
@@ -511,7 +509,7 @@ MUTANTS = [
     Mutant("surface_sections_by_triangles", "flat parts of several triangles are one piece of a section", [
         ("core/surface/cell_creases.cpp", "    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);\n", "")]),
     Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
-        ("core/surface/face_points.cpp", "return cells_of_polygons[c] != 0;", "return cells_of_polygons[c] < 9;")]),
+        ("core/surface/face_points.cpp", "return cells_of_polygons[cell] != 0;", "return cells_of_polygons[cell] < 9;")]),
     Mutant("nodes_counted_once", "nodes that a mesh went around twice have not changed sides", [
         ("core/surface/certificate.cpp", "Rule{RuleKind::kOdd}, lattice)", "Rule{RuleKind::kNonzero}, lattice)")]),
     Mutant("rows_of_a_change", "nodes are looked for in all rows that a change may pass", [

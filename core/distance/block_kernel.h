@@ -29,8 +29,11 @@ inline constexpr std::size_t kSamplesOfBlock = kBlockSide * kBlockSide * kBlockS
 struct NearTriangles {
   std::array<std::vector<double>, 3> lower, upper;  // their boxes
   std::vector<std::int64_t> places;                 // in packs: of the first column's number, counted in numbers
-  std::vector<double> distances;                    // from the middle of part of the samples; 0 where not sure
-  std::array<std::vector<double>, 3> away;          // directions in which these distances grow; 0 where not sure
+  // From the middle of part of the samples. Where directions are not sure, they are 0, and the distance is one that all
+  // of the samples have at least.
+  std::vector<double> distances;
+  std::array<std::vector<double>, 3> away;  // in which these distances grow
+  double nearest_of_unsure = 0;  // of those without direction, how far the nearest is from the middle at most
   std::size_t count = 0;
 };
 

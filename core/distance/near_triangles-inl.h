@@ -64,8 +64,8 @@ HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
           {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
 }
 
-// Where triangles are from the middle of some samples. Where directions are not sure, they are 0, and so are the
-// distances. Others grow along `away`, of length 1.
+// Where triangles are from the middle of some samples. Distances grow along `away`, of length 1. Where directions are
+// not sure, they are 0, and distances are those from all samples at least.
 struct Bearings {
   Lanes distances;
   VectorLanes away;
@@ -75,17 +75,36 @@ HWY_INLINE Bearings bearings_of(const NearTriangles& list, std::size_t n) {
   return {hn::LoadU(d, &list.distances[n]),
           {hn::LoadU(d, &list.away[0][n]), hn::LoadU(d, &list.away[1][n]), hn::LoadU(d, &list.away[2][n])}};
 }
-template <class Triangles>
-HWY_INLINE Bearings bearings_from(const VectorLanes& p, const Triangles& triangles) {
-  const Squares some = squared(triangles, p);
-  const Lanes distances = hn::Sqrt(some.values);
-  const LaneMask sure = hn::Ge(some.values, triangles(triangles.pack().direction_from));
-  const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
-  return {
-      hn::IfThenElseZero(sure, distances),
-      {hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.x)), hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.y)),
-       hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))}};
-}
+
+// Finds bearings from the middle of samples that are within `radius` of it.
+class BearingFinder {
+ public:
+  BearingFinder(const Vec3& middle, double radius) : middle_(in_all_lanes(middle)), radius_(hn::Set(d, radius)) {}
+
+  template <class Triangles>
+  HWY_INLINE Bearings find(const Triangles& triangles, LaneMask wanted) {
+    const Squares some = squared(triangles, middle_);
+    const Lanes distances = hn::Sqrt(some.values), zero = hn::Zero(d);
+    const Lanes direction_from = triangles(triangles.pack().direction_from);
+    const LaneMask sure = hn::Ge(some.values, direction_from);
+    const Lanes inverse = hn::Div(hn::Set(d, 1.0), distances);
+    const VectorLanes away{hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.x)),
+                           hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.y)),
+                           hn::IfThenElseZero(sure, hn::Mul(inverse, some.rest.z))};
+    if (hn::AllTrue(d, sure)) return {distances, away};
+    const LaneMask unsure = hn::AndNot(sure, hn::And(wanted, hn::Ge(some.values, zero)));
+    nearest_of_unsure_ = hn::IfThenElse(unsure, hn::Min(nearest_of_unsure_, distances), nearest_of_unsure_);
+    const Lanes least = hn::Sqrt(hn::Max(least_with_care(some.values, direction_from), zero));
+    return {hn::IfThenElse(sure, distances, hn::Max(hn::Sub(least, radius_), zero)), away};
+  }
+
+  // Of those that were wanted, but have no direction, the distance that the nearest has at most.
+  [[nodiscard]] double nearest_of_unsure() const { return hn::GetLane(hn::MinOfLanes(d, nearest_of_unsure_)); }
+
+ private:
+  VectorLanes middle_;
+  Lanes radius_, nearest_of_unsure_ = hn::Set(d, kNowhere);
+};
 
 HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
                        LaneMask wanted) {
@@ -127,7 +146,7 @@ double square_of_reach(double reach) { return beyond_error(reach * kSlack * (rea
 
 // The triangles of packs that are near the block; their bearings from its middle where these are wanted.
 void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, NearTriangles& near) {
-  const VectorLanes center = in_all_lanes(middle.center);
+  BearingFinder finder(middle.center, middle.radius);
   const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
   Bearings bearings{hn::Zero(d), in_all_lanes({})};
   make_room(near, task.packs.size() * kWidth);
@@ -137,11 +156,12 @@ void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, 
       const BoxLanes boxes = boxes_of(pack, i);
       const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
       if (hn::AllFalse(d, wanted)) continue;
-      if (with_bearings) bearings = bearings_from(center, PackedTriangles(pack, i));
+      if (with_bearings) bearings = finder.find(PackedTriangles(pack, i), wanted);
       const Places integers;
       append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
     }
   }
+  near.nearest_of_unsure = finder.nearest_of_unsure();
 }
 
 // Puts copies of the triangles side by side, so that many looks at them take no gathering. Places are then those in
@@ -160,7 +180,7 @@ void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<Tr
 // middle. Neighbours in packs are neighbours in space: mostly all of some lanes are out of reach.
 void find_in_reach(const BlockTask& task, const Middle& middle, const std::vector<TrianglePack>& packs,
                    const NearTriangles& all, NearTriangles& found) {
-  const VectorLanes center = in_all_lanes(middle.center);
+  BearingFinder finder(middle.center, middle.radius);
   const Lanes from_box = hn::Set(d, square_of_reach(task.reach));
   const Places integers;
   make_room(found, all.count);
@@ -168,9 +188,10 @@ void find_in_reach(const BlockTask& task, const Middle& middle, const std::vecto
     const BoxLanes boxes = boxes_of(all, n);
     const LaneMask wanted = hn::Lt(squared_between(boxes.lower, boxes.upper, middle.lower, middle.upper), from_box);
     if (hn::AllFalse(d, wanted)) continue;
-    const Bearings bearings = bearings_from(center, PackedTriangles(packs[n / kWidth], n % kWidth));
+    const Bearings bearings = finder.find(PackedTriangles(packs[n / kWidth], n % kWidth), wanted);
     append(found, boxes, bearings, hn::LoadU(integers, &all.places[n]), wanted);
   }
+  found.nearest_of_unsure = finder.nearest_of_unsure();
 }
 
 struct Bearing {
@@ -178,12 +199,17 @@ struct Bearing {
   Vec3 away;
 };
 
-// That of the nearest triangle of which anything is known; else an infinite distance.
+// That of the nearest triangle with a direction; else an infinite distance.
 Bearing nearest_of(const NearTriangles& near) {
+  const bool all_sure = near.nearest_of_unsure == kNowhere;
   Lanes least = hn::Set(d, kNowhere), number = hn::Zero(d);
   for (std::size_t n = 0; n < near.count; n += hn::Lanes(d)) {
     const Lanes distances = hn::LoadU(d, &near.distances[n]);
-    const LaneMask known = hn::And(hn::FirstN(d, near.count - n), hn::Gt(distances, hn::Zero(d)));
+    LaneMask known = hn::And(hn::FirstN(d, near.count - n), hn::Gt(distances, hn::Zero(d)));
+    if (!all_sure) {
+      const VectorLanes away = bearings_of(near, n).away;
+      known = hn::And(known, hn::Gt(dot(away, away), hn::Zero(d)));
+    }
     const LaneMask nearer = hn::And(known, hn::Lt(distances, least));
     least = hn::IfThenElse(nearer, distances, least);
     number = hn::IfThenElse(nearer, hn::Iota(d, static_cast<double>(n)), number);
@@ -205,11 +231,18 @@ double bend(double distance, double radius) {
 // whose distance is sure.
 double slack_of(double distance, double radius) { return 1e-5 * radius + 1e-8 * distance + 1e-14; }
 
+// What samples are within of the nearest triangle, and along `away` by as much more as they are ahead.
+Bearing farthest_from_nearest(const Middle& middle, const NearTriangles& near) {
+  const Bearing nearest = nearest_of(near);
+  const double within = nearest.distance + bend(nearest.distance, middle.radius);
+  if (!(within < near.nearest_of_unsure + middle.radius)) return {near.nearest_of_unsure + middle.radius, {}};
+  return {within, nearest.away};
+}
+
 // Of triangles with bearings from the middle of some samples, those stay that may be nearest to one of these.
 void keep_nearest(const Middle& middle, NearTriangles& near) {
-  const Bearing nearest = nearest_of(near);
-  const Lanes within =
-      hn::Set(d, nearest.distance + bend(nearest.distance, middle.radius) + slack_of(nearest.distance, middle.radius));
+  const Bearing nearest = farthest_from_nearest(middle, near);
+  const Lanes within = hn::Set(d, nearest.distance + slack_of(nearest.distance, middle.radius));
   const VectorLanes away = in_all_lanes(nearest.away);
   const Places integers;
   const std::size_t count = std::exchange(near.count, 0);

@@ -60,23 +60,35 @@ TEST(Distance, OfPointsIsThatOfTheOracle) {
   }
 }
 
-// Cones of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
+// As many needles of a cone of so many segments, at most.
+TriangleMesh needles_of_cone(std::uint32_t segments) {
+  constexpr std::uint32_t kNeedles = 1500;
+  TriangleMesh mesh{{{0.1, 0.2, 0.9}}, {}};
+  for (std::uint32_t n = 0; n <= std::min(kNeedles, segments); ++n) {
+    const double angle = 6.283185307179586 * n / segments;
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0.1 * std::sin(3 * angle)});
+    if (n > 0) mesh.triangles.push_back({0, n, n + 1});
+  }
+  return mesh;
+}
+
+double least_of_all(const TriangleMesh& mesh, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : mesh.triangles) {
+    const TriangleDistance triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    least = std::min(least, triangle.squared(p));
+  }
+  return std::sqrt(least);
+}
+
+// Of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
 TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (const std::uint32_t segments : {60U, 3000U, 40000U, 500000U}) {
-    constexpr std::uint32_t kNeedles = 1500;  // as many of them
-    TriangleMesh mesh{{{0.1, 0.2, 0.9}}, {}};
-    for (std::uint32_t n = 0; n <= std::min(kNeedles, segments); ++n) {
-      const double angle = 6.283185307179586 * n / segments;
-      mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0.1 * std::sin(3 * angle)});
-      if (n > 0) mesh.triangles.push_back({0, n, n + 1});
-    }
+    const TriangleMesh mesh = needles_of_cone(segments);
     std::vector<Vec3> points;
-    std::vector<TriangleDistance> triangles;
-    for (const Triangle& t : mesh.triangles)
-      triangles.emplace_back(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    for (int n = 0; n < 400; ++n) {
+    for (int n = 0; n < 200; ++n) {
       const Triangle& t = mesh.triangles[random() % mesh.triangles.size()];
       const double v = std::abs(uniform(random)), w = std::abs(uniform(random)) * (1 - v);
       const Vec3& a = mesh.vertices[t[0]];
@@ -85,10 +97,34 @@ TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
       points.push_back(on + off * Vec3{uniform(random), uniform(random), uniform(random)});
     }
     const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      double least = std::numeric_limits<double>::infinity();
-      for (const TriangleDistance& triangle : triangles) least = std::min(least, triangle.squared(points[n]));
-      EXPECT_EQ(distances[n], std::sqrt(least)) << segments << " segments, point " << n;
+    for (std::size_t n = 0; n < points.size(); ++n)
+      EXPECT_EQ(distances[n], least_of_all(mesh, points[n])) << segments << " segments, point " << n;
+  }
+}
+
+// Such needles have no direction that could be trusted. With one triangle beside them that has.
+TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
+  const Lattice lattice{{0.05, -0.1, 0.0}, {0.05, 0.04, 0.045}, {-4, -4, -4}, {23, 20, 25}};
+  const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+  for (const std::uint32_t segments : {60U, 3000U, 40000U, 500000U}) {
+    TriangleMesh mesh = needles_of_cone(segments);
+    for (const bool with_another : {false, true}) {
+      if (with_another) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {{0.3, 0.1, 0.1}, {0.5, 0.2, 0.3}, {0.4, 0.5, 0.2}});
+        mesh.triangles.push_back({first, first + 1, first + 2});
+      }
+      const DistanceEvaluator distance(mesh);
+      const std::vector<double> expected = at_points(distance, points);
+      for (const double band : {0.05, 10.0}) {
+        const std::vector<double> distances = band_of(distance, lattice, whole(lattice), band);
+        std::size_t within = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+          ASSERT_EQ(distances[n], std::min(expected[n], band)) << segments << " segments, sample " << n;
+          within += expected[n] < band ? 1 : 0;
+        }
+        EXPECT_GT(within, 100U);
+      }
     }
   }
 }

@@ -307,8 +307,10 @@ MUTANTS = [
         ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + norm(center - from))",
          "std::min(band_, distance + norm(center - from))")]),
     Mutant("half_spaces_without_bend", "closest points seen from elsewhere are farther than by their direction", [
-        ("core/distance/near_triangles-inl.h", "nearest.distance + bend(nearest.distance, middle.radius) +",
-         "nearest.distance +")]),
+        ("core/distance/near_triangles-inl.h", "nearest.distance + bend(nearest.distance, middle.radius);",
+         "nearest.distance;")]),
+    Mutant("half_spaces_of_needles", "a triangle without direction may be nearer by the radius", [
+        ("core/distance/near_triangles-inl.h", "hn::Max(hn::Sub(least, radius_), zero)", "least")]),
     Mutant("half_spaces_without_turn", "directions to triangles differ", [
         ("core/distance/near_triangles-inl.h", "hn::Add(within, gained)", "within")]),
     Mutant("lanes_without_care", "lanes that are not sure are evaluated again", [

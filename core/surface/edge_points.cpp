@@ -41,7 +41,7 @@ class EdgePointFinder {
     rule_.is_closed() ? decide_closed() : decide_open();
     find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
     for (const Bracket& bracket : brackets_) {
-      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.middle())), kHole};
+      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
     }
     return std::move(points_);
   }

@@ -16,7 +16,9 @@ class RootSearch {
   RootSearch(Bracket& bracket, double low_value, double high_value)
       : bracket_(&bracket),
         last_{bracket.low, std::max(low_value, 0.0), true},
-        across_{bracket.high, std::min(high_value, 0.0), false} {}
+        across_{bracket.high, std::min(high_value, 0.0), false} {
+    bracket.root = bracket.low + (bracket.high - bracket.low) / 2;
+  }
 
   [[nodiscard]] Vec3 next() const { return bracket_->edge.point(next_place()); }
 
@@ -29,6 +31,8 @@ class RootSearch {
     (last_.is_inside ? bracket_->low : bracket_->high) = last_.at;
     (last_.is_inside ? bracket_->high : bracket_->low) = across_.at;
     part_ = round < kRoundsAtFirst ? part_by(before) : 0.5;
+    const double part = last_.value / (last_.value - across_.value);  // NaN where both are 0
+    bracket_->root = last_.at + (part >= 0.0 && part <= 1.0 ? part : 0.5) * (across_.at - last_.at);
   }
 
   [[nodiscard]] bool is_narrow() const { return bracket_->high - bracket_->low <= kNarrow; }

@@ -42,12 +42,12 @@ class RuleAlong {
 // Two places of an edge, between which it leaves the set.
 struct Bracket {
   MixedEdge edge;
-  double low, high;  // inside, outside
-
-  [[nodiscard]] double middle() const { return low + (high - low) / 2; }
+  double low, high;   // inside, outside
+  double root = 0.0;  // between them, as find_roots() leaves it
 };
 
-// Narrows brackets to 2^-34 of their edges (Chandrupatla 1997). `values` answers for many points at once.
+// Narrows brackets to 2^-34 of their edges (Chandrupatla 1997), and finds where values are 0 if they change evenly
+// between the ends. `values` answers for many points at once.
 void find_roots(std::vector<Bracket>& brackets,
                 const std::function<std::vector<double>(const std::vector<Vec3>&)>& values);
 

@@ -94,7 +94,7 @@ std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlo
   find_roots(brackets, [&](const std::vector<Vec3>& places) { return thick.at(places); });
   std::vector<Vec3> places;
   for (const Bracket& bracket : brackets) {
-    places.push_back(bracket.edge.point(std::clamp(bracket.middle(), margins.inner, 1.0 - margins.inner)));
+    places.push_back(bracket.edge.point(std::clamp(bracket.root, margins.inner, 1.0 - margins.inner)));
   }
   const std::vector<bool> at_thickness = thick.at_thickness(places);
   const NearestTriangle nearest(mesh);

@@ -31,6 +31,8 @@ std::size_t values_for(const std::function<double(double)>& f, double root) {
   EXPECT_LE(brackets[0].high - brackets[0].low, kNarrow);
   EXPECT_LE(brackets[0].low, root);
   EXPECT_GE(brackets[0].high, root);
+  EXPECT_LE(brackets[0].low, brackets[0].root);
+  EXPECT_GE(brackets[0].high, brackets[0].root);
   return count;
 }
 
@@ -47,6 +49,26 @@ TEST(EdgeRoots, AreFoundInFewValues) {
   }
   EXPECT_LT(straight, 9 * kCount);
   EXPECT_LT(bent, 12 * kCount);
+}
+
+// Where w is steep, next to a boundary edge, a bracket's middle would not do.
+TEST(EdgeRoots, AreNearlyExactWhereValuesAreSmooth) {
+  for (const double steep : {1.0, 1e3, 1e5}) {
+    const double root = 0.3141592653589793;
+    std::vector<Bracket> brackets{{{{0, 0, 0}, {1, 0, 0}, 0}, 0.0, 1.0}};
+    find_roots(brackets, [&](const std::vector<Vec3>& places) {
+      std::vector<double> values;
+      for (const Vec3& p : places) values.push_back(std::atan(steep * (root - p.x)));
+      return values;
+    });
+    EXPECT_NEAR(brackets[0].root, root, 1e-15);  // some roundings of the place
+  }
+}
+
+TEST(EdgeRoots, OfNarrowBracketsAreInTheMiddle) {
+  std::vector<Bracket> brackets{{{{0, 0, 0}, {1, 0, 0}, 0}, 0.5, 0.5 + 0x1p-36}};
+  find_roots(brackets, [](const std::vector<Vec3>& places) { return std::vector<double>(places.size(), 0.0); });
+  EXPECT_EQ(brackets[0].root, 0.5 + 0x1p-37);
 }
 
 // Halving finds what interpolation does not.

@@ -30,32 +30,6 @@ void check_inside(const std::string& name, const NodeSet& inside, const Rule& ru
   }
 }
 
-// What tells the sides of nodes, and the values at points.
-class SurfaceEvaluators {
- public:
-  SurfaceEvaluators(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const Rule& rule, double nodes)
-      : mesh_(mesh),
-        edges_(edges),
-        of_nodes_(mesh, {.accuracy = {.tolerance = tolerance_for_sides(rule), .samples = nodes, .sides_only = true},
-                         .edges = &edges}) {}
-
-  [[nodiscard]] const WindingNumberEvaluator& of_nodes() const { return of_nodes_; }
-
-  // Call it once. `points`: about how many there will be.
-  [[nodiscard]] const WindingNumberEvaluator& of_points(double points) {
-    constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
-    if (edges_.empty()) return of_nodes_;
-    const Accuracy accuracy{.tolerance = kTolerance, .samples = points, .points = points};
-    return of_points_.emplace(mesh_, EvaluatorOptions{.accuracy = accuracy, .edges = &edges_});
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  const std::vector<ExteriorEdge>& edges_;
-  WindingNumberEvaluator of_nodes_;
-  std::optional<WindingNumberEvaluator> of_points_;  // of an open mesh
-};
-
 FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
                            const NodeSet& inside, const SurfaceOptions& options) {
   try {
@@ -109,25 +83,31 @@ std::optional<Warning> warning_about(const ThinParts& thin) {
 MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
+  constexpr double kTolerance = 1e-10;    // moves points in holes by less than a millionth of a voxel, as a rule
   constexpr double kPointsPerCell = 8.0;  // at most, where there are few holes
   check_memory(name, node_set_bytes(lattice), memory);
-  double nodes = 1.0;
-  for (const std::int64_t count : lattice.counts) nodes *= static_cast<double>(count);
-  SurfaceEvaluators evaluators(mesh, edges, options.rule, nodes);
-  NodeSet inside = nodes_inside(evaluators.of_nodes(), options.rule, lattice, done);
+  const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
+                           .samples = static_cast<double>(whole(lattice).size()),
+                           .sides_only = true};
+  std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh,
+                                                  EvaluatorOptions{.accuracy = for_sides, .edges = &edges});
+  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
   check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
-  const auto points = kPointsPerCell * static_cast<double>(mixed_cells(inside));
-  const WindingNumberEvaluator& evaluator = evaluators.of_points(points);
-  FinishedSurface closed = surface_of(name, mesh, evaluator, inside, options);
+  if (!edges.empty()) {  // the values of a closed mesh are exact anyway
+    const auto points = kPointsPerCell * static_cast<double>(mixed_cells(inside));
+    const Accuracy for_points{.tolerance = kTolerance, .samples = points, .points = points};
+    evaluator.emplace(mesh, EvaluatorOptions{.accuracy = for_points, .edges = &edges});
+  }
+  FinishedSurface closed = surface_of(name, mesh, *evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
   const SurfaceMeasures measures = measure_surface(made.surface, mesh, inside, options.thickness);
   made.report = report_of(made.surface, measures);
   if (measures.drops) {
     const ThinParts thin =
-        thin_parts(made.surface, mesh, RuleAlong(evaluator, options.rule), inside, options.thickness);
+        thin_parts(made.surface, mesh, RuleAlong(*evaluator, options.rule), inside, options.thickness);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   }
   return made;

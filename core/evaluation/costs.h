@@ -5,10 +5,10 @@
 namespace raycone {
 
 // A triangle of a soup, in the direct sum. At scattered points it is 1.3 rather, where edges take twice as long.
-inline constexpr double kTriangle = 1.9;
+inline constexpr double kTriangleCost = 1.9;
 
 // What FarField::cost_on_lattice() counts as an edge.
-inline constexpr double kFarFieldOnLattice = 0.88;
+inline constexpr double kFarFieldCost = 0.88;
 
 // LatticeBlocks and PointBlocks.
 struct BlocksCost {
@@ -16,7 +16,7 @@ struct BlocksCost {
   double beside_blocks;  // at a sample, beside what they sum
   double fit, tree;      // once: making the operator, and for each unit of the direct sum at a sample, the tree
 };
-inline constexpr BlocksCost kOnLattice{1.92, 19.2, 2.1e6, 3.5e3};
-inline constexpr BlocksCost kAtPoints{1.6, 0.0, 1.5e6, 1e3};
+inline constexpr BlocksCost kBlocksOnLattice{1.92, 19.2, 2.1e6, 3.5e3};
+inline constexpr BlocksCost kBlocksAtPoints{1.6, 0.0, 1.5e6, 1e3};
 
 }  // namespace raycone

@@ -25,10 +25,10 @@ constexpr double kSmallLattice = 2e5;  // samples
 constexpr std::uint64_t kManyForSmall = 1500;
 
 double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
-  return kOnLattice.in_blocks * mesh.blocks().sums.cost(axes) + kOnLattice.beside_blocks;
+  return kBlocksOnLattice.in_blocks * mesh.blocks().sums.cost(axes) + kBlocksOnLattice.beside_blocks;
 }
 
-double far_field_cost(const ScaledMesh& mesh) { return kFarFieldOnLattice * mesh.far_field()->cost_on_lattice(); }
+double far_field_cost(const ScaledMesh& mesh) { return kFarFieldCost * mesh.far_field()->cost_on_lattice(); }
 
 double samples_of(const Lattice& lattice) {
   double samples = 1.0;
@@ -70,7 +70,7 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   const bool far = takes_far_field_on_lattice(mesh);
   const double other = far ? std::min(direct, far_field_cost(mesh)) : direct;
   // The tree is there by now.
-  if (blocks_cost(mesh, axes) * samples + kOnLattice.fit > kSafetyOfBlocks * other * samples) return std::nullopt;
+  if (blocks_cost(mesh, axes) * samples + kBlocksOnLattice.fit > kSafetyOfBlocks * other * samples) return std::nullopt;
   return axes;
 }
 
@@ -93,7 +93,8 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
   const double samples = samples_of(lattice);
   if (!by_far_field) return kEdge * mesh.direct_cost() * samples;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kEdge * (blocks_cost(mesh, *axes) * samples + kOnLattice.fit + kOnLattice.tree * mesh.direct_cost());
+    return kEdge *
+           (blocks_cost(mesh, *axes) * samples + kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.direct_cost());
   }
   if (takes_far_field_on_lattice(mesh)) {
     const auto sources = static_cast<double>(mesh.far_field()->sources().triangles().size());

@@ -49,7 +49,7 @@ TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_
 
 double ScaledMesh::direct_cost() const {
   return counts_crossings() ? static_cast<double>(boundary_.exterior_edges())
-                            : kTriangle * static_cast<double>(mesh_.triangles.size());
+                            : kTriangleCost * static_cast<double>(mesh_.triangles.size());
 }
 
 const RayCaster& ScaledMesh::rays() const {
@@ -116,8 +116,8 @@ std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const 
   std::unique_ptr<const BlocksOfPoints> result(
       new BlocksOfPoints{CapCrossings(blocks().caps), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
   const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
-  const double at_point = kAtPoints.in_blocks * result->sums.cost() + kAtPoints.beside_blocks;
-  const double cost = at_point * points + kAtPoints.fit + kAtPoints.tree * direct;
+  const double at_point = kBlocksAtPoints.in_blocks * result->sums.cost() + kBlocksAtPoints.beside_blocks;
+  const double cost = at_point * points + kBlocksAtPoints.fit + kBlocksAtPoints.tree * direct;
   return forced || cost < kSafety * other * points ? std::move(result) : nullptr;
 }
 
@@ -168,7 +168,7 @@ bool ScaledMesh::has_far_field() const {
   const bool forced = options_.summation == Summation::kFarField;
   const bool caps = counts_crossings();
   const double sources = static_cast<double>(caps ? boundary_.exterior_edges() : mesh_.triangles.size());
-  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangle)) &&
+  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangleCost)) &&
          far_field() != nullptr;
 }
 

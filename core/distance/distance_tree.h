@@ -35,7 +35,7 @@ class DistanceTree {
   explicit DistanceTree(const TriangleMesh& mesh, SimdLevel level = SimdLevel::kBest);
 
   // The least of the triangles' squared distances (core/distance/triangle_distance.h) where that is not above `limit`,
-  // nor beyond it by their error; else a larger number or infinity. A limit spares work. Thread-safe.
+  // nor beyond it by their error; else that of another triangle or infinity. A limit spares work. Thread-safe.
   [[nodiscard]] double squared_distance(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const {
     return search_(*this, p, limit);
   }

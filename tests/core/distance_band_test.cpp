@@ -91,6 +91,12 @@ TEST(DistanceBand, OfManySmallTriangles) {
   for (const double band : {0.15, 10.0}) expect_right(sphere, rows_of(19, 23, 17, 0.05), band);
 }
 
+// Dozens of triangles for each sample, so that a search is made from each.
+TEST(DistanceBand, OfLatticesThatAreCoarseForTheirMesh) {
+  const TriangleMesh sphere = test::sphere(60);
+  for (const double band : {0.3, 10.0}) expect_right(sphere, rows_of(9, 11, 7, 0.15), band);
+}
+
 // The closest point of a needle is only known with care. Without it, the triangle above seems to be nearer.
 TEST(DistanceBand, BetweenANeedleAndATriangle) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}, {0, -1, 2.03e-4}, {1, -1, 2.03e-4}, {0.5, 1, 2.03e-4}},

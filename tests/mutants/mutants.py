@@ -306,6 +306,9 @@ MUTANTS = [
     Mutant("blocks_without_radius", "a block's samples are that far from its middle", [
         ("core/distance/distance_band.cpp", "std::min(band_ + radius, distance + norm(center - from))",
          "std::min(band_, distance + norm(center - from))")]),
+    Mutant("searches_without_step", "the next sample is a step farther from the triangle nearest to the last one", [
+        ("core/distance/distance_band.cpp", "std::min(band_, distance + norm(q - last))",
+         "std::min(band_, distance)")]),
     Mutant("half_spaces_without_bend", "closest points seen from elsewhere are farther than by their direction", [
         ("core/distance/near_triangles-inl.h", "nearest.distance + bend(nearest.distance, middle.radius);",
          "nearest.distance;")]),

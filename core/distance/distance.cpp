@@ -105,6 +105,11 @@ struct DistanceEvaluator::Implementation {
     return std::min(to_world(std::sqrt(nearest().squared_distance(p))), kLargest);
   }
 
+  [[nodiscard]] std::uint32_t triangle_at(const Vec3& point) const {
+    const Vec3 p = to_unit(point);
+    return largest_coordinate(p) <= far_beyond ? nearest().nearest_triangle(p) : 0;
+  }
+
   [[nodiscard]] bool is_near(double coordinate) const { return std::abs(to_unit(coordinate)) <= far_beyond; }
 
   // The samples of a block that are not far: along each axis those of a range.
@@ -233,6 +238,14 @@ void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double>
   prepare_points();  // not within the loop, whose threads would wait for one another
   parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) distances[n] = implementation_->distance_at(points[n]);
+  });
+}
+
+void DistanceEvaluator::find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const {
+  assert(triangles.size() == points.size());
+  prepare_points();
+  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) triangles[n] = implementation_->triangle_at(points[n]);
   });
 }
 

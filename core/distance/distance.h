@@ -2,6 +2,7 @@
 // 2^-53 times the largest coordinate of the mesh or the point (docs/method.md, "Distances").
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -38,6 +39,11 @@ class DistanceEvaluator {
 
   // Sets the distances (world units) of finite points, in their order. Precondition: distances.size() == points.size().
   void evaluate(std::span<const Vec3> points, std::span<double> distances) const;
+
+  // Sets the numbers of the triangles that finite points are nearest to: of those with the least distance, as computed,
+  // the first; triangle 0 where all of the mesh is like one point, from far away. Precondition: triangles.size() ==
+  // points.size(), and the mesh has a triangle.
+  void find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const;
 
  private:
   struct Implementation;

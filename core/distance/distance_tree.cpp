@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/distance/tree_kernel.h"
+#include "core/distance/triangle_distance.h"
 #include "core/machine/threads.h"
 #include "core/mesh/triangle_runs.h"
 
@@ -24,16 +25,16 @@ Box box_of_columns(const Boxes& boxes) {
   return all;
 }
 
-// Sets `boxes` to those of the packs. Not a vector, which would clear the packs first: they are much memory, and
+// Packs of the triangles, and their boxes. Not a vector, which would clear the packs first: they are much memory, and
 // clearing takes as long as filling.
-std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<Box> boxes) {
-  const std::vector<std::uint32_t> triangles = triangles_in_runs(mesh, kWidth);
+std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+                                           std::span<Box> boxes) {
   auto packs = std::make_unique_for_overwrite<TrianglePack[]>(boxes.size());
   constexpr std::size_t kPacksPerTask = 256;
   parallel_for(boxes.size(), kPacksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t first = n * kWidth;
-      packs[n].set(mesh, std::span(triangles).subspan(first, std::min(kWidth, triangles.size() - first)));
+      packs[n].set(mesh, triangles.subspan(first, std::min(kWidth, triangles.size() - first)));
       boxes[n] = box_of_columns(packs[n]);
     }
   });
@@ -59,12 +60,13 @@ void DistanceTree::Node::set(std::size_t child, const Box& box) {
 Box DistanceTree::Node::box() const { return box_of_columns(*this); }
 
 DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
-    : pack_count_((mesh.triangles.size() + kWidth - 1) / kWidth),
+    : triangles_(triangles_in_runs(mesh, kWidth)),
+      pack_count_((triangles_.size() + kWidth - 1) / kWidth),
       simd_(level),
       search_(nearest_search(level)),
       find_packs_(pack_search(level)) {
   std::vector<Box> boxes(pack_count_);
-  packs_ = make_packs(mesh, boxes);
+  packs_ = make_packs(mesh, triangles_, boxes);
   while (boxes.size() > 1) {
     Level above((boxes.size() + kWidth - 1) / kWidth);
     for (std::size_t n = 0; n < boxes.size(); ++n) above[n / kWidth].set(n % kWidth, boxes[n]);
@@ -72,6 +74,23 @@ DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
     for (std::size_t n = 0; n < above.size(); ++n) boxes[n] = above[n].box();
     levels_.push_back(std::move(above));
   }
+}
+
+std::uint32_t DistanceTree::nearest_triangle(const Vec3& p) const {
+  const double least = squared_distance(p), reach = beyond_error(least);
+  std::vector<std::uint32_t> near;
+  find_packs({p, p}, reach, pack_count_, near);
+  std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+  for (const std::uint32_t number : near) {
+    const TrianglePack& pack = packs_[number];
+    const std::size_t begin = number * kWidth, count = std::min(kWidth, triangles_.size() - begin);
+    for (std::size_t slot = 0; slot < count; ++slot) {
+      const std::uint32_t triangle = triangles_[begin + slot];
+      if (triangle > first || square_of_gap(pack.box(slot), p) > reach) continue;
+      if (pack.triangle(slot).squared(p) == least) first = triangle;
+    }
+  }
+  return first;
 }
 
 }  // namespace raycone

@@ -40,6 +40,9 @@ class DistanceTree {
     return search_(*this, p, limit);
   }
 
+  // The triangle with that square, the first of several. Precondition: its square does not overflow. Thread-safe.
+  [[nodiscard]] std::uint32_t nearest_triangle(const Vec3& p) const;
+
   // Sets `found` to the packs whose boxes' squared distance from `box` is below `limit`, or to any `most` of them.
   // Thread-safe.
   void find_packs(const Box& box, double limit, std::size_t most, std::vector<std::uint32_t>& found) const {
@@ -52,6 +55,7 @@ class DistanceTree {
   [[nodiscard]] SimdLevel simd() const { return simd_; }
 
  private:
+  std::vector<std::uint32_t> triangles_;  // of the mesh, eight to a pack
   std::size_t pack_count_;
   std::unique_ptr<TrianglePack[]> packs_;
   std::vector<Level> levels_;

@@ -10,9 +10,10 @@
 namespace raycone {
 
 bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                     const Lattice& lattice, const SharpenLimits& limits, int rounds) {
+                     const DistanceEvaluator& distance, const Lattice& lattice, const SharpenLimits& limits,
+                     int rounds) {
   constexpr int kPartialRounds = 6;
-  Sharpener sharpener(surface, input, normals, limits);
+  Sharpener sharpener(surface, input, normals, distance, limits);
   SurfaceEdit change = sharpener.sharpen();
   NodeSet misplaced(lattice);
   for (int round = 0; round < rounds && sharpener.pulls() > 0; ++round) {

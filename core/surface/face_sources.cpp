@@ -86,8 +86,9 @@ void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surfa
 
 }  // namespace
 
-SourceSettler::SourceSettler(const TriangleMesh& input, const TriangleNormals& normals, double off)
-    : input_(input), normals_(normals), off_(off) {}
+SourceSettler::SourceSettler(const TriangleMesh& input, const TriangleNormals& normals,
+                             const DistanceEvaluator& distance, double off)
+    : input_(input), normals_(normals), distance_(distance), off_(off) {}
 
 std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surface) const {
   std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
@@ -102,21 +103,20 @@ std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surf
   return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
 }
 
-void SourceSettler::settle(SurfaceMesh& surface) {
+void SourceSettler::settle(SurfaceMesh& surface) const {
   const std::vector<std::uint32_t> faces = doubtful_faces(surface);
   if (faces.empty()) return;
-  if (!nearest_) nearest_.emplace(input_);
+  std::vector<Vec3> middles;
+  middles.reserve(faces.size());
+  for (const std::uint32_t face : faces) middles.push_back(corners_of(surface.mesh, face).middle());
+  std::vector<std::uint32_t> nearest(faces.size());
+  distance_.find_nearest(middles, nearest);
   std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);
-  parallel_for(faces.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      std::int32_t& source = surface.sources[faces[n]];
-      const Vec3 middle = corners_of(surface.mesh, faces[n]).middle();
-      const std::uint32_t nearest = nearest_->of(middle, static_cast<std::uint32_t>(source));
-      source = static_cast<std::int32_t>(nearest);
-      const Vec3& point = input_.vertices[input_.triangles[nearest][0]];
-      off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), point, normals_.of(nearest), off_) ? 0 : 1;
-    }
-  });
+  for (std::size_t n = 0; n < faces.size(); ++n) {
+    surface.sources[faces[n]] = static_cast<std::int32_t>(nearest[n]);
+    const Vec3& point = input_.vertices[input_.triangles[nearest[n]][0]];
+    off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), point, normals_.of(nearest[n]), off_) ? 0 : 1;
+  }
   spread_holes(off_mesh, surface);
 }
 

@@ -2,35 +2,35 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
 #include "core/surface/contour.h"
-#include "core/surface/nearest_triangle.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {
 
 class SourceSettler {
  public:
-  // All must stay. `off`: how far from the plane of its source a face may be, world units.
-  SourceSettler(const TriangleMesh& input, const TriangleNormals& normals, double off);
+  // All must stay. `distance`: from `input`. `off`: how far from the plane of its source a face may be, world units.
+  SourceSettler(const TriangleMesh& input, const TriangleNormals& normals, const DistanceEvaluator& distance,
+                double off);
 
   // Gives faces another source whose own cannot be theirs: that are more than 15 degrees or `off` from its plane. They
   // get the triangle that is nearest to their middle, of several the first; or none, if that one cannot be theirs
   // either and a face without a source is beside them, in line with them. A face has the source of one of its corners
   // at first; where a lattice edge meets the mesh on an edge, that may be the triangle on the other side. Faces without
   // a source keep none. The same for any number of threads. Precondition: sources are triangles of `input`, or kHole.
-  void settle(SurfaceMesh& surface);
+  void settle(SurfaceMesh& surface) const;
 
  private:
   [[nodiscard]] std::vector<std::uint32_t> doubtful_faces(const SurfaceMesh& surface) const;
 
   const TriangleMesh& input_;
   const TriangleNormals& normals_;
+  const DistanceEvaluator& distance_;
   double off_;
-  std::optional<NearestTriangle> nearest_;  // from the first doubtful face on
 };
 
 }  // namespace raycone

@@ -18,11 +18,12 @@
 namespace raycone {
 
 Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                     const SharpenLimits& limits)
+                     const DistanceEvaluator& distance, const SharpenLimits& limits)
     : surface_(surface),
       first_vertices_(surface.mesh.vertices.size()),
       first_faces_(surface.mesh.triangles.size()),
       input_(input),
+      distance_(distance),
       limits_(limits) {
   auto of_all = sized_on_all_threads<Placed>(surface.mesh.triangles.size());
   parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -32,8 +33,7 @@ Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const Tria
   find_strips(of_all);
   if (strip_vertices_.empty()) return;
   now_ = first_;
-  distances_.emplace(input_);
-  distances_->prepare_points();
+  distance_.prepare_points();
 }
 
 // Faces over holes are in no plane, and belong to no strip.

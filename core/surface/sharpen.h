@@ -31,9 +31,10 @@ struct SharpenLimits {
 class Sharpener {
  public:
   // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
-  // `input`, or kHole. Both meshes must stay, and nobody else may change them. `normals`: of `input`.
+  // `input`, or kHole. Both meshes must stay, and nobody else may change them, and so must `distance`, that from
+  // `input`. `normals`: of `input`.
   Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-            const SharpenLimits& limits);
+            const DistanceEvaluator& distance, const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 
@@ -104,9 +105,9 @@ class Sharpener {
   SurfaceMesh& surface_;                      // at strips as now_ has it, but for sources; elsewhere as it was
   std::size_t first_vertices_, first_faces_;  // how many there are without spare ones
   const TriangleMesh& input_;
+  const DistanceEvaluator& distance_;
   SharpenLimits limits_;
-  std::optional<DistanceEvaluator> distances_;  // where there are strips
-  std::vector<std::uint32_t> place_;            // of each vertex among strip_vertices_, or kNoPlace
+  std::vector<std::uint32_t> place_;  // of each vertex among strip_vertices_, or kNoPlace
   std::vector<std::uint32_t> strip_vertices_;
   std::vector<std::uint8_t> kept_;      // of each of these
   std::vector<std::uint32_t> part_of_;  // likewise

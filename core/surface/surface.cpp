@@ -46,7 +46,8 @@ class SurfaceMaker {
         cells_(inside),
         triangles_(mesh, cells_),
         creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, normals_, triangles_, cells_)),
-        settler_(mesh, normals_, farthest_source(inside.lattice(), options.thickness)),
+        distance_(mesh),
+        settler_(mesh, normals_, distance_, farthest_source(inside.lattice(), options.thickness)),
         tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
@@ -56,10 +57,9 @@ class SurfaceMaker {
     Attempt last;
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = options_.thickness > 0.0
-                    ? thick_edge_points(mesh_, RuleAlong(evaluator_, options_.rule), DistanceEvaluator(mesh_),
-                                        options_.thickness, cells_, margins)
-                    : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
+      points_ = options_.thickness > 0.0 ? thick_edge_points(RuleAlong(evaluator_, options_.rule), distance_,
+                                                             options_.thickness, cells_, margins)
+                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
       if (may_use_polygons()) {
         const FacePoints sharp = points_of_sections(margins);
         if (Attempt first = attempt(sharp, margins, true, ContourCells::kPolygons); first.made)
@@ -169,7 +169,7 @@ class SurfaceMaker {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     const Vec3& h = inside_.lattice().spacing;
     const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    return checked_sharpen(surface, mesh_, normals_, inside_.lattice(),
+    return checked_sharpen(surface, mesh_, normals_, distance_, inside_.lattice(),
                            {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
   }
 
@@ -230,6 +230,7 @@ class SurfaceMaker {
   SurfaceCells cells_;
   CellTriangles triangles_;
   CellCreases creases_;
+  DistanceEvaluator distance_;
   SourceSettler settler_;
 
   double tolerance_;

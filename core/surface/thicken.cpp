@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "core/machine/threads.h"
-#include "core/surface/nearest_triangle.h"
 
 namespace raycone {
 namespace {
@@ -85,9 +84,8 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
   }
 }
 
-std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
-                                         const DistanceEvaluator& distance, double thickness, const SurfaceCells& cells,
-                                         const SurfaceMargins& margins) {
+std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance, double thickness,
+                                         const SurfaceCells& cells, const SurfaceMargins& margins) {
   const Vec3& h = cells.lattice().spacing;
   const ThickRule thick(rule, distance, thickness, std::min({h.x, h.y, h.z}));
   std::vector<Bracket> brackets = mixed_edges(cells);
@@ -97,14 +95,12 @@ std::vector<EdgePoint> thick_edge_points(const TriangleMesh& mesh, const RuleAlo
     places.push_back(bracket.edge.point(std::clamp(bracket.root, margins.inner, 1.0 - margins.inner)));
   }
   const std::vector<bool> at_thickness = thick.at_thickness(places);
-  const NearestTriangle nearest(mesh);
+  std::vector<std::uint32_t> nearest(places.size());
+  distance.find_nearest(places, nearest);
   std::vector<EdgePoint> points(cells.edges());
-  parallel_for(places.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::int32_t source = at_thickness[n] ? static_cast<std::int32_t>(nearest.of(places[n])) : kHole;
-      points[brackets[n].edge.number] = {places[n], source};
-    }
-  });
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    points[brackets[n].edge.number] = {places[n], at_thickness[n] ? static_cast<std::int32_t>(nearest[n]) : kHole};
+  }
   return points;
 }
 

@@ -102,6 +102,27 @@ TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
   }
 }
 
+// On a lattice many triangles are equally near.
+TEST(Distance, NearestTriangleIsTheFirstOfThoseAtTheLeastDistance) {
+  Random random(6);
+  for (const int triangles : {7, 60, 1000}) {
+    const TriangleMesh mesh = test::lattice_soup(random, triangles, 3);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 200; ++n) points.push_back(test::uniform_point(random, {{-1, -1, -1}, {4, 4, 4}}));
+    for (int n = 0; n < 50; ++n) points.push_back(points[static_cast<std::size_t>(n)]), points.back().x = 1.5;
+    std::vector<std::uint32_t> nearest(points.size());
+    DistanceEvaluator(mesh).find_nearest(points, nearest);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      std::vector<double> squares;
+      for (const Triangle& t : mesh.triangles) {
+        const Vec3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
+        squares.push_back(TriangleDistance(0.25 * a, 0.25 * b, 0.25 * c).squared(0.25 * points[n]));
+      }
+      ASSERT_EQ(nearest[n], std::ranges::min_element(squares) - squares.begin()) << triangles << ' ' << n;
+    }
+  }
+}
+
 // Such needles have no direction that could be trusted. With one triangle beside them that has.
 TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
   const Lattice lattice{{0.05, -0.1, 0.0}, {0.05, 0.04, 0.045}, {-4, -4, -4}, {23, 20, 25}};

@@ -9,7 +9,6 @@
 
 #include "core/distance/distance.h"
 #include "core/mesh/weld.h"
-#include "core/surface/nearest_triangle.h"
 #include "core/surface/star_change.h"
 #include "core/surface/surface.h"
 #include "core/surface/thicken.h"
@@ -135,22 +134,6 @@ TEST(StarChange, SeesNodesBetween) {
   EXPECT_TRUE(passes(0.01));
   EXPECT_FALSE(passes(0.3));
   EXPECT_FALSE(passes(-0.1));
-}
-
-TEST(NearestTriangle, IsTheFirstOfThoseAtTheLeastDistance) {
-  Random random(6);
-  const TriangleMesh mesh = test::lattice_soup(random, 60, 3);
-  const NearestTriangle nearest(mesh);
-  for (int n = 0; n < 200; ++n) {
-    const Vec3 p = test::uniform_point(random, {{-1, -1, -1}, {4, 4, 4}});
-    std::vector<double> distances;
-    for (const Triangle& t : mesh.triangles) {
-      distances.push_back(
-          TriangleDistance(0.25 * mesh.vertices[t[0]], 0.25 * mesh.vertices[t[1]], 0.25 * mesh.vertices[t[2]])
-              .squared(0.25 * p));
-    }
-    EXPECT_EQ(nearest.of(p), std::ranges::min_element(distances) - distances.begin());
-  }
 }
 
 TEST(ThickSurface, IsAtItsDistanceOrWhereTheRuleEnds) {

@@ -629,12 +629,13 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   std::iota(surface.sources.begin(), surface.sources.end(), 0);
   surface.sources[0] = surface.sources[1] = on_the_top(cut);
   const SharpenLimits limits{1e-9, 0.2, false};
-  Sharpener of_cut(surface, cut, TriangleNormals(cut), limits);
+  const DistanceEvaluator from_cut(cut), from_whole(whole_box);
+  Sharpener of_cut(surface, cut, TriangleNormals(cut), from_cut, limits);
   static_cast<void>(of_cut.sharpen());
   EXPECT_EQ(of_cut.pulls(), 0U);
   for (std::int32_t& source : surface.sources) source %= 24;  // triangles of the whole boxes
-  SourceSettler(whole_box, TriangleNormals(whole_box), 0.01).settle(surface);
-  Sharpener of_whole(surface, whole_box, TriangleNormals(whole_box), limits);
+  SourceSettler(whole_box, TriangleNormals(whole_box), from_whole, 0.01).settle(surface);
+  Sharpener of_whole(surface, whole_box, TriangleNormals(whole_box), from_whole, limits);
   of_whole.sharpen();
   EXPECT_EQ(of_whole.pulls(), 1U);  // the gap between four planes
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
@@ -659,8 +660,9 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   const TriangleMesh cut = test::joined(test::joined(cut_box(), second), others);
   const TriangleMesh whole = test::joined(test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), second_box), others);
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
-  SourceSettler(whole, TriangleNormals(whole), 0.01).settle(surface);
-  Sharpener sharpener(surface, whole, TriangleNormals(whole), {1e-9, 0.2, false});
+  const DistanceEvaluator distance(whole);
+  SourceSettler(whole, TriangleNormals(whole), distance, 0.01).settle(surface);
+  Sharpener sharpener(surface, whole, TriangleNormals(whole), distance, {1e-9, 0.2, false});
   sharpener.sharpen();
   ASSERT_EQ(sharpener.pulls(), 2U);
   const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, false);
@@ -692,13 +694,14 @@ OccupiedCut occupied_cut(double lower) {
   };
   const TriangleMesh cut = with_others(cut_box());
   OccupiedCut made{{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)}, with_others(box)};
-  SourceSettler(made.input, TriangleNormals(made.input), 0.01).settle(made.surface);
+  SourceSettler(made.input, TriangleNormals(made.input), DistanceEvaluator(made.input), 0.01).settle(made.surface);
   return made;
 }
 
 bool is_sharpened(OccupiedCut& cut, int rounds) {
   const Lattice lattice{{-1.08, -1.08, -1.08}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 70, 30}};  // no node in a cut
-  return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), lattice, {1e-9, 0.2, false}, rounds);
+  return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), DistanceEvaluator(cut.input), lattice,
+                         {1e-9, 0.2, false}, rounds);
 }
 
 // What the last round had put back was left as it had been pulled, with corners that are no more.
@@ -817,10 +820,10 @@ TEST(FaceSources, AreSettledWhereTheyCannotBe) {
   surface.sources[7] = kHole;
   own[7] = kHole;
   const SurfaceMesh before = surface;
-  SourceSettler(input, TriangleNormals(input), 10.0).settle(surface);
+  SourceSettler(input, TriangleNormals(input), DistanceEvaluator(input), 10.0).settle(surface);
   EXPECT_NE(surface.sources, before.sources);
   EXPECT_NE(surface.sources, own);  // parallel planes are within 10 of each other
-  SourceSettler(input, TriangleNormals(input), 0.1).settle(surface);
+  SourceSettler(input, TriangleNormals(input), DistanceEvaluator(input), 0.1).settle(surface);
   for (std::size_t face = 0; face < own.size(); ++face) {
     if (own[face] == kHole) {
       EXPECT_EQ(surface.sources[face], kHole);

@@ -561,8 +561,8 @@ MUTANTS = [
         ("core/surface/star_change.cpp", "if (j != i && j != target_) gap = std::max(", "if (j != i && j != target_ && j > 99) gap = std::max(")]),
     Mutant("simplify_over_nodes", "no node lies between faces before and after", [
         ("core/surface/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
-    Mutant("thick_source_is_not_nearest", "a branch is left out only beyond the least distance", [
-        ("core/surface/nearest_triangle.cpp", "> beyond_error(best.first)", "> best.first / 2")]),
+    Mutant("nearest_is_any_of_several", "of triangles that are equally near, the first is the nearest", [
+        ("core/distance/distance_tree.cpp", "if (triangle > first || square_of_gap", "if (square_of_gap")]),
 
     # --- The gradient ---
     Mutant("gradient_next_to_edges", "next to an edge doubles lose the vector", [

@@ -324,12 +324,12 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEval
 
 // Most of it is due to cells with nodes of both kinds: there are about eight triangles in each before they are merged.
 // Measured on eleven meshes (scans, CAD parts, open ones, nearly a soup) at 64, 128 and 256 samples: from one number of
-// samples to the next, 950 to 1500 bytes more per cell (2000 of the soup); and on two meshes of 70 000 triangles, which
-// are many more than cells, 850 to 920 per triangle. All that a process is said to need is 0.86 to 1.72 times its peak
-// then. But allocators map more than they use: it is 0.66 to 1.29 times the least --memory-limit that did, of seven
-// runs. So nothing was refused that fits into three quarters, and what is let pass may still run into the limit.
+// samples to the next, 950 to 1500 bytes more per cell (2000 of the soup); and on three meshes of 70 000 to 1.09e6
+// triangles, which are many more than cells, 500 to 600 per triangle. All that a process is said to need is 0.9 to 1.3
+// times its peak then, of closed meshes and CAD models; 0.5 to 0.8 where most of the surface closes holes, whose faces
+// are not merged. But allocators map more than they use, so what is let pass may still run into the limit.
 double surface_bytes(const NodeSet& inside, std::size_t triangles) {
-  constexpr double kPerCell = 1700.0, kPerTriangle = 900.0, kAtLeast = 4e6, kNodeSets = 3.0, kWord = 8.0;
+  constexpr double kPerCell = 1700.0, kPerTriangle = 600.0, kAtLeast = 4e6, kNodeSets = 3.0, kWord = 8.0;
   const double words = static_cast<double>(inside.words_per_row()) * static_cast<double>(inside.count(1)) *
                        static_cast<double>(inside.count(2));
   return kAtLeast + kNodeSets * kWord * words + kPerCell * static_cast<double>(mixed_cells(inside)) +

@@ -66,7 +66,7 @@ class LatticeOutOfRange : public std::runtime_error {
 [[nodiscard]] double surface_margin(const Lattice& lattice, bool single_precision);
 
 // What closed_surface() and measure_surface() are likely to take at most, in bytes, of a mesh of so many triangles,
-// beside `inside` and the mesh: an estimate; peaks of whole processes were 0.58 to 1.17 times it. Takes no memory and
+// beside `inside` and the mesh: an estimate; peaks of whole processes were 0.8 to 2 times it. Takes no memory and
 // little time. Precondition: !inside.reaches_border().
 [[nodiscard]] double surface_bytes(const NodeSet& inside, std::size_t triangles);
 

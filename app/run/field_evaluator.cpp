@@ -13,7 +13,7 @@ namespace {
 std::optional<GradientEvaluator> gradient_for(const TriangleMesh& mesh, const FieldOptions& options,
                                               const std::vector<ExteriorEdge>* edges) {
   if (!options.has(Field::kGradient)) return std::nullopt;
-  return edges ? GradientEvaluator(mesh, *edges) : GradientEvaluator(mesh, exterior_edges(mesh));
+  return GradientEvaluator(mesh, edges ? *edges : exterior_edges(mesh), options.simd);
 }
 
 }  // namespace

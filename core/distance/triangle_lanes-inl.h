@@ -13,36 +13,15 @@
 #include <limits>
 
 #include "core/distance/triangle_pack.h"
+#include "core/machine/vector_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kWidth = TrianglePack::kWidth;
-using Doubles = hn::CappedTag<double, kWidth>;
-using Lanes = hn::Vec<Doubles>;
-using LaneMask = hn::Mask<Doubles>;
-constexpr Doubles d;
-
-struct VectorLanes {
-  Lanes x, y, z;
-};
-
-HWY_INLINE VectorLanes minus(const VectorLanes& a, const VectorLanes& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE VectorLanes plus(const VectorLanes& a, const VectorLanes& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE VectorLanes times(Lanes s, const VectorLanes& a) {
-  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Lanes dot(const VectorLanes& a, const VectorLanes& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE VectorLanes in_all_lanes(const Vec3& p) { return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)}; }
+static_assert(hn::MaxLanes(d) <= kWidth);
 
 // One triangle in all lanes.
 class SameTriangle {

@@ -193,6 +193,20 @@ TEST(Gradient, OfALatticeIsThatAtItsPointsForAnyThreads) {
   EXPECT_EQ(values, gradients_of(mesh, points));
 }
 
+TEST(Gradient, IsTheSameForEveryLevelOfSimd) {
+  test::Random random(3);
+  const TriangleMesh mesh = test::joined(test::open_box(), welded_soup(6, 40));
+  std::vector<Vec3> points = points_beside_edges(test::open_box(), random);
+  for (int n = 0; n < 500; ++n) points.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
+  std::vector<Vec3> expected(points.size());
+  GradientEvaluator(mesh, exterior_edges(mesh), SimdLevel::kSse4).evaluate(points, expected);
+  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    std::vector<Vec3> values(points.size());
+    GradientEvaluator(mesh, exterior_edges(mesh), level).evaluate(points, values);
+    EXPECT_EQ(values, expected);
+  }
+}
+
 // Numbers that would become subnormal, or 0, in the scale of the mesh.
 TEST(Gradient, NextToAVertexOfAHugeMesh) {
   for (const double size : {1e10, 1e40, 1e200}) {

@@ -82,7 +82,8 @@ MUTANTS = [
     Mutant("slope_underflow_ignored", "what underflows in a slope is multiplied by the reach", [
         ("core/crossings/triangle_sections.h", "kSlopeUnderflow * std::abs(reach) + ", "")]),
     Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
-        ("core/evaluation/gradient.cpp", "fits ? sum_in_scale(point)", "true || fits ? sum_in_scale(point)")]),
+        ("core/evaluation/gradient.cpp", "} else if (scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {",
+         "} else if (true) {")]),
     Mutant("source_areas_vanish", "squares of areas underflow", [
         ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
     Mutant("cap_areas_vanish", "squares of areas underflow", [
@@ -566,9 +567,13 @@ MUTANTS = [
 
     # --- The gradient ---
     Mutant("gradient_next_to_edges", "next to an edge doubles lose the vector", [
-        ("core/evaluation/gradient.cpp", "square < kNear * (std::min(aa, bb)", "square < 0.0 * kNear * (std::min(aa, bb)")]),
+        ("core/evaluation/gradient_kernel.cpp", "kNear = 0x1p-16", "kNear = 0.0")]),
     Mutant("gradient_obtuse", "where the angle is obtuse |A| |B| + A B cancels", [
-        ("core/evaluation/gradient.cpp", "ab < 0.0 ? square / (lab - ab) : lab + ab", "lab + ab")]),
+        ("core/evaluation/gradient_kernel.cpp", "is_obtuse = hn::Lt(ab, hn::Zero(d))", "is_obtuse = hn::Lt(ab, ab)")]),
+    Mutant("gradient_joins_what_is_apart", "a chain of edges may end, and another one begin elsewhere", [
+        ("core/evaluation/gradient_kernel.cpp", "if (!segment.joined) last", "if (&segment == &segments[0]) last")]),
+    Mutant("gradient_of_huge_products", "products of four lengths overflow", [
+        ("core/evaluation/gradient_kernel.cpp", "kLeast = 0x1p-200, kMost = 0x1p200", "kLeast = 0x1p-900, kMost = 0x1p900")]),
 
     # --- Lattices with other axes ---
     Mutant("mirrored_block_begins_at_its_end", "index i of a mirrored axis is -i along the world's", [

@@ -55,7 +55,7 @@ only_in CGAL '[<"]CGAL' 'core/exact/(predicates|projection)\.cpp'
 only_in GMP '[<"]gmp' 'core/exact/exact_integers\.h'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/machine/threads\.cpp'
 only_in Highway '[<"]hwy' \
-  'core/(boundary/(change|cone|solid_angle)_kernel\.cpp|boundary/(product|triangle)_lanes-inl\.h|far/((far|matrix|moment|polynomial)_kernel|shared_corners)\.cpp|distance/(block|tree)_kernel\.cpp|distance/(near_triangles|to_front|triangle_lanes)-inl\.h|mesh/selection_kernel\.cpp|machine/(simd\.cpp|simd_kernel\.h))'
+  'core/([a-z]+/[a-z_]+(_kernel\.cpp|-inl\.h)|far/shared_corners\.cpp|machine/(simd\.cpp|simd_kernel\.h))'
 only_in OpenVDB '[<"]openvdb' 'io/vdb/((read|write)_vdb|stored_values)\.cpp'
 only_in nlohmann-json '[<"]nlohmann' 'io/mesh/(bounded_json\.(h|cpp)|gltf_document\.cpp)|app/report/json\.cpp'
 only_in tinygltf '[<"]tiny_gltf' 'io/mesh/(gltf_data|read_gltf)\.cpp'

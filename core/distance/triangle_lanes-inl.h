@@ -7,8 +7,6 @@
 #define RAYCONE_CORE_DISTANCE_TRIANGLE_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <limits>
 

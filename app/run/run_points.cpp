@@ -33,14 +33,14 @@ struct PointBatch {
   bool gathered = false;  // of several that the reader gives, as long as none has to be waited for
 };
 
-// Of a mesh with a boundary, many points that are known to come share much: the more at a time, the less time each
-// takes. That needs memory.
+// Where a boundary is summed over or a triangle is searched for, many points that are known to come share much: the more
+// at a time, the less time each takes. That needs memory.
 PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool has_boundary,
                      const RunLimits& limits) {
   constexpr std::size_t kMany = std::size_t{1} << 18;
   constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 29;
   PointBatch batch;
-  if (!has_boundary || !reader.size()) return batch;
+  if ((!has_boundary && !command.field.has(Field::kDistance)) || !reader.size()) return batch;
   if (limits.memory() >= kEnoughMemory) batch.most = kMany;
   batch.gathered = !command.sample;  // places() are those of one batch of the reader
   return batch;

@@ -12,16 +12,44 @@
 #include "core/crossings/check_counts.h"
 #include "core/crossings/lattice_rows.h"
 #include "core/data/distance_blocks.h"
+#include "core/data/space_curve.h"
 #include "core/distance/distance_band.h"
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"
+#include "core/machine/buckets.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
 
-constexpr std::size_t kPointsPerTask = 256;
+// visit(n) for each of the points, on all threads, along a curve: each finds much of the tree of triangles in its cache
+// then. The nearer neighbours are, the more, so many points are put in order together.
+template <class Visit>
+void for_each_along_curve(std::span<const Vec3> points, const Visit& visit) {
+  constexpr std::size_t kMost = std::size_t{1} << 20;
+  constexpr unsigned kBits = 10, kBucketBits = 12, kNumberBits = 32;
+  static_assert(kMost <= std::size_t{1} << kNumberBits && 3 * kBits + kNumberBits <= 64);
+  for (std::size_t first = 0; first < points.size(); first += kMost) {
+    const std::span<const Vec3> here = points.subspan(first, std::min(kMost, points.size() - first));
+    Box box = empty_box();
+    for (const Vec3& p : here) extend(box, p);
+    const SpaceCurve curve(box, kBits);
+    const Buckets<std::uint64_t> buckets(here.size(), std::size_t{1} << kBucketBits,
+                                         [&](std::size_t begin, std::size_t end, auto emit) {
+                                           for (std::size_t n = begin; n < end; ++n) {
+                                             const std::uint64_t place = curve.place(here[n]);
+                                             emit(place >> (3 * kBits - kBucketBits), place << kNumberBits | n);
+                                           }
+                                         });
+    parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        std::ranges::sort(buckets[n]);
+        for (const std::uint64_t at : buckets[n]) visit(first + static_cast<std::uint32_t>(at));
+      }
+    });
+  }
+}
 
 // From here on a mesh of coordinates up to 1 is a point at the origin, to the last bit.
 constexpr double kFar = 0x1p55;
@@ -236,17 +264,13 @@ void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double>
     return;
   }
   prepare_points();  // not within the loop, whose threads would wait for one another
-  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) distances[n] = implementation_->distance_at(points[n]);
-  });
+  for_each_along_curve(points, [&](std::size_t n) { distances[n] = implementation_->distance_at(points[n]); });
 }
 
 void DistanceEvaluator::find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const {
   assert(triangles.size() == points.size());
   prepare_points();
-  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) triangles[n] = implementation_->triangle_at(points[n]);
-  });
+  for_each_along_curve(points, [&](std::size_t n) { triangles[n] = implementation_->triangle_at(points[n]); });
 }
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/data/space_curve.h"
 #include "core/evaluation/point_tile.h"
 #include "core/machine/buckets.h"
 #include "core/machine/threads.h"
@@ -21,31 +22,6 @@ Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
   return {all.crossings.subspan(begin, count), all.degenerate.subspan(begin, count),
           all.on_surface.subspan(begin, count), all.error_bound.subspan(begin, count)};
 }
-
-// A curve through a box that fills it: neighbours on it are neighbours in space.
-class SpaceCurve {
- public:
-  explicit SpaceCurve(const TriangleMesh& mesh) : box_(bounding_box(mesh)) {
-    const Vec3 size = box_.upper - box_.lower;
-    cells_per_unit_ = kCells / std::max({size.x, size.y, size.z, std::numeric_limits<double>::min()});
-  }
-  [[nodiscard]] std::uint32_t code(const Vec3& q) const {
-    std::uint32_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double offset = (q[axis] - box_.lower[axis]) * cells_per_unit_;
-      const auto cell = static_cast<unsigned>(std::min(std::max(0.0, offset), kCells - 1));  // NaN: 0
-      for (unsigned bit = 0; bit < kBits; ++bit) code |= (cell >> bit & 1U) << (3 * bit + static_cast<unsigned>(axis));
-    }
-    return code;
-  }
-  static constexpr std::uint32_t codes() { return 1U << (3 * kBits); }
-
- private:
-  static constexpr unsigned kBits = 7;
-  static constexpr double kCells = 1U << kBits;
-  Box box_;
-  double cells_per_unit_;
-};
 
 // A radix sort by position along a curve, through the projections or through space, that moves the points themselves,
 // so that none has to be fetched from afar in the end.
@@ -138,12 +114,13 @@ class CoherentOrder {
   // Embree's rays go in the order of the points: they are for comparison.
   static Keys keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
     const bool far = mesh.has_far_field();
-    Keys keys{far ? SpaceCurve::codes() : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, false, {}};
+    constexpr unsigned kBits = 7;  // of each axis
+    Keys keys{far ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, false, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
-    const SpaceCurve curve(mesh.mesh());
+    const SpaceCurve curve(bounding_box(mesh.mesh()), kBits);
     const auto key_of = [&](const Vec3& q) -> std::uint32_t {
-      return far ? curve.code(q) : mesh.grid().morton_code(q);
+      return far ? static_cast<std::uint32_t>(curve.place(q)) : mesh.grid().morton_code(q);
     };
     constexpr std::size_t kPointsPerTask = 4096;
     parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {

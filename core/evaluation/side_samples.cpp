@@ -1,20 +1,12 @@
 #include "core/evaluation/side_samples.h"
 
+#include "core/data/space_curve.h"
+
 namespace raycone {
 
 std::uint64_t SideSamples::code_of(const Index& sample) {
-  static constexpr auto kSpread = [] {
-    std::array<std::uint32_t, 256> spread{};
-    for (std::uint32_t n = 0; n < spread.size(); ++n) {
-      for (std::uint32_t bit = 0; bit < 8; ++bit) spread[n] |= (n >> bit & 1U) << (3 * bit);
-    }
-    return spread;
-  }();
   std::uint64_t code = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::uint64_t low = kSpread[sample[axis] & 255U], high = kSpread[sample[axis] >> 8U & 255U];
-    code |= (low | high << 24U) << axis;
-  }
+  for (std::size_t axis = 0; axis < 3; ++axis) code |= spread_bits(sample[axis]) << axis;
   return code;
 }
 

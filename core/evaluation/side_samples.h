@@ -62,7 +62,7 @@ class SideSamples {
              static_cast<std::int64_t>(cap_crossings_.runs(row).at(sample[0])));
   }
 
-  // Neighbours in space have codes that are near to each other (Morton). Of indices below 2^16; others repeat.
+  // Neighbours in space have codes that are near to each other (core/data/space_curve.h).
   [[nodiscard]] static std::uint64_t code_of(const Index& sample);
 
   // Sets the sides of all samples of the box if they are certain, the rest of each being `rest`, or off from it by at

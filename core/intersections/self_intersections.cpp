@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "core/data/space_curve.h"
 #include "core/exact/scale.h"
 #include "core/intersections/triangle_pair.h"
 #include "core/machine/buckets.h"
@@ -49,14 +50,6 @@ class BoxNumbers {
 struct NumberBox {
   std::array<float, 3> lower, upper;
 };
-
-// Spreads the lowest eleven bits so that there are two zeros between them.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x = (x | x << 16U) & 0x0007'0000'FF;
-  x = (x | x << 8U) & 0x00'0700'F00F;
-  x = (x | x << 4U) & 0x00'C30C'30C3;
-  return (x | x << 2U) & 0x0'4924'9249;
-}
 
 // All triangles along Morton's curve: of the cubes of 1/2048 of the mesh's size that their boxes' middles are in;
 // within one by number. That is sorted sooner than runs are that medians cut, and by all threads.

@@ -1,6 +1,7 @@
 #include "core/distance/distance_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <span>
 
@@ -64,7 +65,8 @@ DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
       pack_count_((triangles_.size() + kWidth - 1) / kWidth),
       simd_(level),
       search_(nearest_search(level)),
-      find_packs_(pack_search(level)) {
+      find_packs_(pack_search(level)),
+      slots_at_(slot_search(level)) {
   std::vector<Box> boxes(pack_count_);
   packs_ = make_packs(mesh, triangles_, boxes);
   while (boxes.size() > 1) {
@@ -77,17 +79,14 @@ DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
 }
 
 std::uint32_t DistanceTree::nearest_triangle(const Vec3& p) const {
-  const double least = squared_distance(p), reach = beyond_error(least);
+  const double least = squared_distance(p);
   std::vector<std::uint32_t> near;
-  find_packs({p, p}, reach, pack_count_, near);
+  find_packs({p, p}, beyond_error(least), pack_count_, near);
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
-  for (const std::uint32_t number : near) {
-    const TrianglePack& pack = packs_[number];
-    const std::size_t begin = number * kWidth, count = std::min(kWidth, triangles_.size() - begin);
-    for (std::size_t slot = 0; slot < count; ++slot) {
-      const std::uint32_t triangle = triangles_[begin + slot];
-      if (triangle > first || square_of_gap(pack.box(slot), p) > reach) continue;
-      if (pack.triangle(slot).squared(p) == least) first = triangle;
+  for (const std::uint32_t pack : near) {
+    for (std::uint32_t slots = slots_at_(packs_[pack], p, least); slots != 0; slots &= slots - 1) {
+      const std::size_t number = pack * kWidth + static_cast<std::size_t>(std::countr_zero(slots));
+      first = std::min(first, triangles_[std::min(number, triangles_.size() - 1)]);  // the last one fills its pack
     }
   }
   return first;

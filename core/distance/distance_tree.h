@@ -63,6 +63,7 @@ class DistanceTree {
   double (*search_)(const DistanceTree& tree, const Vec3& p, double limit);
   void (*find_packs_)(const DistanceTree& tree, const Box& box, double limit, std::size_t most,
                       std::vector<std::uint32_t>& found);
+  std::uint32_t (*slots_at_)(const TrianglePack& pack, const Vec3& p, double square);
 };
 
 }  // namespace raycone

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -163,6 +164,29 @@ void search_packs(const DistanceTree& tree, const Box& box, double limit, std::s
   }
 }
 
+HWY_INLINE std::uint32_t bits_of(LaneMask mask) {
+  std::array<std::uint8_t, 8> bytes{};  // as many as Highway may write
+  hn::StoreMaskBits(d, mask, bytes.data());
+  return bytes[0];
+}
+
+std::uint32_t search_slots(const TrianglePack& pack, const Vec3& p, double square) {
+  const VectorLanes ps = in_all_lanes(p);
+  const Lanes squares = hn::Set(d, square), reach = hn::Set(d, beyond_error(square));
+  std::uint32_t found = 0;
+  for (std::size_t i = 0; i < TrianglePack::kWidth; i += hn::Lanes(d)) {
+    const Squares some = squared(PackedTriangles(pack, i), ps);
+    found |= bits_of(hn::And(some.sure, hn::Eq(some.values, squares))) << i;
+    const Lanes bounds = least_with_care(some.values, hn::Load(d, &pack.direction_from[i]));
+    std::uint32_t doubtful = bits_of(hn::AndNot(some.sure, hn::Lt(bounds, reach)));
+    for (; doubtful != 0; doubtful &= doubtful - 1) {
+      const std::size_t slot = i + static_cast<std::size_t>(std::countr_zero(doubtful));
+      if (pack.triangle(slot).squared(p) == square) found |= 1U << slot;
+    }
+  }
+  return found;
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace raycone
@@ -174,6 +198,8 @@ namespace raycone {
 NearestSearch nearest_search(SimdLevel level) { return RAYCONE_AT_LEVEL(level, search_nearest); }
 
 PackSearch pack_search(SimdLevel level) { return RAYCONE_AT_LEVEL(level, search_packs); }
+
+SlotSearch slot_search(SimdLevel level) { return RAYCONE_AT_LEVEL(level, search_slots); }
 
 }  // namespace raycone
 #endif

@@ -36,9 +36,6 @@ struct alignas(64) TrianglePack {
     const Columns& at = corners[corner];
     return {at[0][slot], at[1][slot], at[2][slot]};
   }
-  [[nodiscard]] Box box(std::size_t slot) const {
-    return {{lower[0][slot], lower[1][slot], lower[2][slot]}, {upper[0][slot], upper[1][slot], upper[2][slot]}};
-  }
   // The same numbers, put together again.
   [[nodiscard]] TriangleDistance triangle(std::size_t slot) const {
     return {corner(0, slot), corner(1, slot), corner(2, slot)};

@@ -563,7 +563,7 @@ MUTANTS = [
     Mutant("simplify_over_nodes", "no node lies between faces before and after", [
         ("core/surface/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
     Mutant("nearest_is_any_of_several", "of triangles that are equally near, the first is the nearest", [
-        ("core/distance/distance_tree.cpp", "if (triangle > first || square_of_gap", "if (square_of_gap")]),
+        ("core/distance/distance_tree.cpp", "first = std::min(first, triangles_[", "first = (triangles_[")]),
 
     # --- The gradient ---
     Mutant("gradient_next_to_edges", "next to an edge doubles lose the vector", [

@@ -23,25 +23,30 @@
 namespace raycone {
 namespace {
 
-// visit(n) for each of the points, on all threads, along a curve: each finds much of the tree of triangles in its cache
-// then. The nearer neighbours are, the more, so many points are put in order together.
+// visit(n) for each of the points, on all threads. Many points go along a curve, where each finds much of the tree of
+// triangles in its cache; the nearer neighbours are, the more, so they are put in order together.
 template <class Visit>
-void for_each_along_curve(std::span<const Vec3> points, const Visit& visit) {
-  constexpr std::size_t kMost = std::size_t{1} << 20;
+void for_each_point(std::span<const Vec3> points, const Visit& visit) {
+  constexpr std::size_t kFew = 4096, kMost = std::size_t{1} << 20, kPointsPerTask = 256;
   constexpr unsigned kBits = 10, kBucketBits = 12, kNumberBits = 32;
   static_assert(kMost <= std::size_t{1} << kNumberBits && 3 * kBits + kNumberBits <= 64);
+  if (points.size() < kFew) {
+    return parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) visit(n);
+    });
+  }
   for (std::size_t first = 0; first < points.size(); first += kMost) {
     const std::span<const Vec3> here = points.subspan(first, std::min(kMost, points.size() - first));
     Box box = empty_box();
     for (const Vec3& p : here) extend(box, p);
     const SpaceCurve curve(box, kBits);
-    const Buckets<std::uint64_t> buckets(here.size(), std::size_t{1} << kBucketBits,
-                                         [&](std::size_t begin, std::size_t end, auto emit) {
-                                           for (std::size_t n = begin; n < end; ++n) {
-                                             const std::uint64_t place = curve.place(here[n]);
-                                             emit(place >> (3 * kBits - kBucketBits), place << kNumberBits | n);
-                                           }
-                                         });
+    const auto add = [&](std::size_t begin, std::size_t end, auto emit) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::uint64_t place = curve.place(here[n]);
+        emit(place >> (3 * kBits - kBucketBits), place << kNumberBits | n);
+      }
+    };
+    const Buckets<std::uint64_t> buckets(here.size(), std::size_t{1} << kBucketBits, add);
     parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         std::ranges::sort(buckets[n]);
@@ -264,13 +269,13 @@ void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double>
     return;
   }
   prepare_points();  // not within the loop, whose threads would wait for one another
-  for_each_along_curve(points, [&](std::size_t n) { distances[n] = implementation_->distance_at(points[n]); });
+  for_each_point(points, [&](std::size_t n) { distances[n] = implementation_->distance_at(points[n]); });
 }
 
 void DistanceEvaluator::find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const {
   assert(triangles.size() == points.size());
   prepare_points();
-  for_each_along_curve(points, [&](std::size_t n) { triangles[n] = implementation_->triangle_at(points[n]); });
+  for_each_point(points, [&](std::size_t n) { triangles[n] = implementation_->triangle_at(points[n]); });
 }
 
 }  // namespace raycone

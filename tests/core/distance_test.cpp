@@ -123,6 +123,32 @@ TEST(Distance, NearestTriangleIsTheFirstOfThoseAtTheLeastDistance) {
   }
 }
 
+// Many points are put in another order, some 2^20 at a time.
+TEST(Distance, OfManyPointsIsThatOfFew) {
+  const TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const DistanceEvaluator distance(mesh);
+  Random random(8);
+  std::vector<Vec3> points{{1e300, -1e300, 0}, {0, 1e-300, 0}};
+  while (points.size() < (std::size_t{1} << 20) + 5000) {
+    points.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
+  }
+  const std::vector<double> distances = at_points(distance, points);
+  std::vector<std::uint32_t> nearest(points.size());
+  distance.find_nearest(points, nearest);
+  constexpr std::size_t kFew = 100, kLeft = 37;  // of so many hundreds
+  for (std::size_t begin = 0; begin < points.size(); begin += kLeft * kFew) {
+    const std::vector<Vec3> few(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                                points.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kFew, points.size())));
+    const std::vector<double> expected = at_points(distance, few);
+    std::vector<std::uint32_t> triangles(few.size());
+    distance.find_nearest(few, triangles);
+    for (std::size_t n = 0; n < few.size(); ++n) {
+      ASSERT_EQ(distances[begin + n], expected[n]) << begin + n;
+      ASSERT_EQ(nearest[begin + n], triangles[n]) << begin + n;
+    }
+  }
+}
+
 // Such needles have no direction that could be trusted. With one triangle beside them that has.
 TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
   const Lattice lattice{{0.05, -0.1, 0.0}, {0.05, 0.04, 0.045}, {-4, -4, -4}, {23, 20, 25}};

@@ -1,7 +1,9 @@
 // Regular lattices of sample points.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/data/vec3.h"
@@ -27,6 +29,28 @@ struct Lattice {
   [[nodiscard]] std::int64_t index_max(int axis) const {
     const auto a = static_cast<std::size_t>(axis);
     return index_min[a] + counts[a] - 1;
+  }
+
+  // The inverse of coordinate(), up to rounding: an index that need not be whole. Of two coordinates, the larger one
+  // never has the smaller index.
+  [[nodiscard]] double index_at(int axis, double coordinate) const {
+    return (coordinate - origin[axis]) / spacing[axis];
+  }
+  // The same from the first sample. Where that is many steps from the origin, this rounds less.
+  [[nodiscard]] double steps_from_first(int axis, double coordinate) const {
+    return (coordinate - this->coordinate(axis, index_min[static_cast<std::size_t>(axis)])) / spacing[axis];
+  }
+  // Cells are half-open, from one sample to the next, and numbered from 0 along each axis: the cell of an index, whole
+  // or not. -1 is all that is before the first sample, `counts` all that is a step and more behind the last one.
+  // Precondition: the index is not NaN.
+  [[nodiscard]] std::int64_t cell_of(int axis, double index) const {
+    const auto a = static_cast<std::size_t>(axis);
+    const double cell = std::floor(index) - static_cast<double>(index_min[a]);
+    return static_cast<std::int64_t>(std::clamp(cell, -1.0, static_cast<double>(counts[a])));
+  }
+  // Which of two cells a coordinate next to their common sample is in may be up to rounding.
+  [[nodiscard]] std::int64_t cell_at(int axis, double coordinate) const {
+    return cell_of(axis, index_at(axis, coordinate));
   }
 };
 

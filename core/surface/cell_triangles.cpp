@@ -77,12 +77,10 @@ class CellFinder {
  private:
   [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
     const Lattice& lattice = cells_.lattice();
-    const Vec3 low = cells_.position({0, 0, 0});
-    const Vec3& h = lattice.spacing;
     std::array<Vec3, 3> corners;
     for (std::size_t n = 0; n < 3; ++n) {
-      const Vec3 v = mesh_.vertices[mesh_.triangles[triangle][n]] - low;
-      corners[n] = {v.x / h.x, v.y / h.y, v.z / h.z};
+      const Vec3& v = mesh_.vertices[mesh_.triangles[triangle][n]];
+      for (int axis = 0; axis < 3; ++axis) corners[n][axis] = lattice.steps_from_first(axis, v[axis]);
     }
     return corners;
   }

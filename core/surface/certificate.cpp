@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -277,12 +276,11 @@ LatticeBlock rows_at(const Box& box, const Lattice& lattice) {
   LatticeBlock rows = whole(lattice);
   for (const int axis : {1, 2}) {
     const auto a = static_cast<std::size_t>(axis);
-    const auto first = static_cast<double>(lattice.index_min[a]), last = static_cast<double>(lattice.index_max(axis));
-    const auto index = [&](double x) { return std::floor((x - lattice.origin[axis]) / lattice.spacing[axis]); };
-    const double low = std::clamp(index(box.lower[axis]) - 1.0, first, last);
-    const double high = std::clamp(index(box.upper[axis]) + 2.0, first, last);
-    rows.first[a] = static_cast<std::int64_t>(low);
-    rows.counts[a] = static_cast<std::int64_t>(high - low) + 1;
+    const auto row = [&](std::int64_t n) { return std::clamp<std::int64_t>(n, 0, lattice.counts[a] - 1); };
+    const std::int64_t low = row(lattice.cell_at(axis, box.lower[axis]) - 1);
+    const std::int64_t high = row(lattice.cell_at(axis, box.upper[axis]) + 2);
+    rows.first[a] += low;
+    rows.counts[a] = high - low + 1;
   }
   return rows;
 }

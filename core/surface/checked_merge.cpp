@@ -46,14 +46,10 @@ bool is_near(const TriangleMesh& mesh, const Triangle& t, const Lattice& lattice
   Node low{}, high{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const auto index = [&](double x) {
-      const double at = std::floor((x - lattice.origin[axis]) / lattice.spacing[axis]);
-      return static_cast<std::int64_t>(at) - lattice.index_min[a];
-    };
     const auto [least, most] =
         std::minmax({mesh.vertices[t[0]][axis], mesh.vertices[t[1]][axis], mesh.vertices[t[2]][axis]});
-    low[a] = index(least) - 1;
-    high[a] = index(most) + 2;
+    low[a] = lattice.cell_at(axis, least) - 1;
+    high[a] = lattice.cell_at(axis, most) + 2;
   }
   const auto layer = [](const Node& node) { return node[2]; };
   const auto begin = std::ranges::lower_bound(nodes, low[2], {}, layer);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -27,9 +26,7 @@ bool is_beside(const Vec3& p, const NodeSet& nodes) {
   std::array<std::int64_t, 3> cell;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double index = std::floor((p[axis] - lattice.origin[axis]) / lattice.spacing[axis]);
-    cell[a] =
-        std::clamp<std::int64_t>(static_cast<std::int64_t>(index) - lattice.index_min[a], 0, lattice.counts[a] - 2);
+    cell[a] = std::clamp<std::int64_t>(lattice.cell_at(axis, p[axis]), 0, lattice.counts[a] - 2);
   }
   for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
     const auto [i, j, k] = SurfaceCells::node_at({cell, 0, 0}, corner);

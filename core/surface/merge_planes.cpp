@@ -171,8 +171,7 @@ class BrickMerger {
   [[nodiscard]] std::uint32_t brick_at(const Vec3& p, double shift) const {
     std::int64_t place = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      const double at = (p[axis] - lattice_.coordinate(axis, lattice_.index_min[static_cast<std::size_t>(axis)])) /
-                        lattice_.spacing[axis];
+      const double at = lattice_.steps_from_first(axis, p[axis]);
       const auto brick = static_cast<std::int64_t>(std::floor(at / kSide + shift));
       place = place * bricks_along(axis) + std::clamp<std::int64_t>(brick, 0, bricks_along(axis) - 1);
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -40,10 +39,8 @@ class PointsInCells {
     std::int64_t cell = 0;
     for (int axis = 2; axis >= 0; --axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double index = std::floor((p[axis] - lattice_.origin[axis]) / lattice_.spacing[axis]);
-      const double from_0 = index - static_cast<double>(lattice_.index_min[a]);
-      const auto last = static_cast<double>(lattice_.counts[a] - 1);
-      cell = cell * lattice_.counts[a] + static_cast<std::int64_t>(std::clamp(from_0, 0.0, last));
+      const std::int64_t along = lattice_.cell_at(axis, p[axis]);
+      cell = cell * lattice_.counts[a] + std::clamp<std::int64_t>(along, 0, lattice_.counts[a] - 1);
     }
     return cell;
   }

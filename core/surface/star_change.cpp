@@ -123,7 +123,7 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
   if (!height) return false;
   const Vec3 halfway = vertex_ + 0.5 * *height * axes_[2];
   Vec3 first;
-  for (int a = 0; a < 3; ++a) first[a] = std::floor((halfway[a] - lattice.origin[a]) / lattice.spacing[a]);
+  for (int a = 0; a < 3; ++a) first[a] = std::floor(lattice.index_at(a, halfway[a]));
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 node;
     for (int a = 0; a < 3; ++a) {
@@ -145,11 +145,10 @@ bool StarChange::passes_node(const Lattice& lattice, double distance) const {
     const int axis = static_cast<int>(std::ranges::max_element(sizes) - sizes.begin());
     const double length = std::sqrt(dot(normal, normal));
     const double reach = distance * length / std::abs(normal[axis]) + kDoubt * lattice.spacing[axis];
-    const auto index = [&](int a, double coordinate) { return (coordinate - lattice.origin[a]) / lattice.spacing[a]; };
     const auto range = [&](int a) {
       const auto [low, high] = std::minmax({c[0][a], c[1][a], c[2][a]});
-      return std::array{static_cast<std::int64_t>(std::ceil(index(a, low - distance) - kDoubt)),
-                        static_cast<std::int64_t>(std::floor(index(a, high + distance) + kDoubt))};
+      return std::array{static_cast<std::int64_t>(std::ceil(lattice.index_at(a, low - distance) - kDoubt)),
+                        static_cast<std::int64_t>(std::floor(lattice.index_at(a, high + distance) + kDoubt))};
     };
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const auto [u_begin, u_end] = range(u);
@@ -161,8 +160,8 @@ bool StarChange::passes_node(const Lattice& lattice, double distance) const {
         node[v] = lattice.coordinate(v, j);
         const double on_plane =
             c[0][axis] - (normal[u] * (node[u] - c[0][u]) + normal[v] * (node[v] - c[0][v])) / normal[axis];
-        const auto first = static_cast<std::int64_t>(std::ceil(index(axis, on_plane - reach) - kDoubt));
-        const auto last = static_cast<std::int64_t>(std::floor(index(axis, on_plane + reach) + kDoubt));
+        const auto first = static_cast<std::int64_t>(std::ceil(lattice.index_at(axis, on_plane - reach) - kDoubt));
+        const auto last = static_cast<std::int64_t>(std::floor(lattice.index_at(axis, on_plane + reach) + kDoubt));
         for (std::int64_t k = first; k <= last; ++k) {
           node[axis] = lattice.coordinate(axis, k);
           if (is_between(node)) return true;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -75,13 +74,9 @@ class SurfaceCells {
     std::array<std::int64_t, 3> low, high;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double at = (p[axis] - lattice_.origin[axis]) / lattice_.spacing[axis];
-      const auto index = [&](double x) {
-        const double from_0 = std::floor(x) - static_cast<double>(lattice_.index_min[a]);
-        return static_cast<std::int64_t>(std::clamp(from_0, -1.0, static_cast<double>(lattice_.counts[a])));
-      };
-      low[a] = std::max<std::int64_t>(index(at - part), 0);
-      high[a] = std::min(index(at + part), lattice_.counts[a] - 1);
+      const double at = lattice_.index_at(axis, p[axis]);
+      low[a] = std::max<std::int64_t>(lattice_.cell_of(axis, at - part), 0);
+      high[a] = std::min(lattice_.cell_of(axis, at + part), lattice_.counts[a] - 1);
     }
     for (std::int64_t k = low[2]; k <= high[2]; ++k) {
       for (std::int64_t j = low[1]; j <= high[1]; ++j) {

@@ -158,7 +158,7 @@ class NearByNodes {
     std::array<std::int64_t, 3> cell;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double index = (p[axis] - lattice.coordinate(axis, lattice.index_min[a])) / lattice.spacing[axis];
+      const double index = lattice.steps_from_first(axis, p[axis]);
       if (!(index >= 0.0 && index < static_cast<double>(lattice.counts[a] - 1))) return false;
       cell[a] = static_cast<std::int64_t>(index);
     }
@@ -322,8 +322,7 @@ class MissedBy {
     std::array<std::int64_t, 3> node;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double first = lattice.coordinate(axis, lattice.index_min[a]);
-      const double index = std::round((p[axis] - first) / lattice.spacing[axis]);
+      const double index = std::round(lattice.steps_from_first(axis, p[axis]));
       if (!(index >= 0.0 && index <= static_cast<double>(lattice.counts[a] - 1))) return std::nullopt;
       node[a] = static_cast<std::int64_t>(index);
     }

@@ -519,7 +519,7 @@ MUTANTS = [
     Mutant("nodes_counted_once", "nodes that a mesh went around twice have not changed sides", [
         ("core/surface/certificate.cpp", "Rule{RuleKind::kOdd}, lattice)", "Rule{RuleKind::kNonzero}, lattice)")]),
     Mutant("rows_of_a_change", "nodes are looked for in all rows that a change may pass", [
-        ("core/surface/certificate.cpp", "index(box.upper[axis]) + 2.0", "index(box.upper[axis]) - 1.0")]),
+        ("core/surface/certificate.cpp", "lattice.cell_at(axis, box.upper[axis]) + 2", "lattice.cell_at(axis, box.upper[axis]) - 1")]),
     Mutant("faults_that_stay", "faces that intersected others are looked at again", [
         ("core/surface/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
     Mutant("faces_beside_gone_ones", "faces at corners of those that have changed are looked at", [

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -16,12 +18,11 @@
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/process/version.h"
-#include "app/run/field_evaluator.h"
+#include "app/run/field_run.h"
 #include "app/run/fields.h"
 #include "app/run/labels.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
-#include "app/run/mesh_warnings.h"
 #include "app/run/slice_choice.h"
 #include "app/run/written_files.h"
 #include "app/text/plain_text.h"
@@ -78,36 +79,21 @@ void for_pixels(const PlaneView& view, const Visit& visit) {
   }
 }
 
-Tally evaluate(const FieldEvaluator& evaluator, const Slice& slice, const FieldOptions& field, std::span<double> values,
-               std::atomic<std::uint64_t>* done) {
-  FieldSamples samples(field);
-  Tally tally;
-  if (is_on_lattice(slice, field)) {
-    tally = evaluator.evaluate(*slice.lattice, whole(*slice.lattice), samples, done);
-    take(samples.fields().front(), values);
-    turn_rows_over(values, slice.view.width, slice.view.height);
-    return tally;
-  }
-  for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
-    tally += evaluator.evaluate(points, samples, done);
-    take(samples.fields().front(), values.subspan(first, points.size()));
-  });
-  return tally;
-}
-
 void evaluate_field(TriangleMesh mesh, const Slice& slice, const FieldOptions& field, std::span<double> values,
                     MeshRun& run) {
-  RunReport& report = run.report;
-  const auto evaluator = timed(report.seconds.prepare, [&] {
-    const std::vector<ExteriorEdge> edges = run.take_edges();
-    return FieldEvaluator(std::move(mesh), field, &edges, static_cast<double>(values.size()));
-  });
-  report.exterior_edges = evaluator.winding_number().exterior_edges();
-  if (const auto warning = tolerance_not_kept(field.tolerance, evaluator.accuracy())) run.warn(*warning);
+  FieldRun fields(run, std::move(mesh), field, static_cast<double>(values.size()));
   std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
-  report.tally = timed(report.seconds.evaluate, [&] { return evaluate(evaluator, slice, field, values, done); });
-  report.terms = evaluator.winding_number().terms();
-  report.largest_error_bound = evaluator.accuracy();
+  if (is_on_lattice(slice, field)) {
+    fields.evaluate(*slice.lattice, whole(*slice.lattice), done);
+    take(fields.values().front(), values);
+    turn_rows_over(values, slice.view.width, slice.view.height);
+  } else {
+    for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
+      fields.evaluate(points, done);
+      take(fields.values().front(), values.subspan(first, points.size()));
+    });
+  }
+  fields.finish(std::numeric_limits<double>::infinity());
 }
 
 void evaluate_labels(LabelledParts& parts, const Slice& slice, const FieldOptions& field, std::span<double> values,

@@ -150,7 +150,7 @@ void CellContour::find_points_within() {
 
 void CellContour::add_polygons() {
   const SurfaceCell& cell = cells_.cells()[cell_];
-  if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1)) spare_->edges[cell.edge(kuhn::kCorners - 1)] = 1;
+  if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1)) spare_->within[cell.edge(kuhn::kCorners - 1)] = 1;
   for (const DiagonalPoint& point : polygons_.diagonals()) {
     if (point.is_inline) (point.is_above ? spare_->above : spare_->below)[point.edge] = 1;
   }
@@ -353,7 +353,7 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   SparePoints spare;
   if (kind == ContourCells::kPolygons) {
-    for (std::vector<std::uint8_t>* of_edges : {&spare.above, &spare.below, &spare.edges})
+    for (std::vector<std::uint8_t>* of_edges : {&spare.above, &spare.below, &spare.within})
       of_edges->resize(edge_points.size());
     spare.faces.resize(face_points.positions().size());
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/surface/contour.h"
@@ -31,12 +32,14 @@ struct SparePoints {
   // Of edges that are diagonals of cells' faces: whether the polygons of the cell above the face can do without, and
   // those of the cell below. Each cell has places of its own, so that threads do not meet.
   std::vector<std::uint8_t> above, below;
-  // Of edges: whether they are within a cell of polygons, at first; then, whether their points are spare.
-  std::vector<std::uint8_t> edges;
-  std::vector<std::uint8_t> faces;
+  // Of edges: whether they are within a cell of polygons.
+  std::vector<std::uint8_t> within;
+  // Of edges, when these are settled, and of face points: whether they are spare.
+  std::vector<std::uint8_t> edges, faces;
 
   // Both cells at a diagonal must be of polygons.
   void settle_edges() {
+    edges = std::exchange(within, {});
     for (std::size_t n = 0; n < edges.size(); ++n)
       edges[n] = static_cast<std::uint8_t>(edges[n] | (above[n] & below[n]));
     above = below = {};

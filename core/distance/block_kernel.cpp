@@ -191,7 +191,7 @@ void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middl
     const auto place = static_cast<std::size_t>(near.places[number]);
     return beyond_error(lower_to({scratch.packed[place / kStride], place % kStride, place}, scratch.accurate, group));
   };
-  const double slack = slack_of(task.reach * kSlack, middle.radius);
+  const double slack = slack_of(task.reach * kReachSlack, middle.radius);
   const FirstLook first = find_bounds(near, middle, here, slack, scratch.bounds);
   if (first.bound > square_of_reach(task.reach)) return;
   double most = std::min(square_of_reach(task.reach), look_at(first.number));

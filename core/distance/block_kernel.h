@@ -25,6 +25,9 @@ inline constexpr std::size_t kSamplesOfBlock = kBlockSide * kBlockSide * kBlockS
   return (sample[2] * kBlockSide + sample[1]) * kBlockSide + sample[0];
 }
 
+// What reaches are multiplied by: more than roundings of sums take. beyond_error() adds those of distances.
+inline constexpr double kReachSlack = 1 + 1e-9;
+
 // Triangles that may be near some samples, in columns of equal length.
 struct NearTriangles {
   std::array<std::vector<double>, 3> lower, upper;  // their boxes

@@ -70,7 +70,7 @@ class Descent {
     const double square = is_narrow ? kNowhere : square_within(reach, center);
     if (square == kNowhere && !is_narrow) return visitor_.beyond(block);
     const double here = std::sqrt(square);
-    const double block_reach = std::min(band_, here + radius) * kSlack;
+    const double block_reach = std::min(band_, here + radius) * kReachSlack;
     const std::size_t axis = longest_axis(block);
     const std::size_t blocks = ends_[axis].count(block.begin[axis], block.end[axis]);
     if (blocks == 1 || is_narrow) {
@@ -92,11 +92,9 @@ class Descent {
   }
 
  private:
-  static constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; the tree adds those of distances
-
   // The squared distance of a triangle from q: of the nearest, if it is within `reach`. Infinite where none was found.
   [[nodiscard]] double square_within(double reach, const Vec3& q) const {
-    reach *= kSlack;
+    reach *= kReachSlack;
     return tree_.squared_distance(q, reach * reach);
   }
 
@@ -106,7 +104,7 @@ class Descent {
     const double packs = static_cast<double>(scratch_.packs.size()) / static_cast<double>(block.size());
     if (packs < kSearch) return false;
     const double here = std::sqrt(square_within(band_, center));
-    const double reach = std::min(band_, here) * kSlack;
+    const double reach = std::min(band_, here) * kReachSlack;
     const double most = (packs * 2 * radius / (2 * radius + reach) - kSearch) / kPackOfSearch;
     tree_.find_packs({center, center}, beyond_error(reach * reach), scratch_.packs.size(), searched_);
     if (static_cast<double>(searched_.size()) > most) return false;

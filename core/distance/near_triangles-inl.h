@@ -27,7 +27,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
-constexpr double kSlack = 1 + 1e-9;  // more than roundings of sums take; beyond_error() adds those of distances
 constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
 
 // Whatever is compressed into a list may write this far beyond its end.
@@ -142,7 +141,7 @@ struct Middle {
   }
 };
 
-double square_of_reach(double reach) { return beyond_error(reach * kSlack * (reach * kSlack)); }
+double square_of_reach(double reach) { return beyond_error(reach * kReachSlack * (reach * kReachSlack)); }
 
 // The triangles of packs that are near the block; their bearings from its middle where these are wanted.
 void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, NearTriangles& near) {

@@ -62,13 +62,7 @@ struct Volume {
     faces += other.faces;
     return *this;
   }
-  // Each product is off by a few units in the last place, each addition by one of the sum so far. 0 where that leaves
-  // the sign in doubt, or where something overflows.
-  [[nodiscard]] int sure_sign() const {
-    const double rounding = (static_cast<double>(faces) + 16.0) * std::numeric_limits<double>::epsilon() * terms;
-    const double trust = rounding + 0x1p-900;
-    return static_cast<int>(sum > trust) - static_cast<int>(sum < -trust);
-  }
+  [[nodiscard]] int sure_sign() const { return sure_volume_sign(sum, terms, faces); }
 };
 
 // Of the prism between a face and the plane x = from.x: the sum over a closed surface does not depend on the plane.
@@ -79,9 +73,8 @@ Volume volume_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) 
                 third = _mm_sub_pd(_mm_loadu_pd(&c.y), first);
   const __m128d products = _mm_mul_pd(second, _mm_shuffle_pd(third, third, 1));
   const double forth = _mm_cvtsd_f64(products), back = _mm_cvtsd_f64(_mm_unpackhi_pd(products, products));
-  constexpr double kUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
   return {(x1 + x2 + x3) * (forth - back),
-          (std::abs(x1) + std::abs(x2) + std::abs(x3)) * (std::abs(forth) + std::abs(back) + kUnderflow), 1};
+          (std::abs(x1) + std::abs(x2) + std::abs(x3)) * (std::abs(forth) + std::abs(back) + kVolumeUnderflow), 1};
 }
 
 // Of a closed mesh of one component, in any order: only its sure sign is used.

@@ -459,10 +459,10 @@ MUTANTS = [
         ("core/orientation/pieces.cpp", "    while (join()) {\n    }\n",
          "")]),
     Mutant("volume_sign_not_exact", "the sign of a volume is exact", [
-        ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles.size()) + 16.0) * 0x1p-52 * terms + 0x1p-900",
+        ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles) + 16.0) * 0x1p-52 * terms + 0x1p-900",
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
-        ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+        ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
     Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
         ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
     Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [

@@ -12,6 +12,7 @@ namespace raycone {
 
 class CellTriangles {
  public:
+  CellTriangles() = default;  // of no cells
   // Both only while this is made.
   CellTriangles(const TriangleMesh& mesh, const SurfaceCells& cells);
 

@@ -44,7 +44,7 @@ class SurfaceMaker {
         options_(options),
         normals_(mesh),
         cells_(inside),
-        triangles_(mesh, cells_),
+        triangles_(options.thickness > 0.0 ? CellTriangles() : CellTriangles(mesh, cells_)),
         creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, normals_, triangles_, cells_)),
         distance_(mesh),
         settler_(mesh, normals_, distance_, farthest_source(inside.lattice(), options.thickness)),

@@ -190,12 +190,10 @@ LabelCheck::LabelCheck(std::vector<DrawnSample> samples, const Rule& rule, bool 
 
 void LabelCheck::add(const TriangleMesh& part) {
   ++parts_;
-  parallel_for(samples_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::optional<bool> inside = inside_by_definition(part, samples_[n].point, rule_);
-      if (!inside) unresolved_[n] = 1;
-      if (inside.value_or(false) && !(first_wins_ && labels_[n] != 0)) labels_[n] = parts_;
-    }
+  parallel_for_each(samples_.size(), [&](std::size_t n) {
+    const std::optional<bool> inside = inside_by_definition(part, samples_[n].point, rule_);
+    if (!inside) unresolved_[n] = 1;
+    if (inside.value_or(false) && !(first_wins_ && labels_[n] != 0)) labels_[n] = parts_;
   });
 }
 

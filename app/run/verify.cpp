@@ -218,13 +218,11 @@ void check_bound(const std::string& name, const DrawnSample& sample, double boun
 std::vector<Truth> truths_of(const VerifiedMeshes& meshes, std::span<const DrawnSample> samples) {
   std::vector<Truth> truths(samples.size());
   const TriangleMesh& mesh = meshes.mesh;
-  parallel_for(samples.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      truths[n].winding = perturbed_direct_sum(mesh, samples[n].point);
-      if (samples[n].distance) truths[n].distance = direct_distance(mesh, samples[n].point);
-      if (samples[n].solid) truths[n].solid = direct_distance(*meshes.solid, samples[n].point);
-      if (samples[n].gradient) truths[n].gradient = direct_gradient(mesh, samples[n].point);
-    }
+  parallel_for_each(samples.size(), [&](std::size_t n) {
+    truths[n].winding = perturbed_direct_sum(mesh, samples[n].point);
+    if (samples[n].distance) truths[n].distance = direct_distance(mesh, samples[n].point);
+    if (samples[n].solid) truths[n].solid = direct_distance(*meshes.solid, samples[n].point);
+    if (samples[n].gradient) truths[n].gradient = direct_gradient(mesh, samples[n].point);
   });
   return truths;
 }

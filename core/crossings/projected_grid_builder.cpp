@@ -110,11 +110,9 @@ void ProjectedGridBuilder::Sizes::add(const Footprint& footprint, const Rectangl
 // Added up in an order that does not depend on threads.
 ProjectedGridBuilder::Sizes ProjectedGridBuilder::all_sizes(const Rectangle& box) const {
   std::vector<Sizes> sizes((mesh_.triangles.size() + kTrianglesOfATask - 1) / kTrianglesOfATask);
-  parallel_for(sizes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t last = std::min((n + 1) * kTrianglesOfATask, mesh_.triangles.size());
-      for (std::size_t i = n * kTrianglesOfATask; i < last; ++i) sizes[n].add(footprints_[i], box);
-    }
+  parallel_for_each(sizes.size(), [&](std::size_t n) {
+    const std::size_t last = std::min((n + 1) * kTrianglesOfATask, mesh_.triangles.size());
+    for (std::size_t i = n * kTrianglesOfATask; i < last; ++i) sizes[n].add(footprints_[i], box);
   });
   Sizes all;
   for (const Sizes& some : sizes) all += some;
@@ -348,9 +346,7 @@ void ProjectedGridBuilder::fill_blocks() {
       });
   result_.cells_.resize(std::size_t{grid.columns} * grid.rows);
   std::vector<Part> parts(blocks.size());
-  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) parts[n] = fill(blocks[n], triangles[n]);
-  });
+  parallel_for_each(blocks.size(), [&](std::size_t n) { parts[n] = fill(blocks[n], triangles[n]); });
   join(blocks, parts);
 }
 
@@ -368,23 +364,21 @@ void ProjectedGridBuilder::join(const std::vector<Cells>& blocks, const std::vec
   result_.grids_.resize(next.grids);
   result_.cells_.resize(next.cells);
   result_.entries_ = std::make_unique_for_overwrite<Entry[]>(next.entries);
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Offset& at = offsets[n];
-      const auto moved = [&](Cell cell) {
-        cell.first += cell.holds_grid() ? at.grids : at.entries;
-        return cell;
-      };
-      std::ranges::copy(parts[n].entries, result_.entries_.get() + at.entries);
-      std::ranges::transform(parts[n].cells, result_.cells_.data() + at.cells, moved);
-      std::ranges::transform(parts[n].grids, result_.grids_.data() + at.grids, [&](Grid grid) {
-        grid.first_cell += at.cells;
-        return grid;
-      });
-      for (std::uint32_t row = blocks[n].first_row; row <= blocks[n].last_row; ++row) {
-        Cell* const of_row = &result_.cells_[std::uint64_t{row} * root.columns];
-        for (std::uint32_t i = blocks[n].first_column; i <= blocks[n].last_column; ++i) of_row[i] = moved(of_row[i]);
-      }
+  parallel_for_each(parts.size(), [&](std::size_t n) {
+    const Offset& at = offsets[n];
+    const auto moved = [&](Cell cell) {
+      cell.first += cell.holds_grid() ? at.grids : at.entries;
+      return cell;
+    };
+    std::ranges::copy(parts[n].entries, result_.entries_.get() + at.entries);
+    std::ranges::transform(parts[n].cells, result_.cells_.data() + at.cells, moved);
+    std::ranges::transform(parts[n].grids, result_.grids_.data() + at.grids, [&](Grid grid) {
+      grid.first_cell += at.cells;
+      return grid;
+    });
+    for (std::uint32_t row = blocks[n].first_row; row <= blocks[n].last_row; ++row) {
+      Cell* const of_row = &result_.cells_[std::uint64_t{row} * root.columns];
+      for (std::uint32_t i = blocks[n].first_column; i <= blocks[n].last_column; ++i) of_row[i] = moved(of_row[i]);
     }
   });
 }

@@ -90,11 +90,9 @@ class RoughSides {
   // Of the parts of a box.
   void set_by_threads(std::span<const SampleBox> parts, std::span<const SampleBox> wanted, const RoughBox& box) {
     std::vector<std::vector<SampleBox>> undecided(parts.size());
-    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::vector<SampleBox> of_part = parts_in(parts[n], wanted);
-        if (!of_part.empty()) RoughSides(samples_, undecided[n]).set(parts[n], of_part, &box);
-      }
+    parallel_for_each(parts.size(), [&](std::size_t n) {
+      const std::vector<SampleBox> of_part = parts_in(parts[n], wanted);
+      if (!of_part.empty()) RoughSides(samples_, undecided[n]).set(parts[n], of_part, &box);
     });
     for (const std::vector<SampleBox>& of_part : undecided) {
       undecided_.insert(undecided_.end(), of_part.begin(), of_part.end());

@@ -82,17 +82,15 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<s
 void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<double> values,
                    std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   const std::size_t ny = rows.ys.size(), nz = rows.zs.size(), across = (ny + kBrick - 1) / kBrick;
-  parallel_for(across * ((nz + kBrick - 1) / kBrick), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t j = n % across * kBrick, k = n / across * kBrick;
-      const std::array j_range{j, std::min(j + kBrick, ny)}, k_range{k, std::min(k + kBrick, nz)};
-      add_far_field(mesh, rows, j_range, k_range, values);
-      for (std::size_t row = k_range[0]; diagnostics && row < k_range[1]; ++row) {
-        bound_errors(mesh, rows, row * ny + j_range[0], row * ny + j_range[1], values, *diagnostics);
-      }
-      const std::size_t samples = (j_range[1] - j) * (k_range[1] - k) * rows.xs.size();
-      if (done) done->fetch_add(samples, std::memory_order_relaxed);
+  parallel_for_each(across * ((nz + kBrick - 1) / kBrick), [&](std::size_t n) {
+    const std::size_t j = n % across * kBrick, k = n / across * kBrick;
+    const std::array j_range{j, std::min(j + kBrick, ny)}, k_range{k, std::min(k + kBrick, nz)};
+    add_far_field(mesh, rows, j_range, k_range, values);
+    for (std::size_t row = k_range[0]; diagnostics && row < k_range[1]; ++row) {
+      bound_errors(mesh, rows, row * ny + j_range[0], row * ny + j_range[1], values, *diagnostics);
     }
+    const std::size_t samples = (j_range[1] - j) * (k_range[1] - k) * rows.xs.size();
+    if (done) done->fetch_add(samples, std::memory_order_relaxed);
   });
 }
 

@@ -281,14 +281,6 @@ void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, 
   }
 }
 
-// visit(n) for all n below `count`, by all threads.
-template <class Visit>
-void for_each(std::size_t count, const Visit& visit) {
-  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) visit(n);
-  });
-}
-
 }  // namespace
 
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
@@ -309,14 +301,14 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
     count = std::min(count, blocks.size() - first);
     const bool by_certificates = blocks.are_worth_it();
     if (is_ready) {
-      for_each(count, [&](std::size_t n) { finish(blocks.certify(first + n, by_certificates)); });
+      parallel_for_each(count, [&](std::size_t n) { finish(blocks.certify(first + n, by_certificates)); });
       continue;
     }
     std::vector<Undecided> left(count);
-    for_each(count, [&](std::size_t n) { left[n] = blocks.certify(first + n, by_certificates); });
+    parallel_for_each(count, [&](std::size_t n) { left[n] = blocks.certify(first + n, by_certificates); });
     is_ready = std::ranges::any_of(left, [](const Undecided& u) { return !u.boxes.empty(); });
     if (is_ready) blocks.make_tree();
-    for_each(count, [&](std::size_t n) { finish(std::move(left[n])); });
+    parallel_for_each(count, [&](std::size_t n) { finish(std::move(left[n])); });
   }
 }
 

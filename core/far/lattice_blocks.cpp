@@ -46,9 +46,7 @@ class PartBlocks {
   // Divides all of `blocks` once, and moves those that are not divided to `done`.
   void divide_all(std::vector<SampleBlock>& blocks, std::vector<SampleBlock>& done) const {
     std::vector<std::vector<SampleBlock>> parts(blocks.size());
-    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) parts[n] = divided(blocks[n]);
-    });
+    parallel_for_each(blocks.size(), [&](std::size_t n) { parts[n] = divided(blocks[n]); });
     std::vector<SampleBlock> next;
     for (std::size_t n = 0; n < blocks.size(); ++n) {
       if (parts[n].empty()) done.push_back(std::move(blocks[n]));
@@ -89,12 +87,8 @@ void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<Sampl
   walk.make_fields(all);
   std::vector<SampleBlock> blocks = std::move(all.children), done;
   while (!blocks.empty() && blocks.size() + done.size() < kEnough) of_part.divide_all(blocks, done);
-  parallel_for(done.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) of_part.evaluate(done[n]);
-  });
-  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) of_part.divide_and_evaluate(std::move(blocks[n]));
-  });
+  parallel_for_each(done.size(), [&](std::size_t n) { of_part.evaluate(done[n]); });
+  parallel_for_each(blocks.size(), [&](std::size_t n) { of_part.divide_and_evaluate(std::move(blocks[n])); });
 }
 
 void LatticeBlocks::count_terms(const Cover& cover, std::size_t samples) const {

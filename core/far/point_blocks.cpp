@@ -132,9 +132,7 @@ void PointBlocks::prepare(std::span<const std::uint32_t> groups) const {
   };
   std::vector<Work> level{{whole_.get(), {groups.begin(), groups.end()}}}, done;
   while (!level.empty()) {
-    parallel_for(level.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) make(*level[n].block);
-    });
+    parallel_for_each(level.size(), [&](std::size_t n) { make(*level[n].block); });
     std::vector<Work> next;
     for (Work& work : level) {
       for (const std::unique_ptr<Block>& part : work.block->parts) {
@@ -147,10 +145,8 @@ void PointBlocks::prepare(std::span<const std::uint32_t> groups) const {
     }
     level = std::move(next);
   }
-  parallel_for(done.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      for (const std::uint32_t group : done[n].groups) make(group, *done[n].block);
-    }
+  parallel_for_each(done.size(), [&](std::size_t n) {
+    for (const std::uint32_t group : done[n].groups) make(group, *done[n].block);
   });
 }
 

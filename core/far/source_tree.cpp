@@ -206,9 +206,7 @@ void SourceTree::expand() {
     finish(node, multipole);
     return multipole;
   };
-  parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) done[i] = expand_node(expand_node, pieces[i]);
-  });
+  parallel_for_each(pieces.size(), [&](std::size_t i) { done[i] = expand_node(expand_node, pieces[i]); });
   expand_node(expand_node, 0);
 }
 

@@ -23,9 +23,7 @@ class Buckets {
     const std::size_t size = std::max(kChunk, count);  // so that there are no more places to count than inputs
     const std::size_t chunks = (inputs + size - 1) / size;
     const auto for_each_chunk = [&](const auto& body) {
-      parallel_for(chunks, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t c = first; c < last; ++c) body(c, c * size, std::min(inputs, (c + 1) * size));
-      });
+      parallel_for_each(chunks, [&](std::size_t c) { body(c, c * size, std::min(inputs, (c + 1) * size)); });
     };
     std::vector<std::size_t> places(chunks * count, 0);  // per chunk and bucket: how many items, then where the next is
     for_each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {

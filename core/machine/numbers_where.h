@@ -19,11 +19,9 @@ template <class Holds>
   const std::size_t chunks = (count + kChunk - 1) / kChunk;
   std::vector<std::size_t> places(chunks + 1, 0);
   const auto for_each_chunk = [&](const auto& visit) {
-    parallel_for(chunks, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t chunk = first; chunk < last; ++chunk) {
-        for (std::size_t n = chunk * kChunk; n < std::min(count, (chunk + 1) * kChunk); ++n) {
-          if (holds(static_cast<std::uint32_t>(n))) visit(chunk, static_cast<std::uint32_t>(n));
-        }
+    parallel_for_each(chunks, [&](std::size_t chunk) {
+      for (std::size_t n = chunk * kChunk; n < std::min(count, (chunk + 1) * kChunk); ++n) {
+        if (holds(static_cast<std::uint32_t>(n))) visit(chunk, static_cast<std::uint32_t>(n));
       }
     });
   };

@@ -52,9 +52,7 @@ void find_first(std::span<const HashedVertex> bucket, const Same& same, std::vec
 
 template <class Same>
 void find_first(const Buckets<HashedVertex>& buckets, const Same& same, std::vector<std::uint32_t>& first) {
-  parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) find_first(buckets[n], same, first);
-  });
+  parallel_for_each(buckets.count(), [&](std::size_t n) { find_first(buckets[n], same, first); });
 }
 
 bool all_equal(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& first) {

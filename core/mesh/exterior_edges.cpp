@@ -222,11 +222,9 @@ std::vector<ExteriorEdge> unordered_exterior_edges(const TriangleMesh& mesh, Ver
   constexpr std::size_t kMaxRanges = 8;  // more would only read the triangles more often
   const std::size_t ranges = std::min<std::size_t>(kMaxRanges, static_cast<std::size_t>(thread_count()));
   std::vector<PartOfEdges> parts(ranges);
-  parallel_for(ranges, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t vertices = mesh.vertices.size();
-      parts[n] = exterior_edges_of(mesh, vertices * n / ranges, vertices * (n + 1) / ranges, links);
-    }
+  parallel_for_each(ranges, [&](std::size_t n) {
+    const std::size_t vertices = mesh.vertices.size();
+    parts[n] = exterior_edges_of(mesh, vertices * n / ranges, vertices * (n + 1) / ranges, links);
   });
   std::vector<ExteriorEdge> edges;
   for (const PartOfEdges& part : parts) {

@@ -283,11 +283,9 @@ MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorE
   const DefaultFloatingPoint guard;
   Components components;
   std::vector<std::uint32_t> opposite;
-  parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      if (n == 0) components = components_of(welded, links);
-      if (n == 1) opposite = opposite_faces(welded, links);
-    }
+  parallel_for_each(2, [&](std::size_t n) {
+    if (n == 0) components = components_of(welded, links);
+    if (n == 1) opposite = opposite_faces(welded, links);
   });
   MeshDefects defects;
   defects.inconsistent_edges = count_inconsistent_edges(welded, edges);

@@ -136,11 +136,8 @@ class RunOrder {
       split(middle, end, run, width);
       return;
     }
-    parallel_for(2, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t half = first; half < last; ++half) {
-        half == 0 ? split(begin, middle, run, width) : split(middle, end, run, width);
-      }
-    });
+    parallel_for_each(
+        2, [&](std::size_t half) { half == 0 ? split(begin, middle, run, width) : split(middle, end, run, width); });
   }
 
   // Of the middles' box; where they are many, of that of some of them.

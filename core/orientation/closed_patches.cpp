@@ -18,9 +18,7 @@ int outward_sign(const ClosedSurface& surface, const std::vector<Vec3>& vertices
 
 std::vector<int> outward_signs(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
   std::vector<int> signs(patches.size());
-  parallel_for(patches.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) signs[i] = outward_sign(patches[i].surface, vertices);
-  });
+  parallel_for_each(patches.size(), [&](std::size_t i) { signs[i] = outward_sign(patches[i].surface, vertices); });
   return signs;
 }
 

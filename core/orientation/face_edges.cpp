@@ -33,25 +33,23 @@ FaceEdges::FaceEdges(const std::vector<Triangle>& faces, std::size_t vertices) :
     neighbours_[t.face()][corner_of(faces[t.face()], t.forward() ? t.low : t.high)] = bits;
   };
   std::vector<std::vector<UnpairedEdge>> unpaired(buckets.count());
-  parallel_for(buckets.count(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) {
-      const std::vector<FiledEdge> all = sorted_traversals(std::span<const FiledEdge>(buckets[n]));
-      for (auto it = all.begin(); it != all.end();) {
-        auto end = it + 1;
-        while (end != all.end() && end->low == it->low && end->high == it->high) ++end;
-        if (end - it == 2) {
-          const std::uint32_t disagree = it->forward() == it[1].forward();
-          set_neighbour(it[0], it[1].face() << 1 | disagree);
-          set_neighbour(it[1], it[0].face() << 1 | disagree);
-        } else {
-          UnpairedEdge& edge = unpaired[n].emplace_back(UnpairedEdge{it->low, it->high, {}});
-          for (auto t = it; t != end; ++t) {
-            set_neighbour(*t, kNone);
-            edge.faces.push_back({t->face(), t->forward() ? 1 : -1});
-          }
+  parallel_for_each(buckets.count(), [&](std::size_t n) {
+    const std::vector<FiledEdge> all = sorted_traversals(std::span<const FiledEdge>(buckets[n]));
+    for (auto it = all.begin(); it != all.end();) {
+      auto end = it + 1;
+      while (end != all.end() && end->low == it->low && end->high == it->high) ++end;
+      if (end - it == 2) {
+        const std::uint32_t disagree = it->forward() == it[1].forward();
+        set_neighbour(it[0], it[1].face() << 1 | disagree);
+        set_neighbour(it[1], it[0].face() << 1 | disagree);
+      } else {
+        UnpairedEdge& edge = unpaired[n].emplace_back(UnpairedEdge{it->low, it->high, {}});
+        for (auto t = it; t != end; ++t) {
+          set_neighbour(*t, kNone);
+          edge.faces.push_back({t->face(), t->forward() ? 1 : -1});
         }
-        it = end;
       }
+      it = end;
     }
   });
   for (auto& part : unpaired) unpaired_.insert(unpaired_.end(), part.begin(), part.end());

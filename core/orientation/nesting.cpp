@@ -68,10 +68,8 @@ class NestingCandidates {
       for (const std::uint32_t outer : around_[i]) within[outer].push_back(i);
     }
     std::vector<std::vector<std::uint32_t>> dropped(surfaces_.size());
-    parallel_for(surfaces_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t outer = begin; outer < end; ++outer) {
-        if (!within[outer].empty()) dropped[outer] = not_within(outer, within[outer], used, most);
-      }
+    parallel_for_each(surfaces_.size(), [&](std::size_t outer) {
+      if (!within[outer].empty()) dropped[outer] = not_within(outer, within[outer], used, most);
     });
     for (std::uint32_t outer = 0; outer < surfaces_.size(); ++outer) {
       for (const std::uint32_t i : dropped[outer]) std::erase(around_[i], outer);

@@ -27,10 +27,8 @@ std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& pa
   }
   constexpr std::size_t kSamples = 1024, kLeast = 4, kMost = 64;
   const std::size_t each = std::clamp(kSamples / all.size(), kLeast, kMost);
-  parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      all[n].samples = sample_surface(patches[all[n].number].surface.faces, vertices, each);
-    }
+  parallel_for_each(all.size(), [&](std::size_t n) {
+    all[n].samples = sample_surface(patches[all[n].number].surface.faces, vertices, each);
   });
   std::erase_if(all, [](const OutermostPatch& patch) { return patch.samples.empty(); });
   std::ranges::sort(all, [](const OutermostPatch& a, const OutermostPatch& b) {

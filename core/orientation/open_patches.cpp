@@ -127,9 +127,7 @@ class OpenSurfaceTurner::Search {
     for (std::size_t first = 0; first < surfaces_.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, surfaces_.size() - first);
       std::vector<std::vector<TurnProblem::Effect>> of_surface(count);
-      parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) of_surface[i] = effects(first + i, samples_of[first + i]);
-      });
+      parallel_for_each(count, [&](std::size_t i) { of_surface[i] = effects(first + i, samples_of[first + i]); });
       for (const auto& its : of_surface) result.add_surface(its);
     }
     return result;

@@ -90,9 +90,7 @@ std::vector<SameFaces> repeated_faces(const std::vector<Triangle>& corners, std:
     }
   });
   std::vector<std::vector<SameFaces>> parts(count);
-  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) add_repeated(buckets[n], parts[n]);
-  });
+  parallel_for_each(count, [&](std::size_t n) { add_repeated(buckets[n], parts[n]); });
   std::vector<SameFaces> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   std::sort(all.begin(), all.end(), [](const SameFaces& a, const SameFaces& b) {

@@ -155,11 +155,7 @@ CellTriangles::CellTriangles(const TriangleMesh& mesh, const SurfaceCells& cells
                                            }
                                          });
   std::vector<std::vector<InCell>> layers(count);
-  const auto for_each_layer = [&](const auto& visit) {
-    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) visit(k);
-    });
-  };
+  const auto for_each_layer = [&](const auto& visit) { parallel_for_each(count, visit); };
   for_each_layer([&](std::size_t k) {
     for (const std::uint32_t triangle : triangles[k]) {
       finder.find(triangle, static_cast<std::int64_t>(k), [&](std::uint32_t cell) {

@@ -357,13 +357,11 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
       of_edges->resize(edge_points.size());
     spare.faces.resize(face_points.positions().size());
   }
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part) {
-      CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part],
-                          kind == ContourCells::kPolygons ? &spare : nullptr);
-      for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
-        contour.add(static_cast<std::uint32_t>(cell));
-      }
+  parallel_for_each(parts.size(), [&](std::size_t part) {
+    CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part],
+                        kind == ContourCells::kPolygons ? &spare : nullptr);
+    for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
+      contour.add(static_cast<std::uint32_t>(cell));
     }
   });
   if (kind == ContourCells::kTetrahedra) return joined(parts, edge_points, face_points.positions(), nullptr);

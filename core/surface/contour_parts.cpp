@@ -154,9 +154,7 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
   TriangleMesh& mesh = contoured.surface.mesh;
   std::vector<std::int32_t>& sources = contoured.surface.sources;
   const auto for_each_part = [&](const auto& join) {
-    parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t last) {
-      for (std::size_t n = begin; n < last; ++n) join(parts[n], places[n]);
-    });
+    parallel_for_each(parts.size(), [&](std::size_t n) { join(parts[n], places[n]); });
   };
   mesh.triangles.reserve(with_spares(end.triangles));
   resize_on_all_threads(mesh.triangles, end.triangles);

@@ -85,11 +85,7 @@ SurfaceCells::SurfaceCells(const NodeSet& nodes) : lattice_(nodes.lattice()) {
   assert(!nodes.reaches_border());
   constexpr std::uint64_t kMostEdges = 0x7FFFFFF0;
   std::vector<Layer> layers(static_cast<std::size_t>(lattice_.counts[2]));
-  const auto for_each_layer = [&](const auto& visit) {
-    parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) visit(k);
-    });
-  };
+  const auto for_each_layer = [&](const auto& visit) { parallel_for_each(layers.size(), visit); };
   for_each_layer([&](std::size_t k) { layers[k] = layer_of(nodes, static_cast<std::int64_t>(k)); });
   std::uint64_t cells = 0, edges = 0;
   for (Layer& layer : layers) {

@@ -107,9 +107,7 @@ class TypedElements final : public ArrayElements {
     if (x_begin == 0) check_range(numbers);
     const auto ny = static_cast<std::size_t>(block.counts[1]), nz = static_cast<std::size_t>(block.counts[2]);
     elements_.resize((x_end - x_begin) * ny * nz);
-    parallel_for(ny, 1, [&](std::size_t y_begin, std::size_t y_end) {
-      for (std::size_t y = y_begin; y < y_end; ++y) transpose_row(block, numbers, y, x_begin, x_end);
-    });
+    parallel_for_each(ny, [&](std::size_t y) { transpose_row(block, numbers, y, x_begin, x_end); });
     return bytes();
   }
 

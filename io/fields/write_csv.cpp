@@ -92,12 +92,10 @@ class RowWriter {
       const std::size_t rows = std::min(count - begin, kPieces * kPieceRows);
       const std::size_t pieces = (rows + kPieceRows - 1) / kPieceRows;
       while (pieces_.size() < pieces) pieces_.emplace_back(longest_row_ * kPieceRows);
-      parallel_for(pieces, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) {
-          const std::size_t from = begin + n * kPieceRows;
-          char* const text = pieces_[n].text.get();
-          pieces_[n].end = print_rows(text, from, std::min(from + kPieceRows, count));
-        }
+      parallel_for_each(pieces, [&](std::size_t n) {
+        const std::size_t from = begin + n * kPieceRows;
+        char* const text = pieces_[n].text.get();
+        pieces_[n].end = print_rows(text, from, std::min(from + kPieceRows, count));
       });
       for (std::size_t n = 0; n < pieces; ++n) {
         const char* const text = pieces_[n].text.get();

@@ -56,9 +56,7 @@ class LeafLayer {
   void gather(const LatticeBlock& slab, std::span<const Number> numbers, std::int64_t z_begin, std::int64_t z_end,
               const Store& store) {
     const Planes<Number> planes{slab, numbers, z_begin, z_end};
-    parallel_for(static_cast<std::size_t>(counts_[1]), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) gather_row(planes, row, store);
-    });
+    parallel_for_each(static_cast<std::size_t>(counts_[1]), [&](std::size_t row) { gather_row(planes, row, store); });
   }
 
   // Starts the next layer.

@@ -173,8 +173,8 @@ void check_finite(const Lattice& lattice) {
   }
 }
 
-void check_positive(const Vec3& spacing) {
-  if (std::min({spacing.x, spacing.y, spacing.z}) > 0.0) return;
+void check_positive_spacing(const Lattice& lattice) {
+  if (lattice.least_spacing() > 0.0) return;
   throw LimitError("the lattice's spacing is too small for double precision; see --scale");
 }
 
@@ -210,7 +210,7 @@ Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request, std::
   if (const auto* padding = std::get_if<WorldPadding>(&request.padding)) box = widened(box, *padding);
   check_finite(box);
   Lattice lattice = sample(box, request, warnings);
-  check_positive(lattice.spacing);
+  check_positive_spacing(lattice);
   if (const auto* padding = std::get_if<VoxelPadding>(&request.padding)) add_samples(lattice, *padding);
   check_finite(lattice);
   return lattice;

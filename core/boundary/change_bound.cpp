@@ -55,12 +55,8 @@ void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& 
 ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_kernel(level)) {
   if (caps.mesh.triangles.empty()) return;  // edges there and back, which add nothing
   const Box box = bounding_box(caps.mesh);
-  double largest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
   piece_ = longest_side(box) / kPiecesAlong;
-  place_error_ = kPlaceError * largest;
+  place_error_ = kPlaceError * largest_coordinate(box);
   add_edges(caps.wide_loops);
   add_narrow(caps);
   add_wide(caps);

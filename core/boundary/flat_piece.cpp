@@ -12,8 +12,6 @@ namespace {
 constexpr double kPlaneError = 0x1p-44;
 constexpr double kLeastLength = 0x1p-200;
 
-double largest(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
-
 bool overlap(const Box& a, const Box& b) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(a.lower[axis] <= b.upper[axis] && b.lower[axis] <= a.upper[axis])) return false;
@@ -25,7 +23,7 @@ bool overlap(const Box& a, const Box& b) {
 
 FlatPiece FlatPiece::of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Box& box) {
   const Vec3 ab = b - a, ac = c - a;
-  const double length = std::max(largest(ab), largest(ac));
+  const double length = std::max(largest_coordinate(ab), largest_coordinate(ac));
   if (!(length >= kLeastLength)) return {box, a, {}, 0.0};
   return {box, a, cross(ab, ac), length * length};
 }
@@ -43,7 +41,7 @@ bool FlatPiece::may_meet(const Box& other) const {
   if (!overlap(box_, other)) return false;
   const Vec3 to_middle = middle(other) - corner_, half = 0.5 * (other.upper - other.lower);
   const double reach = std::abs(normal_.x) * half.x + std::abs(normal_.y) * half.y + std::abs(normal_.z) * half.z;
-  const double farthest = std::max({largest(corner_), largest(other.lower), largest(other.upper)});
+  const double farthest = std::max(largest_coordinate(corner_), largest_coordinate(other));
   return !(std::abs(dot(normal_, to_middle)) > reach + kPlaneError * farthest * magnitude_);
 }
 

@@ -28,7 +28,7 @@ constexpr double kLongest = 0x1p60;
 
 bool is_long(const Vec3& a, const Vec3& b) {
   const Vec3 side = b - a;
-  return !(std::max({std::abs(side.x), std::abs(side.y), std::abs(side.z)}) < kLongest);
+  return !(largest_coordinate(side) < kLongest);
 }
 
 constexpr double kManyCopies = 256;  // equal faces

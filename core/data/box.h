@@ -45,6 +45,11 @@ inline double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
+// The largest magnitude of a coordinate of its points.
+inline double largest_coordinate(const Box& box) {
+  return std::max(largest_coordinate(box.lower), largest_coordinate(box.upper));
+}
+
 // The first of those along which it is longest.
 inline int longest_axis(const Box& box) {
   const Vec3 size = box.upper - box.lower;

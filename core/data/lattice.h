@@ -30,6 +30,8 @@ struct Lattice {
     const auto a = static_cast<std::size_t>(axis);
     return index_min[a] + counts[a] - 1;
   }
+  [[nodiscard]] double least_spacing() const { return std::min({spacing.x, spacing.y, spacing.z}); }
+  [[nodiscard]] double largest_spacing() const { return std::max({spacing.x, spacing.y, spacing.z}); }
 
   // The inverse of coordinate(), up to rounding: an index that need not be whole. Of two coordinates, the larger one
   // never has the smaller index.
@@ -53,6 +55,13 @@ struct Lattice {
     return cell_of(axis, index_at(axis, coordinate));
   }
 };
+
+// The largest magnitude of a coordinate of its samples.
+[[nodiscard]] inline double largest_coordinate(const Lattice& lattice) {
+  return std::max(
+      largest_coordinate(lattice.position(lattice.index_min)),
+      largest_coordinate(lattice.position({lattice.index_max(0), lattice.index_max(1), lattice.index_max(2)})));
+}
 
 // Evaluators count the samples along an axis of a block in 32 bits.
 inline constexpr std::int64_t kMaxBlockSide = 0xFFFFFFFF;

@@ -1,6 +1,7 @@
 // A point or vector of three doubles.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <compare>
 
@@ -33,6 +34,9 @@ inline Vec3 cross_terms(const Vec3& a, const Vec3& b) {
   return {std::abs(a.y * b.z) + std::abs(a.z * b.y), std::abs(a.z * b.x) + std::abs(a.x * b.z),
           std::abs(a.x * b.y) + std::abs(a.y * b.x)};
 }
+
+// The largest magnitude of a coordinate.
+inline double largest_coordinate(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
 // By x, then y, then z: a total order, also of non-finite vertices that no triangle uses.
 inline std::strong_ordering lexicographic_order(const Vec3& a, const Vec3& b) {

@@ -60,8 +60,6 @@ void for_each_point(std::span<const Vec3> points, const Visit& visit) {
 constexpr double kFar = 0x1p55;
 constexpr double kLargest = std::numeric_limits<double>::max();  // of distances, too
 
-double largest_coordinate(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
-
 // From the origin. Its squares neither overflow nor vanish.
 double length_without_overflow(const Vec3& p) {
   int exponent = 0;

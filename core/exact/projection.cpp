@@ -96,7 +96,7 @@ Vec3 area_direction(std::span<const Vec3> corners) {
   const double needed = 0x1p-23 * static_cast<double>(corners.size() + 4) * whole;
   const bool sure = size > needed && size > kTurnUnderflow && std::isfinite(size);
   if (!sure) return exact_area_direction(corners);
-  const int exponent = std::ilogb(std::max({std::abs(area.x), std::abs(area.y), std::abs(area.z)}));
+  const int exponent = std::ilogb(largest_coordinate(area));
   return {std::ldexp(area.x, -exponent), std::ldexp(area.y, -exponent), std::ldexp(area.z, -exponent)};
 }
 

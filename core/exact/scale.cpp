@@ -51,7 +51,7 @@ bool any_corner_reaches(const TriangleMesh& mesh, double magnitude) {
   return std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
     return std::ranges::any_of(triangle, [&](std::uint32_t v) {
       const Vec3& p = mesh.vertices[v];
-      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) >= magnitude;
+      return largest_coordinate(p) >= magnitude;
     });
   });
 }

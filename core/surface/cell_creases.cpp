@@ -130,8 +130,7 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const TriangleNormals& normal
 
 void CellCreases::find_ends(const SurfaceCells& cells) {
   constexpr double kReach = 0x1p-4, kRounding = 0x1p-8;  // of a cell's side
-  const Lattice& lattice = cells.lattice();
-  end_reach_ = kReach * std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
+  end_reach_ = kReach * cells.lattice().least_spacing();
   near_ends_.assign(cells.cells().size(), 0);
   std::vector<bool> is_end(mesh_->vertices.size(), false);
   for (std::size_t triangle = 0; triangle < sides_.size(); ++triangle) {

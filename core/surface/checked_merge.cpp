@@ -88,8 +88,7 @@ class CheckedMerger {
   std::optional<SurfaceMesh> merged_within(double most, bool all) {
     const std::vector<Vec3>& vertices = surface_.mesh.vertices;
     const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
-    const Vec3& h = inside_.lattice().spacing;
-    const double unit = margin_ * std::min({h.x, h.y, h.z});
+    const double unit = margin_ * inside_.lattice().least_spacing();
     kept_.assign(vertices.size(), false);
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most * unit, kNeedle * unit});
     RepeatedCheck check(inside_, vertices.size());

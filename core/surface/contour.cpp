@@ -29,10 +29,6 @@ struct Loop {
   void add(std::uint32_t vertex, const EdgePoint* point) { corners[size++] = {vertex, point}; }
 };
 
-double least_spacing(const Lattice& lattice) {
-  return std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
-}
-
 class CellContour {
  public:
   CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
@@ -42,7 +38,7 @@ class CellContour {
         face_points_(face_points),
         creases_(creases),
         corner_cells_(cells),
-        polygons_(cells, edge_points, face_points, creases_, corner_cells_, margin * least_spacing(cells.lattice())),
+        polygons_(cells, edge_points, face_points, creases_, corner_cells_, margin * cells.lattice().least_spacing()),
         spare_(spare),
         tolerance_(tolerance),
         margin_(margin),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
@@ -142,24 +141,14 @@ std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& crease
 
 // plane_tolerance() of coordinates that are what they say, whatever their format rounds.
 double fine_tolerance(const Lattice& lattice) {
-  double largest = 0.0, least = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-    largest = std::max({largest, std::abs(low), std::abs(lattice.coordinate(axis, lattice.index_max(axis)))});
-    least = std::min(least, lattice.spacing[axis]);
-  }
-  return std::max(kVoxels * least, kDouble * largest);
+  return std::max(kVoxels * lattice.least_spacing(), kDouble * largest_coordinate(lattice));
 }
 
-double largest_margin(const SurfaceCells& cells, double margin) {
-  const Vec3& h = cells.lattice().spacing;
-  return margin * std::max({h.x, h.y, h.z});
-}
+double largest_margin(const SurfaceCells& cells, double margin) { return margin * cells.lattice().largest_spacing(); }
 
 }  // namespace
 
 double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
-  const Vec3& h = lattice.spacing;
   double largest = 0.0;
   bool single = true;
   for (const Triangle& t : mesh.triangles) {
@@ -172,7 +161,7 @@ double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
     }
   }
   constexpr double kSingle = 0x1p-22;
-  return std::max(kVoxels * std::min({h.x, h.y, h.z}), (single ? kSingle : kDouble) * largest);
+  return std::max(kVoxels * lattice.least_spacing(), (single ? kSingle : kDouble) * largest);
 }
 
 std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell, std::size_t face) {

@@ -137,8 +137,7 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
 // Nodes near each face after, row by row along the axis that it is steepest to. Where there is much between the faces,
 // most of these rows are beside it: then a node below the vertex is found sooner.
 bool StarChange::passes_node(const Lattice& lattice, double distance) const {
-  const double least_spacing = std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z});
-  if (distance > least_spacing && passes_node_below_vertex(lattice)) return true;
+  if (distance > lattice.least_spacing() && passes_node_below_vertex(lattice)) return true;
   for (const Corners3& c : after_) {
     const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
     const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};

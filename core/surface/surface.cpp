@@ -101,8 +101,7 @@ class SurfaceMaker {
   // triangles.
   [[nodiscard]] FacePoints points_of_sections(const SurfaceMargins& margins) const {
     FacePoints sharp(cells_, points_, creases_, tolerance_, margins, PointsOfFaces::kSections);
-    const Vec3& h = inside_.lattice().spacing;
-    const double unit = margins.inner * std::min({h.x, h.y, h.z});
+    const double unit = margins.inner * inside_.lattice().least_spacing();
     const std::vector<std::uint8_t> pays = polygons_at_sections(cells_, points_, sharp, creases_, unit);
     sharp.keep_sections_at(pays, cells_, points_, creases_, tolerance_, margins);
     return sharp;
@@ -167,22 +166,21 @@ class SurfaceMaker {
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
   [[nodiscard]] bool sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) const {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
-    const Vec3& h = inside_.lattice().spacing;
-    const double least = std::min({h.x, h.y, h.z}), most = std::max({h.x, h.y, h.z});
-    return checked_sharpen(surface, mesh_, normals_, distance_, inside_.lattice(),
-                           {kOff * margins.inner * most, kReach * least, options_.single_precision, fewer});
+    const Lattice& lattice = inside_.lattice();
+    return checked_sharpen(surface, mesh_, normals_, distance_, lattice,
+                           {kOff * margins.inner * lattice.largest_spacing(), kReach * lattice.least_spacing(),
+                            options_.single_precision, fewer});
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
   static double farthest_source(const Lattice& lattice, double thickness) {
-    return thickness + std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}) / 4;
+    return thickness + lattice.least_spacing() / 4;
   }
 
   // What is left of `simplify` for pulls, as merging has moved points already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargin = 1.0 - 1e-6;
-    const Vec3& h = inside_.lattice().spacing;
-    return kMargin * options_.simplify - kMostMerging * margins.inner * std::max({h.x, h.y, h.z});
+    return kMargin * options_.simplify - kMostMerging * margins.inner * inside_.lattice().largest_spacing();
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
@@ -237,15 +235,6 @@ class SurfaceMaker {
   std::vector<EdgePoint> points_;
 };
 
-double largest_coordinate(const Lattice& lattice) {
-  double largest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-    largest = std::max({largest, std::abs(low), std::abs(lattice.coordinate(axis, lattice.index_max(axis)))});
-  }
-  return largest;
-}
-
 // What the surface is made of.
 struct SurfaceInput {
   TriangleMesh mesh;
@@ -299,20 +288,18 @@ std::optional<FinishedSurface> surface_in_scale(const TriangleMesh& mesh, const 
 
 double surface_margin(const Lattice& lattice, bool single_precision) {
   constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8;
-  const Vec3& h = lattice.spacing;
   const double rounding = std::max((single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice), 0x1p-1074);
-  return std::max(kLeast, kRoundings * rounding / std::min({h.x, h.y, h.z}));
+  return std::max(kLeast, kRoundings * rounding / lattice.least_spacing());
 }
 
 FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
   constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
-  const Vec3& h = inside.lattice().spacing;
   const double largest = largest_coordinate(inside.lattice());
   const double margin = surface_margin(inside.lattice(), options.single_precision);
   const std::string precision = options.single_precision ? "single precision" : "double precision";
-  const bool fits_float = largest < kLargestFloat && std::min({h.x, h.y, h.z}) > kLeastVoxel;
+  const bool fits_float = largest < kLargestFloat && inside.lattice().least_spacing() > kLeastVoxel;
   const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMost);
   if (is_tiny || (options.single_precision && !fits_float)) {
     throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");

@@ -64,25 +64,13 @@ std::vector<double> distances_from_sources(const SurfaceMesh& surface, const Tri
   return distances;
 }
 
-// Of the mesh and the lattice, which a surface is within.
-double largest_coordinate(const TriangleMesh& mesh, const Lattice& lattice) {
-  const Box box = bounding_box(mesh);
-  double largest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double first = lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)]);
-    const double last = lattice.coordinate(axis, lattice.index_max(axis));
-    largest =
-        std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis]), std::abs(first), std::abs(last)});
-  }
-  return largest;
-}
-
 // Vertices are looked at by decreasing distance from their sources, which is theirs from the mesh nearly always: few
 // need a search.
 double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
   // Far more than what either distance rounds, and little beside the margin by which points may be off.
   constexpr double kRoundings = 64 * 0x1p-53, kRounding = 1.0 + 1e-9;
-  const double rounding = kRoundings * largest_coordinate(mesh, lattice);
+  // The lattice is around the surface.
+  const double rounding = kRoundings * std::max(largest_coordinate(bounding_box(mesh)), largest_coordinate(lattice));
   const std::vector<double> at_most = distances_from_sources(surface, mesh, rounding);
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t v = 0; v < at_most.size(); ++v) {
@@ -286,8 +274,7 @@ class MissedBy {
  public:
   MissedBy(const TriangleMesh& mesh, const RuleAlong& rule, const NodeSet& inside, double thickness)
       : mesh_(mesh), rule_(rule), inside_(inside), thickness_(thickness) {
-    const Vec3& h = inside.lattice().spacing;
-    step_ = surface_margin(inside.lattice(), false) * std::min({h.x, h.y, h.z});
+    step_ = surface_margin(inside.lattice(), false) * inside.lattice().least_spacing();
   }
 
   [[nodiscard]] std::vector<bool> of(const AreaSamples& samples, const std::vector<bool>& dropped) const {

@@ -86,8 +86,7 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
 
 std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance, double thickness,
                                          const SurfaceCells& cells, const SurfaceMargins& margins) {
-  const Vec3& h = cells.lattice().spacing;
-  const ThickRule thick(rule, distance, thickness, std::min({h.x, h.y, h.z}));
+  const ThickRule thick(rule, distance, thickness, cells.lattice().least_spacing());
   std::vector<Bracket> brackets = mixed_edges(cells);
   find_roots(brackets, [&](const std::vector<Vec3>& places) { return thick.at(places); });
   std::vector<Vec3> places;

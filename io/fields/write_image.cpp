@@ -135,7 +135,6 @@ bool fits_float(const Vec3& v) {
 
 // How far the sform, in 32 bits, displaces a sample at most, in voxels: all are sums of its columns.
 double nifti_displacement(const PlacedLattice& lattice) {
-  const Vec3& spacing = lattice.grid.spacing;
   const auto rounding = [](double number) {
     return std::abs(static_cast<double>(static_cast<float>(number)) - number);
   };
@@ -145,7 +144,7 @@ double nifti_displacement(const PlacedLattice& lattice) {
     for (std::size_t n = 0; n < 3; ++n) {
       sum += static_cast<double>(lattice.grid.counts[n] - 1) * rounding(lattice.steps[n][axis]);
     }
-    most = std::max(most, sum / std::min({spacing.x, spacing.y, spacing.z}));
+    most = std::max(most, sum / lattice.grid.least_spacing());
   }
   return most;
 }
@@ -158,7 +157,7 @@ void check_nifti(const PlacedLattice& lattice, const std::string& name) {
                       " samples along an axis do not fit in the 16 bits of NIfTI-1");
   }
   const Vec3& spacing = lattice.grid.spacing;
-  const auto least = static_cast<float>(std::min({spacing.x, spacing.y, spacing.z}));
+  const auto least = static_cast<float>(lattice.grid.least_spacing());
   if (!fits_float(spacing) || !fits_float(first_sample(lattice)) || least < std::numeric_limits<float>::min()) {
     throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
   }

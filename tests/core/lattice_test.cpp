@@ -15,6 +15,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // All numbers are exact.
 const Lattice kBinary{{1, -2, 0}, {0.5, 0.25, 4}, {-3, 2, 0}, {4, 5, 6}};
 
+TEST(Lattice, ItsMeasures) {
+  EXPECT_EQ(kBinary.least_spacing(), 0.25);
+  EXPECT_EQ(kBinary.largest_spacing(), 4.0);
+  EXPECT_EQ(largest_coordinate(kBinary), 20.0);                                            // z of the last sample
+  EXPECT_EQ(largest_coordinate(Lattice{{-9, 1, 2}, {1, 1, 1}, {0, 0, 0}, {4, 3, 2}}), 9);  // x of the first one
+}
+
 TEST(Lattice, AnIndexIsTheInverseOfACoordinate) {
   for (int axis = 0; axis < 3; ++axis) {
     for (std::int64_t i = -9; i < 9; ++i) {

@@ -92,13 +92,10 @@ void EdgePointFinder::find_hits() {
     HitFinder finder(mesh_);
     for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
       const SurfaceCell& cell = cells_.cells()[n];
-      const Vec3 low = cells_.corner(cell, 0);
-      finder.enter(low, triangles_.of(n));
-      for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
-        if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
-        const Vec3 high = cells_.corner(cell, direction);
-        const MixedEdge edge{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)};
-        finder.find(high, cell.is_inside(0), hits);
+      const bool from_inside = cell.is_inside(0);
+      finder.enter(cells_.corner(cell, 0), triangles_.of(n));
+      cells_.for_each_edge(cell, [&](const MixedEdge& edge) {
+        finder.find(from_inside ? edge.outside : edge.inside, from_inside, hits);
         keep_places(hits);
         // A closed mesh changes w nowhere else.
         if (rule_.is_closed() && hits.size() == 1) {
@@ -106,7 +103,7 @@ void EdgePointFinder::find_hits() {
         } else {
           open.push_back({edge, hits});
         }
-      }
+      });
     }
     const std::scoped_lock lock(mutex);
     std::ranges::move(open, std::back_inserter(open_));

@@ -8,16 +8,9 @@
 #include "core/data/rule.h"
 #include "core/data/vec3.h"
 #include "core/evaluation/winding_number.h"
+#include "core/surface/surface_cells.h"
 
 namespace raycone {
-
-// From its inside end to its outside end.
-struct MixedEdge {
-  Vec3 inside, outside;
-  std::uint32_t number;
-
-  [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
-};
 
 // The rule along edges, a continuous function between triangles: positive inside, turns.
 class RuleAlong {

@@ -28,9 +28,19 @@ struct SurfaceCell {
 
   // A bit for each direction in which the edge from the lowest node has ends of both kinds.
   [[nodiscard]] unsigned mixed_directions() const { return (is_inside(0) ? ~unsigned{inside} : inside) & 0xFEU; }
+  [[nodiscard]] bool has_edge(unsigned direction) const { return (mixed_directions() >> direction & 1U) != 0; }
+  // The number of that edge. Precondition: has_edge(direction).
   [[nodiscard]] std::uint32_t edge(unsigned direction) const {
     return first_edge + kBits[mixed_directions() & ((1U << direction) - 1U)];
   }
+};
+
+// From its inside end to its outside end.
+struct MixedEdge {
+  Vec3 inside, outside;
+  std::uint32_t number;
+
+  [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
 };
 
 // How many cells have nodes of both kinds: those that SurfaceCells would hold. Takes no memory, and little
@@ -53,6 +63,18 @@ class SurfaceCells {
   [[nodiscard]] Vec3 corner(const SurfaceCell& cell, unsigned number) const { return position(node_at(cell, number)); }
   [[nodiscard]] static std::array<std::int64_t, 3> node_at(const SurfaceCell& cell, unsigned corner) {
     return {cell.node[0] + (corner & 1U), cell.node[1] + (corner >> 1U & 1U), cell.node[2] + (corner >> 2U & 1U)};
+  }
+
+  // Calls visit(edge) for each mixed edge from the lowest node of a cell, by direction.
+  template <class Visit>
+  void for_each_edge(const SurfaceCell& cell, const Visit& visit) const {
+    const Vec3 low = corner(cell, 0);
+    for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
+      if (!cell.has_edge(direction)) continue;
+      const Vec3 high = corner(cell, direction);
+      visit(cell.is_inside(0) ? MixedEdge{low, high, cell.edge(direction)}
+                              : MixedEdge{high, low, cell.edge(direction)});
+    }
   }
 
   // The place of the cell whose lowest node is a corner of another one. Precondition: there is such a cell.

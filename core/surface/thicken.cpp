@@ -47,16 +47,11 @@ class ThickRule {
   double thickness_, voxel_;
 };
 
+// All mixed edges, from end to end.
 std::vector<Bracket> mixed_edges(const SurfaceCells& cells) {
   std::vector<Bracket> edges;
   for (const SurfaceCell& cell : cells.cells()) {
-    const Vec3 low = cells.corner(cell, 0);
-    for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
-      if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
-      const Vec3 high = cells.corner(cell, direction);
-      edges.push_back(
-          {{cell.is_inside(0) ? low : high, cell.is_inside(0) ? high : low, cell.edge(direction)}, 0.0, 1.0});
-    }
+    cells.for_each_edge(cell, [&](const MixedEdge& edge) { edges.push_back({edge, 0.0, 1.0}); });
   }
   return edges;
 }

@@ -75,7 +75,7 @@ std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells
     const SurfaceCell& cell = cells.cells()[n];
     std::uint64_t wrong = 0;
     for (unsigned direction = 1; direction < kuhn::kCorners; ++direction) {
-      if ((cell.mixed_directions() >> direction & 1U) == 0) continue;
+      if (!cell.has_edge(direction)) continue;
       wrong +=
           place.holds(as_written(points.edges[cell.edge(direction)].position), cell, std::array{direction}) ? 0 : 1;
     }

@@ -63,9 +63,7 @@ class FileSource final : public ByteSource {
       const ssize_t count = pread(descriptor_, bytes, size, static_cast<off_t>(offset));
       if (count < 0 && errno == EINTR) continue;
       if (count < 0) fail_to_read(name_, errno);
-      if (count == 0) {
-        throw InputError(name_ + ":byte " + std::to_string(offset) + ": the file was cut short meanwhile");
-      }
+      if (count == 0) fail_at_byte(name_, offset, "the file was cut short meanwhile");
       bytes += count;
       offset += static_cast<std::uint64_t>(count);
       size -= static_cast<std::size_t>(count);

@@ -1,6 +1,7 @@
 // Errors about files, worded for the person who named them on the command line.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -24,5 +25,10 @@ class LimitError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// Throws InputError "FILE:byte N: what", bytes counted from 0.
+[[noreturn]] inline void fail_at_byte(const std::string& file, std::uint64_t offset, const std::string& what) {
+  throw InputError(file + ":byte " + std::to_string(offset) + ": " + what);
+}
 
 }  // namespace raycone

@@ -91,10 +91,8 @@ std::string printable_npy(std::string_view text) {
 
 void require_bytes(InputBuffer& input, std::size_t count, const char* what) {
   while (input.pending().size() < count) {
-    if (!input.fill()) {
-      throw InputError(input.name() + ":byte " + std::to_string(input.offset() + input.pending().size()) +
-                       ": the file ends within " + what);
-    }
+    if (input.fill()) continue;
+    fail_at_byte(input.name(), input.offset() + input.pending().size(), std::string("the file ends within ") + what);
   }
 }
 

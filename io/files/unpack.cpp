@@ -63,9 +63,7 @@ class PackedInput {
   }
   [[nodiscard]] bool is_ready() const { return begin_ < end_ || source_->is_ready(); }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(name_ + ":byte " + std::to_string(offset_) + ": " + what);
-  }
+  [[noreturn]] void fail(const std::string& what) const { fail_at_byte(name_, offset_, what); }
 
  private:
   std::unique_ptr<ByteSource> source_;

@@ -29,12 +29,12 @@ struct Chunk {
 };
 
 Chunk next_chunk(const NamedBytes& source, std::string_view glb, std::size_t& offset) {
-  if (glb.size() - offset < kChunkHeaderSize) fail_at_byte(source, offset, "GLB ends within a chunk header");
+  if (glb.size() - offset < kChunkHeaderSize) fail_at_byte(source.name, offset, "GLB ends within a chunk header");
   const std::uint32_t length = load_little_endian<std::uint32_t>(glb.data() + offset);
   const std::uint32_t type = load_little_endian<std::uint32_t>(glb.data() + offset + 4);
   const std::size_t data = offset + kChunkHeaderSize;
   if (length > glb.size() - data) {
-    fail_at_byte(source, offset,
+    fail_at_byte(source.name, offset,
                  "chunk of " + counted(length, "byte") + ", but only " + std::to_string(glb.size() - data) + " remain");
   }
   offset = data + length;
@@ -123,17 +123,18 @@ bool is_glb(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
 GlbChunks split_glb(const NamedBytes& source) {
   const std::string_view bytes = source.bytes;
-  if (bytes.size() < kGlbHeaderSize) fail_at_byte(source, bytes.size(), "GLB ends within its header");
+  if (bytes.size() < kGlbHeaderSize) fail_at_byte(source.name, bytes.size(), "GLB ends within its header");
   const std::uint32_t version = load_little_endian<std::uint32_t>(bytes.data() + 4);
-  if (version != 2) fail_at_byte(source, 4, "GLB version " + std::to_string(version) + ", expected 2");
+  if (version != 2) fail_at_byte(source.name, 4, "GLB version " + std::to_string(version) + ", expected 2");
   const std::uint32_t length = load_little_endian<std::uint32_t>(bytes.data() + 8);
   if (length > bytes.size() || length < kGlbHeaderSize) {
-    fail_at_byte(source, 8, "GLB announces " + counted(length, "byte") + ", but has " + std::to_string(bytes.size()));
+    fail_at_byte(source.name, 8,
+                 "GLB announces " + counted(length, "byte") + ", but has " + std::to_string(bytes.size()));
   }
   const std::string_view glb = bytes.substr(0, length);
   std::size_t offset = kGlbHeaderSize;
   const Chunk json = next_chunk(source, glb, offset);
-  if (json.type != kJsonChunk) fail_at_byte(source, kGlbHeaderSize + 4, "first chunk of the GLB is not JSON");
+  if (json.type != kJsonChunk) fail_at_byte(source.name, kGlbHeaderSize + 4, "first chunk of the GLB is not JSON");
   GlbChunks chunks{json.data, json.data_offset, std::nullopt};
   // Chunks of unknown types are to be ignored.
   while (offset < glb.size() && !chunks.binary) {

@@ -7,7 +7,6 @@
 
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
-#include "io/mesh/read_mesh.h"
 
 namespace raycone {
 
@@ -26,11 +25,6 @@ inline constexpr const char* kNonFiniteCorner =
 [[nodiscard]] inline std::string index_out_of_range(std::int64_t index, std::uint64_t vertices) {
   return "face index " + std::to_string(index) + ", but there " + (vertices == 1 ? "is" : "are") + " only " +
          counted(vertices, "vertex");
-}
-
-// Throws InputError "FILE:byte N: what", bytes counted from 0.
-[[noreturn]] inline void fail_at_byte(const NamedBytes& source, std::size_t offset, const std::string& what) {
-  throw InputError(source.name + ":byte " + std::to_string(offset) + ": " + what);
 }
 
 }  // namespace raycone

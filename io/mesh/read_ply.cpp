@@ -162,7 +162,9 @@ class BinaryBody {
     offset_ += static_cast<std::size_t>(count) * size_of(type);
   }
 
-  [[noreturn]] void fail_at(std::size_t offset, const std::string& what) const { fail_at_byte(source_, offset, what); }
+  [[noreturn]] void fail_at(std::size_t offset, const std::string& what) const {
+    fail_at_byte(source_.name, offset, what);
+  }
 
  private:
   template <class Number>

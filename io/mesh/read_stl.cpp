@@ -138,7 +138,7 @@ std::uint32_t checked_triangle_count(const NamedBytes& source) {
   }
   const std::uint64_t room = (source.bytes.size() - kStlHeaderSize) / kStlTriangleSize;
   if (*count > room) {
-    fail_at_byte(source, kStlHeaderSize - 4,
+    fail_at_byte(source.name, kStlHeaderSize - 4,
                  counted(*count, "triangle") + " announced, but only " + std::to_string(room) +
                      (room == 1 ? " follows" : " follow"));
   }
@@ -161,7 +161,7 @@ ParsedMesh read_binary_stl(const NamedBytes& source) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::size_t start = offset + kNormalSize + kVertexSize * corner;
       const Vec3 vertex = load_vertex(source.bytes.data() + start);
-      if (!is_finite(vertex)) fail_at_byte(source, start, kNonFiniteCorner);
+      if (!is_finite(vertex)) fail_at_byte(source.name, start, kNonFiniteCorner);
       parsed.mesh.vertices.push_back(vertex);
     }
     parsed.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});

@@ -148,8 +148,8 @@ class NpyPointReader : public PointReader {
   [[nodiscard]] double coordinate(const char* bytes, std::uint64_t row, int axis) const {
     const double value = load_(bytes, header_.order);
     if (!std::isfinite(value)) {
-      throw InputError(input_->name() + ":byte " + std::to_string(offset_of(row, axis)) + ": row " +
-                       std::to_string(row) + " has " + "xyz"[axis] + " = " + std::to_string(value) +
+      fail_at_byte(input_->name(), offset_of(row, axis),
+                   "row " + std::to_string(row) + " has " + "xyz"[axis] + " = " + std::to_string(value) +
                        ", expected a finite number");
     }
     return value;

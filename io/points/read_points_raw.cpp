@@ -50,22 +50,19 @@ class RawPointReader final : public PointReader {
  private:
   static constexpr std::size_t kPointSize = 3 * sizeof(Number);
 
-  [[noreturn]] void fail(std::uint64_t offset, const std::string& what) const {
-    throw InputError(input_->name() + ":byte " + std::to_string(offset) + ": " + what);
-  }
-
   bool at_end() const {
     const std::size_t rest = input_->pending().size();
     if (rest == 0) return false;
-    fail(input_->offset() + rest,
-         "end of the input " + counted(rest, "byte") + " into a point, expected " + std::to_string(kPointSize));
+    fail_at_byte(input_->name(), input_->offset() + rest,
+                 "end of the input " + counted(rest, "byte") + " into a point, expected " + std::to_string(kPointSize));
   }
 
   // At `place` of what is pending.
   [[nodiscard]] double coordinate(std::size_t place) const {
     const auto number = static_cast<double>(load_little_endian<Number>(input_->pending().data() + place));
     if (!std::isfinite(number)) {
-      fail(input_->offset() + place, "coordinate " + std::to_string(number) + ", expected a finite number");
+      fail_at_byte(input_->name(), input_->offset() + place,
+                   "coordinate " + std::to_string(number) + ", expected a finite number");
     }
     return number;
   }

@@ -25,6 +25,14 @@ namespace raycone {
   return text.size() >= lower.size() && is_word(text.substr(text.size() - lower.size()), lower);
 }
 
+// With '?' for each other byte, so that messages are one line of valid UTF-8 whatever a file holds.
+[[nodiscard]] inline std::string printable_ascii(std::string_view text) {
+  std::string printable(text);
+  std::ranges::replace_if(
+      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return printable;
+}
+
 // The shortest text that reads back as the same double.
 [[nodiscard]] inline std::string shortest_text(double number) {
   std::array<char, 32> text;

@@ -1,9 +1,9 @@
 #include "io/files/npy_head.h"
 
-#include <algorithm>
 #include <charconv>
 #include <system_error>
 
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 #include "io/files/file_error.h"
 
@@ -83,10 +83,7 @@ class HeadParser {
 
 std::string printable_npy(std::string_view text) {
   constexpr std::size_t kMaxQuoted = 40;
-  std::string copy(text.substr(0, kMaxQuoted));
-  std::replace_if(
-      copy.begin(), copy.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return copy;
+  return printable_ascii(text.substr(0, kMaxQuoted));
 }
 
 void require_bytes(InputBuffer& input, std::size_t count, const char* what) {

@@ -206,11 +206,7 @@ std::string TextScanner::found() const {
   constexpr std::size_t kLongest = 32;
   std::string_view word = peek_word();
   if (word.empty()) word = {position_, 1};
-  std::string text = "'";
-  // Messages are one line of valid UTF-8 whatever the file holds.
-  for (const char c : word.substr(0, kLongest)) text += c > ' ' && c <= '~' ? c : '?';
-  if (word.size() > kLongest) text += "...";
-  return text + "'";
+  return "'" + printable_ascii(word.substr(0, kLongest)) + (word.size() > kLongest ? "...'" : "'");
 }
 
 void TextScanner::fail_at(std::size_t offset, const std::string& what) const {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/mesh/mesh_error.h"
 
@@ -132,11 +133,8 @@ nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted) {
   return builder.take();
 }
 
-std::string short_and_printable(std::string text) {
-  if (text.size() > kMaxQuoted) text = text.substr(0, kMaxQuoted) + "...";
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
+std::string short_and_printable(std::string_view text) {
+  return printable_ascii(text.substr(0, kMaxQuoted)) + (text.size() > kMaxQuoted ? "..." : "");
 }
 
 }  // namespace raycone

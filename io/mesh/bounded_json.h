@@ -25,6 +25,6 @@ using IsWanted = bool (*)(std::size_t depth, std::string_view key);
 [[nodiscard]] nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted);
 
 // For messages: cut where it is long, other bytes than those of printable ASCII as '?'.
-[[nodiscard]] std::string short_and_printable(std::string text);
+[[nodiscard]] std::string short_and_printable(std::string_view text);
 
 }  // namespace raycone

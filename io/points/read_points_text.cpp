@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "io/files/ascii.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/text_scanner.h"
@@ -194,10 +195,7 @@ bool has_letter(std::string_view field) {
 
 // A field as part of a message.
 std::string quoted(std::string_view field) {
-  std::string text(field.substr(0, kMaxQuoted));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return "'" + text + (field.size() > kMaxQuoted ? "...'" : "'");
+  return "'" + printable_ascii(field.substr(0, kMaxQuoted)) + (field.size() > kMaxQuoted ? "...'" : "'");
 }
 
 // --- Columns --------------------------------------------------------------------------------------------------------

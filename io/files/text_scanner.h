@@ -100,7 +100,13 @@ class TextScanner {
     position_ = after;
     return value;
   }
-  // The same for an integer; beyond 64 bits, the nearest that fits.
+  // The number at the position; throws InputError where there is none. `what`: "a coordinate".
+  double expected_number(const char* what) {
+    const std::optional<double> value = number();
+    if (!value) fail_expecting(what);
+    return *value;
+  }
+  // number() for an integer; beyond 64 bits, the nearest that fits.
   std::optional<std::int64_t> integer() {
     const char* start = position_;
     const std::optional<std::int64_t> value = integer_prefix();
@@ -120,13 +126,15 @@ class TextScanner {
     return value;
   }
 
-  // The token at the position for a message: "'abc'", "the end of the line" or "the end of the file".
-  [[nodiscard]] std::string found() const;
   // Throws InputError "FILE:LINE: what", LINE being that of the offset (here: of the position).
   [[noreturn]] void fail_at(std::size_t offset, const std::string& what) const;
   [[noreturn]] void fail(const std::string& what) const { fail_at(offset(), what); }
+  // "FILE:LINE: expected WHAT, found 'abc'", what is found being the token at the position, "the end of the line" or
+  // "the end of the file".
+  [[noreturn]] void fail_expecting(const std::string& what) const { fail("expected " + what + ", found " + found()); }
 
  private:
+  [[nodiscard]] std::string found() const;
   [[nodiscard]] bool is_line_end(char c) const { return c == line_end_ || c == other_end_; }
   void skip_mixed_line();
   [[nodiscard]] bool ends_token(const char* p) const { return p == end_ || is_space(*p) || *p == '#' || *p == '\\'; }

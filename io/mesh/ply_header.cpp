@@ -44,7 +44,7 @@ class HeaderReader {
  private:
   // False at the header's last line.
   bool read_line() {
-    if (!text_.skip_empty_lines()) text_.fail("expected 'end_header', found the end of the file");
+    if (!text_.skip_empty_lines()) text_.fail_expecting("'end_header'");
     const std::size_t offset = text_.offset();
     const std::string_view keyword = next_word();
     if (keyword == "format") {
@@ -55,8 +55,7 @@ class HeaderReader {
       read_property();
     } else if (keyword != "comment" && keyword != "obj_info" && keyword != "end_header") {
       text_.seek(offset);
-      if (!is_letter(text_.peek()))
-        text_.fail("expected 'element', 'property' or 'end_header', found " + text_.found());
+      if (!is_letter(text_.peek())) text_.fail_expecting("'element', 'property' or 'end_header'");
       ++header_.unknown_lines;
     }
     return keyword != "end_header";
@@ -64,8 +63,7 @@ class HeaderReader {
 
   void read_format() {
     text_.skip_blanks();
-    const std::string found = text_.found();
-    const std::string_view encoding = next_word();
+    const std::string_view encoding = text_.peek_word();
     if (encoding == "ascii") {
       header_.encoding = PlyEncoding::kAscii;
     } else if (encoding == "binary_little_endian") {
@@ -73,8 +71,9 @@ class HeaderReader {
     } else if (encoding == "binary_big_endian") {
       header_.encoding = PlyEncoding::kBigEndian;
     } else {
-      text_.fail("expected 'ascii', 'binary_little_endian' or 'binary_big_endian', found " + found);
+      text_.fail_expecting("'ascii', 'binary_little_endian' or 'binary_big_endian'");
     }
+    text_.advance(encoding.size());
     has_format_ = true;
   }
 
@@ -82,7 +81,7 @@ class HeaderReader {
     const std::string name(next_word());
     text_.skip_blanks();
     const std::optional<std::int64_t> count = text_.integer();
-    if (!count) text_.fail("expected the number of elements '" + name + "', found " + text_.found());
+    if (!count) text_.fail_expecting("the number of elements '" + name + "'");
     if (*count < 0) text_.fail("expected 0 or more elements '" + name + "', found " + std::to_string(*count));
     header_.elements.push_back({name, static_cast<std::uint64_t>(*count), {}});
   }
@@ -94,7 +93,7 @@ class HeaderReader {
     if (text_.skip_word("list")) count_type = read_scalar_type();
     const PlyScalar type = read_scalar_type();
     text_.skip_blanks();
-    if (text_.at_line_end()) text_.fail("expected the property's name, found " + text_.found());
+    if (text_.at_line_end()) text_.fail_expecting("the property's name");
     header_.elements.back().properties.push_back({std::string(next_word()), type, count_type});
   }
 
@@ -113,11 +112,11 @@ class HeaderReader {
 
   PlyScalar read_scalar_type() {
     text_.skip_blanks();
-    const std::string found = text_.found();
-    const std::string_view word = next_word();
-    for (const auto& [name, type] : kScalarNames)
-      if (word == name) return type;
-    text_.fail("expected a type such as 'float' or 'int32', found " + found);
+    const std::string_view word = text_.peek_word();
+    const auto* const known = std::ranges::find(kScalarNames, word, [](const auto& named) { return named.first; });
+    if (known == kScalarNames.end()) text_.fail_expecting("a type such as 'float' or 'int32'");
+    text_.advance(word.size());
+    return known->second;
   }
 
   std::string_view next_word() {

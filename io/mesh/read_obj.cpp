@@ -86,9 +86,7 @@ class ObjReader {
     Vec3 vertex;
     for (int axis = 0; axis < 3; ++axis) {
       text_.skip_blanks();
-      const std::optional<double> coordinate = text_.number();
-      if (!coordinate) text_.fail("expected a coordinate, found " + text_.found());
-      vertex[axis] = *coordinate;
+      vertex[axis] = text_.expected_number("a coordinate");
     }
     builder_.add_vertex(vertex, offset);
   }
@@ -107,7 +105,7 @@ class ObjReader {
     skip_attributes();
     if (!index || !text_.at_token_end()) {
       text_.seek(offset);
-      text_.fail("expected a vertex index, found " + text_.found());
+      text_.fail_expecting("a vertex index");
     }
     return resolve(*index, offset);
   }

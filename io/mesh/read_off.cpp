@@ -36,10 +36,10 @@ class OffReader {
 
   // The keyword is optional, says the format.
   void read_keyword() {
-    if (!text_.skip_empty_lines()) text_.fail("expected 'OFF', found the end of the file");
+    if (!text_.skip_empty_lines()) text_.fail_expecting("'OFF'");
     const std::string_view keyword = off_keyword(text_.rest());
     if (keyword.empty()) {
-      if (!is_digit(text_.peek())) text_.fail("expected 'OFF', found " + text_.found());
+      if (!is_digit(text_.peek())) text_.fail_expecting("'OFF'");
       return;
     }
     if (keyword.find_first_of("4n") != std::string_view::npos) {
@@ -49,14 +49,14 @@ class OffReader {
     text_.advance(keyword.size());
     text_.skip_blanks();
     if (text_.peek_word() == "BINARY") text_.fail("binary OFF is not supported, expected ASCII OFF");
-    if (!text_.skip_empty_lines()) text_.fail("expected the number of vertices, found the end of the file");
+    if (!text_.skip_empty_lines()) text_.fail_expecting("the number of vertices");
   }
 
   // A count of the line at the position.
   std::uint64_t read_count(const char* what) {
     text_.skip_blanks();
     const std::optional<std::int64_t> count = text_.at_line_end() ? std::nullopt : text_.integer();
-    if (!count) text_.fail("expected the number of " + plural_of(what) + ", found " + text_.found());
+    if (!count) text_.fail_expecting("the number of " + plural_of(what));
     if (*count < 0) text_.fail("expected 0 or more " + plural_of(what) + ", found " + std::to_string(*count));
     return static_cast<std::uint64_t>(*count);
   }
@@ -78,9 +78,7 @@ class OffReader {
     Vec3 vertex;
     for (int axis = 0; axis < 3; ++axis) {
       text_.skip_blanks();
-      const std::optional<double> coordinate = text_.number();
-      if (!coordinate) text_.fail("expected a coordinate, found " + text_.found());
-      vertex[axis] = *coordinate;
+      vertex[axis] = text_.expected_number("a coordinate");
     }
     builder_.add_vertex(vertex, offset);
     text_.skip_line();
@@ -99,7 +97,7 @@ class OffReader {
     text_.skip_blanks();
     const std::size_t offset = text_.offset();
     const std::optional<std::int64_t> index = text_.integer();
-    if (!index) text_.fail("expected a vertex index, found " + text_.found());
+    if (!index) text_.fail_expecting("a vertex index");
     if (*index < 0 || static_cast<std::uint64_t>(*index) >= builder_.vertex_count())
       text_.fail_at(offset, index_out_of_range(*index, builder_.vertex_count()));
     return static_cast<std::uint32_t>(*index);

@@ -56,7 +56,7 @@ class AsciiBody {
   void end_row() {
     text_.skip_blanks();
     if (!text_.at_line_end() || text_.peek() == '#') {
-      if (!is_in_one_line()) text_.fail("expected the end of the line, found " + text_.found());
+      if (!is_in_one_line()) text_.fail_expecting("the end of the line");
       ++long_rows_;
       text_.skip_line();
     }
@@ -67,9 +67,7 @@ class AsciiBody {
   // The text's value as it stands: a declared type of lower precision does not round it.
   double number(PlyScalar) {
     text_.skip_whitespace();
-    const std::optional<double> value = text_.number();
-    if (!value) text_.fail("expected a number, found " + text_.found());
-    return *value;
+    return text_.expected_number("a number");
   }
   std::int64_t integer(PlyScalar) {
     text_.skip_whitespace();
@@ -80,7 +78,7 @@ class AsciiBody {
     const std::optional<std::int64_t> value = number ? to_integer(*number) : std::nullopt;
     if (value) return *value;
     text_.seek(start);
-    text_.fail("expected an integer, found " + text_.found());
+    text_.fail_expecting("an integer");
   }
   // Calls use(integer, its offset) for the next `count` numbers.
   template <class Use>
@@ -93,7 +91,7 @@ class AsciiBody {
   void skip(PlyScalar, std::uint64_t count) {
     for (; count > 0; --count) {
       text_.skip_whitespace();
-      if (text_.at_end()) text_.fail("expected a number, found the end of the file");
+      if (text_.at_end()) text_.fail_expecting("a number");
       text_.skip_token();
     }
   }

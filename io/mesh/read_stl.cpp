@@ -28,7 +28,7 @@ class AsciiStlReader {
       } else if (text_.skip_word("endsolid")) {
         static_cast<void>(read_name());
       } else {
-        text_.fail("expected 'facet' or 'endsolid', found " + text_.found());
+        text_.fail_expecting("'facet' or 'endsolid'");
       }
     }
     if (const auto offset = builder_.non_finite_corner_offset()) text_.fail_at(*offset, kNonFiniteCorner);
@@ -97,7 +97,7 @@ class AsciiStlReader {
   // Whatever stands there: normals of degenerate triangles are often not numbers.
   void skip_normal_component() {
     text_.skip_whitespace();
-    if (text_.at_end()) text_.fail("expected a normal, found the end of the file");
+    if (text_.at_end()) text_.fail_expecting("a normal");
     text_.skip_token();
   }
 
@@ -106,9 +106,7 @@ class AsciiStlReader {
     Vec3 vertex;
     for (int axis = 0; axis < 3; ++axis) {
       text_.skip_whitespace();
-      const std::optional<double> coordinate = text_.number();
-      if (!coordinate) text_.fail("expected a coordinate, found " + text_.found());
-      vertex[axis] = *coordinate;
+      vertex[axis] = text_.expected_number("a coordinate");
     }
     builder_.add_vertex(vertex, offset);
     builder_.add_corner(static_cast<std::uint32_t>(builder_.vertex_count() - 1));
@@ -117,7 +115,7 @@ class AsciiStlReader {
   void expect(std::string_view word) { expect(word, "'" + std::string(word) + "'"); }
 
   void expect(std::string_view word, const std::string& expected) {
-    if (!next_is(word)) text_.fail("expected " + expected + ", found " + text_.found());
+    if (!next_is(word)) text_.fail_expecting(expected);
   }
 
   TextScanner text_;

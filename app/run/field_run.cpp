@@ -10,6 +10,7 @@
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
 #include "app/run/mesh_warnings.h"
+#include "app/run/verify.h"
 #include "app/text/plain_text.h"
 
 namespace raycone {

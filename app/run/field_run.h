@@ -12,7 +12,7 @@
 #include "app/run/fields.h"
 #include "app/run/label_volume.h"
 #include "app/run/mesh_run.h"
-#include "app/run/verify.h"
+#include "app/run/sample_draw.h"
 #include "core/data/placed_lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "io/fields/field_writer.h"

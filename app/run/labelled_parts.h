@@ -1,0 +1,66 @@
+// The parts that labels tell apart, as meshes of their own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "app/options/field_options.h"
+#include "app/options/mesh_options.h"
+#include "app/run/mesh_parts.h"
+#include "app/run/mesh_run.h"
+#include "app/run/part_evaluator.h"
+#include "core/mesh/mesh_defects.h"
+
+namespace raycone {
+
+// What the mesh of all parts together is wanted for.
+enum class WholeMesh {
+  kUnused,
+  kShown,      // drawn
+  kEvaluated,  // or drawn from: warnings and counts of orientation are about it
+};
+
+// The parts of a run, made ready one after the other. The report learns of them, their user of what is wrong with them.
+class LabelledParts {
+ public:
+  // Reads the meshes. What is given here must outlive this.
+  LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
+                const std::vector<WrittenFile>& written, WholeMesh whole);
+
+  [[nodiscard]] std::size_t size() const { return parts_.size(); }
+  [[nodiscard]] const Box& box() const { return parts_.box(); }
+  [[nodiscard]] const TriangleMesh& whole() const { return parts_.whole(); }
+  [[nodiscard]] bool first_wins() const { return mesh_.parts.first_wins; }
+
+  // The next one, from the first to the last.
+  [[nodiscard]] MeshToEvaluate next();
+  // Whether a part has samples inside, and whether it should have some. In order.
+  void found(bool inside, bool expected);
+  // What was spent on a part.
+  void spent(const FieldEvaluator& evaluator);
+
+  // When all parts have been evaluated. `samples`: of each label, from 0.
+  void finish(std::span<const std::uint64_t> samples);
+
+ private:
+  void note(const MeshToEvaluate& part);
+  void warn_about_file();
+
+  MeshRun& run_;
+  const MeshOptions& mesh_;
+  const FieldOptions& field_;
+  WholeMesh whole_;
+  MeshParts parts_;
+  std::size_t next_ = 0;
+  std::vector<std::size_t> empty_;  // parts that should not be
+  // Of the parts of the file at hand.
+  std::vector<Warning> warnings_;
+  MeshDefects defects_;
+  std::uint64_t cut_edges_ = 0;
+  // What the report is told when all has been evaluated.
+  Terms terms_;
+};
+
+}  // namespace raycone

@@ -26,7 +26,8 @@ ExactVec3 cross(const ExactVec3& a, const ExactVec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-int volume_sign(const ExactVec3& a, const ExactVec3& b, const Vec3& direction) {
+// Of det(a, b, direction).
+int determinant_sign(const ExactVec3& a, const ExactVec3& b, const Vec3& direction) {
   const ExactVec3 normal = cross(a, b), along = exact(direction);
   return static_cast<int>(CGAL::sign(normal[0] * along[0] + normal[1] * along[1] + normal[2] * along[2]));
 }
@@ -102,13 +103,13 @@ Vec3 area_direction(std::span<const Vec3> corners) {
 
 int exact_side(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& v) {
   assert(DefaultFloatingPoint::holds());
-  return volume_sign(difference(b, a), exact(v), direction);
+  return determinant_sign(difference(b, a), exact(v), direction);
 }
 
 int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   assert(DefaultFloatingPoint::holds());
   if (is_surely_collinear(a, b, c)) return 0;
-  return volume_sign(difference(b, a), difference(c, a), direction);
+  return determinant_sign(difference(b, a), difference(c, a), direction);
 }
 
 SweepOrder::SweepOrder(const Vec3& direction) : direction_(direction) {

@@ -2,8 +2,8 @@
 
     python3 tests/core/harmonic_error_table.py DEGREE NODES
 
-docs/method.md, "Fits", has the proof of each step. All lengths are in half sides of the cube. Needs numpy; takes some
-minutes.
+docs/method.md, "Blocks of lattices", has the proof of each step. All lengths are in half sides of the cube. Needs
+numpy; takes some minutes.
 """
 import itertools
 import sys

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "app/process/usage_error.h"
 #include "app/run/lattice_choice.h"
+#include "app/text/six_digits.h"
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
@@ -23,12 +23,6 @@ constexpr double kNoUp = 1e-3;
 // Sides that are a multiple of a pixel up to rounding get no pixel behind their end, as with lattices.
 constexpr double kRoundingSlack = 1e-9;
 
-std::string printed(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", number);
-  return text;
-}
-
 Vec3 unit(int axis) {
   Vec3 v;
   v[axis] = 1.0;
@@ -37,7 +31,7 @@ Vec3 unit(int axis) {
 
 // Scaled first: squares of large and small components overflow and vanish.
 Vec3 normalized(const Vec3& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  const double largest = largest_coordinate(v);
   const Vec3 scaled{v.x / largest, v.y / largest, v.z / largest};
   return (1.0 / std::sqrt(dot(scaled, scaled))) * scaled;
 }
@@ -112,7 +106,7 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   Slice slice;
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
-  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + printed(at);
+  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + six_digits(at);
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(plane.axis)];
   slice.is_flat = padded.lower[right] == padded.upper[right] || padded.lower[up] == padded.upper[up];
   return slice;
@@ -188,8 +182,9 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
   view.corner = origin + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
-  slice.plane = "normal " + printed(view.normal.x) + "," + printed(view.normal.y) + "," + printed(view.normal.z) +
-                " through " + printed(origin.x) + "," + printed(origin.y) + "," + printed(origin.z);
+  slice.plane = "normal " + six_digits(view.normal.x) + "," + six_digits(view.normal.y) + "," +
+                six_digits(view.normal.z) + " through " + six_digits(origin.x) + "," + six_digits(origin.y) + "," +
+                six_digits(origin.z);
   return slice;
 }
 

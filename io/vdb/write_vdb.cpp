@@ -143,6 +143,17 @@ std::unique_ptr<Leaf> make_leaf(const openvdb::Coord& origin, const Stored* valu
   return leaf;
 }
 
+// Adds a leaf; where there is none, its voxels have one value, and become a tile unless that is the background.
+template <typename Tree, typename Leaf, typename Stored>
+void add_node(openvdb::tree::ValueAccessor<Tree>& to, const openvdb::Coord& origin, std::unique_ptr<Leaf> leaf,
+              Stored value, const Activity<Stored>& is_active) {
+  if (leaf) {
+    to.addLeaf(leaf.release());
+  } else if (value != is_active.background) {
+    to.addTile(1, origin, static_cast<typename Tree::ValueType>(value), is_active(value));
+  }
+}
+
 // `samples`: eight along each axis.
 bool is_on_one_side(const SignedBlocks& blocks, const LatticeBlock& samples) {
   const auto sides = [&](std::int64_t j, std::int64_t k) {
@@ -177,14 +188,8 @@ void add_layer(Tree& tree, const LeafLayer<Stored>& layer, std::int64_t leaf_z, 
     }
   });
   openvdb::tree::ValueAccessor<Tree> accessor(tree);
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const Stored value = *layer.values(n);
-    if (leaves[n]) {
-      accessor.addLeaf(leaves[n].release());
-    } else if (value != is_active.background) {
-      accessor.addTile(1, origin(n), static_cast<typename Tree::ValueType>(value), is_active(value));
-    }
-  }
+  for (std::size_t n = 0; n < leaves.size(); ++n)
+    add_node(accessor, origin(n), std::move(leaves[n]), *layer.values(n), is_active);
 }
 
 // The stored values of a block, in OpenVDB's order; what is beside the lattice is background. Returns whether all are
@@ -224,34 +229,23 @@ void add_blocks(Tree& tree, const SignedBlocks& blocks, const Store& store, cons
     Stored value;  // where there is no leaf
   };
   const LatticeBlock places = blocks.distances.blocks();
-  const auto place_of = [&](std::size_t n) {
-    const auto at = static_cast<std::int64_t>(n);
-    return std::array{places.first[0] + at % places.counts[0],
-                      places.first[1] + at / places.counts[0] % places.counts[1],
-                      places.first[2] + at / places.counts[0] / places.counts[1]};
-  };
-  const auto origin = [](const std::array<std::int64_t, 3>& place) {
-    return to_coord(place[0] * kLeafSize, place[1] * kLeafSize, place[2] * kLeafSize);
+  const auto origin = [&](std::size_t n) {
+    const auto [x, y, z] = places.index_of(n);
+    return to_coord(x * kLeafSize, y * kLeafSize, z * kLeafSize);
   };
   std::vector<Made> made(static_cast<std::size_t>(places.size()));
   parallel_for(made.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::array<Stored, kLeafVoxels> values;
     for (std::size_t n = begin; n < end; ++n) {
-      const bool is_one = store_block(blocks, place_of(n), store, is_active.background, values.data()) ||
+      const bool is_one = store_block(blocks, places.index_of(n), store, is_active.background, values.data()) ||
                           std::all_of(values.begin(), values.end(), [&](Stored v) { return v == values[0]; });
       made[n].value = values[0];
-      if (!is_one) made[n].leaf = make_leaf<Leaf>(origin(place_of(n)), values.data(), is_active);
+      if (!is_one) made[n].leaf = make_leaf<Leaf>(origin(n), values.data(), is_active);
     }
   });
   openvdb::tree::ValueAccessor<Tree> accessor(tree);
-  for (std::size_t n = 0; n < made.size(); ++n) {
-    if (made[n].leaf) {
-      accessor.addLeaf(made[n].leaf.release());
-    } else if (made[n].value != is_active.background) {
-      accessor.addTile(1, origin(place_of(n)), static_cast<typename Tree::ValueType>(made[n].value),
-                       is_active(made[n].value));
-    }
-  }
+  for (std::size_t n = 0; n < made.size(); ++n)
+    add_node(accessor, origin(n), std::move(made[n].leaf), made[n].value, is_active);
 }
 
 // --- Grids in the making

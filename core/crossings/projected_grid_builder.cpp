@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t kTrianglesOfATask = 4096;
 
-constexpr Interval kNothing{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 constexpr Interval kEverything{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
 // Not of lists, whose loops branch.
@@ -35,7 +34,7 @@ struct ProjectedGridBuilder::EdgeLine {
   // The line's y where z is in `row`, which is bounded, up to rounding.
   [[nodiscard]] Interval along(const Interval& row) const {
     if (!has_line) return kEverything;
-    if (std::isinf(slope)) return row.lower <= at_z && at_z <= row.upper ? kEverything : kNothing;
+    if (std::isinf(slope)) return row.lower <= at_z && at_z <= row.upper ? kEverything : kEmptyInterval;
     return spanned(at_y + slope * (row.lower - at_z), at_y + slope * (row.upper - at_z));
   }
 };
@@ -165,7 +164,7 @@ class ProjectedGridBuilder::CellFinder {
     const Interval in_box = intersection(slab, widened(box.z, margin_z_));
     if (in_box.empty()) return;
     std::array<Interval, 4> parts;
-    parts[3] = kNothing;  // the triangle itself
+    parts[3] = kEmptyInterval;  // the triangle itself
     for (std::size_t i = 0; i < 3; ++i) {
       const EdgeLine& edge = edges[i];
       parts[i] = intersection(widened(edge.along(in_box), margin_y_), widened(box.y, margin_y_));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace raycone {
 
@@ -10,6 +11,15 @@ struct Interval {
   double lower, upper;
   [[nodiscard]] bool empty() const { return !(lower <= upper); }
 };
+
+// Of no number: extended by one it is that.
+inline constexpr Interval kEmptyInterval{std::numeric_limits<double>::infinity(),
+                                         -std::numeric_limits<double>::infinity()};
+
+inline void extend(Interval& a, double by) {
+  a.lower = std::min(a.lower, by);
+  a.upper = std::max(a.upper, by);
+}
 
 inline Interval intersection(const Interval& a, const Interval& b) {
   return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};

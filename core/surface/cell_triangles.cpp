@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/data/interval.h"
 #include "core/machine/buckets.h"
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
@@ -28,15 +28,6 @@ struct CellRange {
 struct Polygon {
   std::array<Vec3, 6> corners;
   std::size_t count = 0;
-};
-
-struct Interval {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-
-  void extend(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
 };
 
 // The part of a segment between the planes at `low` and `high` across an axis: visits its ends, where there is one.
@@ -63,11 +54,11 @@ class CellFinder {
     if (is_far(corners)) return find_all(corners, layer, found);
     const auto low = static_cast<double>(layer) - kMargin, high = static_cast<double>(layer + 1) + kMargin;
     Polygon part;
-    Interval y;
+    Interval y = kEmptyInterval;
     for (std::size_t n = 0; n < 3; ++n) {
       clip(corners[n], corners[(n + 1) % 3], 2, low, high, [&](const Vec3& p) {
         part.corners[part.count++] = p;
-        y.extend(p.y);
+        extend(y, p.y);
       });
     }
     const CellRange rows = range(1, y);
@@ -91,18 +82,18 @@ class CellFinder {
   }
 
   [[nodiscard]] static Interval extent(const std::array<Vec3, 3>& corners, int axis) {
-    Interval result;
-    for (const Vec3& p : corners) result.extend(p[axis]);
+    Interval result = kEmptyInterval;
+    for (const Vec3& p : corners) extend(result, p[axis]);
     return result;
   }
 
   // Of a part of one layer, where it is in a row: its extent along x.
   [[nodiscard]] static Interval section(const Polygon& part, std::int64_t row) {
     const auto low = static_cast<double>(row) - kMargin, high = static_cast<double>(row + 1) + kMargin;
-    Interval x;
+    Interval x = kEmptyInterval;
     for (std::size_t n = 0; n < part.count; ++n) {
       clip(part.corners[n], part.corners[n + 1 < part.count ? n + 1 : 0], 1, low, high,
-           [&](const Vec3& p) { x.extend(p.x); });
+           [&](const Vec3& p) { extend(x, p.x); });
     }
     return x;
   }
@@ -113,8 +104,8 @@ class CellFinder {
     const auto cell = [&](double x) {
       return static_cast<std::int64_t>(std::floor(std::clamp(x, -1.0, static_cast<double>(count))));
     };
-    return {std::max<std::int64_t>(cell(interval.low - kMargin), 0),
-            std::min(cell(interval.high + kMargin), count - 1)};
+    return {std::max<std::int64_t>(cell(interval.lower - kMargin), 0),
+            std::min(cell(interval.upper + kMargin), count - 1)};
   }
 
   template <class Found>

@@ -1,0 +1,78 @@
+// The fields of a line of a table: separated by commas, semicolons, tabs or blanks, and quoted where they hold these.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace raycone {
+
+// The character between the fields of a line: the first of comma, semicolon and tab that occurs outside quotes, else a
+// blank, which stands for any run of blanks. Never guessed from the locale: a decimal comma is an error. What a comment
+// holds does not count.
+[[nodiscard]] inline char delimiter_of(std::string_view line) {
+  for (const char delimiter : {',', ';', '\t'}) {
+    bool quoted = false;
+    char before = ' ';
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (!quoted && c == '#' && std::string_view(" \t,;").find(before) != std::string_view::npos) break;
+      if (!quoted && c == delimiter) return delimiter;
+      before = c;
+    }
+  }
+  return ' ';
+}
+
+// The fields of a line from left to right, without quotes and surrounding blanks.
+class TableFields {
+ public:
+  TableFields(std::string_view line, char delimiter) : rest_(line), delimiter_(delimiter) {}
+
+  // Absent behind the last field, or where a comment starts.
+  std::optional<std::string_view> next() {
+    while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
+    if (at_end_ || rest_.starts_with('#') || (delimiter_ == ' ' && rest_.empty())) return std::nullopt;
+    return rest_.starts_with('"') ? next_quoted() : next_plain();
+  }
+
+ private:
+  [[nodiscard]] bool is_blank(char c) const { return c == ' ' || (c == '\t' && delimiter_ != '\t'); }
+  [[nodiscard]] bool ends_field(char c) const { return delimiter_ == ' ' ? is_blank(c) : c == delimiter_; }
+
+  std::string_view next_plain() {
+    std::size_t size = 0;
+    std::size_t used = 0;  // without blanks at the end
+    for (; size < rest_.size() && !ends_field(rest_[size]); ++size) {
+      if (rest_[size] == '#' && is_blank(rest_[size - 1])) break;
+      if (!is_blank(rest_[size])) used = size + 1;
+    }
+    const std::string_view field = rest_.substr(0, used);
+    skip_delimiter(size);
+    return field;
+  }
+
+  std::string_view next_quoted() {
+    std::size_t size = 1;
+    while (size < rest_.size() && (rest_[size] != '"' || rest_.substr(size, 2) == "\"\"")) {
+      size += rest_[size] == '"' ? 2 : 1;
+    }
+    const std::string_view field = rest_.substr(1, std::min(size, rest_.size()) - 1);
+    while (size < rest_.size() && !ends_field(rest_[size])) ++size;
+    skip_delimiter(std::min(size, rest_.size()));
+    return field;
+  }
+
+  // Moves behind the delimiter at `position`; at the line's end or at a comment there is none.
+  void skip_delimiter(std::size_t position) {
+    at_end_ = position == rest_.size() || !ends_field(rest_[position]);
+    rest_.remove_prefix(at_end_ ? rest_.size() : position + 1);
+  }
+
+  std::string_view rest_;
+  char delimiter_;
+  bool at_end_ = false;
+};
+
+}  // namespace raycone

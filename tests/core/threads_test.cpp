@@ -25,6 +25,13 @@ TEST(ParallelFor, CoversEachItemOnce) {
   for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
 }
 
+TEST(ParallelFor, CallsABodyOfItemsForEachOnce) {
+  std::vector<std::atomic<int>> visits(kCount);
+  parallel_for_each(kCount, [&](std::size_t n) { ++visits[n]; });
+  for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
+  parallel_for_each(0, [&](std::size_t) { ADD_FAILURE() << "of nothing"; });
+}
+
 // TBB gives its tasks the environment in which a thread first called it, so that a thread of our own is needed.
 TEST(ParallelFor, RunsInTheDefaultFloatingPointEnvironment) {
   std::atomic<std::size_t> elsewhere{0};

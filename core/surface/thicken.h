@@ -16,7 +16,7 @@ namespace raycone {
 void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thickness);
 
 // As edge_points(), for the set where the rule holds or that is no farther than `thickness` from the mesh. Where the
-// distance ends it, `source` is the nearest triangle. Normals are zero.
+// distance ends it, `source` is the nearest triangle.
 [[nodiscard]] std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance,
                                                        double thickness, const SurfaceCells& cells,
                                                        const SurfaceMargins& margins);

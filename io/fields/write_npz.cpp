@@ -53,7 +53,7 @@ std::string array_name(const FieldDescription& field) {
   return field.kind == FieldKind::kVector ? field.name : field.column;
 }
 
-// `size` bytes of one array, known by its description.
+// The flags of a field, a bit each.
 NpzArray packed_array(const FieldDescription& field, std::uint64_t samples) {
   const std::uint64_t bytes = (samples + 7) / 8;
   return {field.column, npy_header("|u1", '(' + std::to_string(bytes) + ",)"), bytes};

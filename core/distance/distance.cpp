@@ -130,10 +130,18 @@ struct DistanceEvaluator::Implementation {
     return *tree;
   }
 
-  [[nodiscard]] double distance_at(const Vec3& point) const {
+  // `limit`: a square, in units, beyond which the distance may be another one beyond it.
+  [[nodiscard]] double distance_at(const Vec3& point, double limit) const {
     const Vec3 p = to_unit(point);
     if (!(largest_coordinate(p) <= far_beyond)) return length_without_overflow(point);
-    return std::min(to_world(std::sqrt(nearest().squared_distance(p))), kLargest);
+    return std::min(to_world(std::sqrt(nearest().squared_distance(p, limit))), kLargest);
+  }
+
+  // Above all squares of distances that are not above `limit`, by more than roots round.
+  [[nodiscard]] double square_beyond(double limit) const {
+    constexpr double kRounding = 1.0 + 1e-12, kUnderflow = 1e-300;
+    const double in_units = to_unit(limit);
+    return in_units * in_units * kRounding + kUnderflow;
   }
 
   [[nodiscard]] std::uint32_t triangle_at(const Vec3& point) const {
@@ -260,14 +268,15 @@ void DistanceEvaluator::prepare_points() const {
   if (!implementation_->mesh.triangles.empty()) (void)implementation_->nearest();
 }
 
-void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double> distances) const {
+void DistanceEvaluator::evaluate(std::span<const Vec3> points, std::span<double> distances, double limit) const {
   assert(distances.size() == points.size());
   if (implementation_->mesh.triangles.empty()) {
     std::ranges::fill(distances, std::numeric_limits<double>::infinity());
     return;
   }
   prepare_points();  // not within the loop, whose threads would wait for one another
-  for_each_point(points, [&](std::size_t n) { distances[n] = implementation_->distance_at(points[n]); });
+  const double square = implementation_->square_beyond(limit);
+  for_each_point(points, [&](std::size_t n) { distances[n] = implementation_->distance_at(points[n], square); });
 }
 
 void DistanceEvaluator::find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const {

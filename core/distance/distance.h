@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -37,8 +38,10 @@ class DistanceEvaluator {
   // Builds the search tree. Without this call, the first evaluation does.
   void prepare_points() const;
 
-  // Sets the distances (world units) of finite points, in their order. Precondition: distances.size() == points.size().
-  void evaluate(std::span<const Vec3> points, std::span<double> distances) const;
+  // Sets the distances (world units) of finite points, in their order. Those above `limit` may be other numbers above
+  // it: a limit spares work. Precondition: distances.size() == points.size().
+  void evaluate(std::span<const Vec3> points, std::span<double> distances,
+                double limit = std::numeric_limits<double>::infinity()) const;
 
   // Sets the numbers of the triangles that finite points are nearest to: of those with the least distance, as computed,
   // the first; triangle 0 where all of the mesh is like one point, from far away. Precondition: triangles.size() ==

@@ -349,7 +349,7 @@ std::optional<Vec3> StripPulls::place_for(std::uint32_t u, std::uint32_t v) {
 
 bool StripPulls::are_on_mesh(std::span<const Vec3> points) const {
   std::vector<double> distances(points.size());
-  all_.distance_.evaluate(points, distances);
+  all_.distance_.evaluate(points, distances, all_.limits_.off);
   return std::ranges::all_of(distances, [&](double distance) { return distance <= all_.limits_.off; });
 }
 

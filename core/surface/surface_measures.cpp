@@ -259,7 +259,7 @@ class DroppedSamples {
     std::vector<Vec3> points;
     for (const std::size_t n : part.doubtful) points.push_back(part.samples.points[n]);
     std::vector<double> distances(points.size());
-    distance_->evaluate(points, distances);
+    distance_->evaluate(points, distances, most_);
     for (std::size_t i = 0; i < points.size(); ++i) part.dropped[part.doubtful[i]] = distances[i] > most_;
   }
 

@@ -82,6 +82,27 @@ double least_of_all(const TriangleMesh& mesh, const Vec3& p) {
 }
 
 // Of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
+TEST(Distance, OfPointsWithinALimitIsWhatItIsWithout) {
+  const TriangleMesh mesh = test::assorted_triangles();
+  const DistanceEvaluator distance(mesh);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> points;
+  for (int n = 0; n < 1000; ++n) points.push_back({normal(random), normal(random), normal(random)});
+  const std::vector<double> distances = at_points(distance, points);
+  for (const double limit : {0.0, 1e-200, 0.1, distances[0], std::nextafter(distances[0], 0.0), 1.0, 100.0}) {
+    std::vector<double> limited(points.size());
+    distance.evaluate(points, limited, limit);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      if (distances[n] <= limit) {
+        EXPECT_EQ(limited[n], distances[n]);
+      } else {
+        EXPECT_GT(limited[n], limit);
+      }
+    }
+  }
+}
+
 TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -106,6 +106,13 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   const SurfaceMeasures measures = measure_surface(made.surface, mesh, inside, options.thickness);
   made.report = report_of(made.surface, measures);
   if (measures.drops) {
+    const double points = 2.0 * static_cast<double>(measures.dropped_samples);
+    // Of so many points sides take less than values, and another evaluator takes less than they do.
+    if (!edges.empty() && options.thickness == 0.0 && points > static_cast<double>(mesh.triangles.size())) {
+      const Accuracy for_points{
+          .tolerance = for_sides.tolerance, .samples = points, .sides_only = true, .points = points};
+      evaluator.emplace(mesh, EvaluatorOptions{.accuracy = for_points, .edges = &edges});
+    }
     const ThinParts thin =
         thin_parts(made.surface, mesh, RuleAlong(*evaluator, options.rule), inside, options.thickness);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);

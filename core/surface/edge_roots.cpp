@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace raycone {
 namespace {
@@ -76,6 +77,28 @@ std::vector<double> RuleAlong::at(const std::vector<Vec3>& points) const {
   std::vector<double> values = winding_numbers(points);
   for (double& w : values) w = from_threshold(w);
   return values;
+}
+
+// Near half-integers values are settled already.
+std::vector<std::uint8_t> RuleAlong::holds_at(const std::vector<Vec3>& points) const {
+  std::vector<double> values = winding_numbers(points);
+  for (const double threshold : thresholds_to_settle(rule_)) {
+    std::vector<std::size_t> doubtful;
+    std::vector<Vec3> there;
+    std::vector<double> settled;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      const double rounded = 0x1p-53 * std::abs(values[n]);  // by the last sum alone, which the doubt need not have
+      if (!(std::abs(values[n] - threshold) <= evaluator_.doubt() + rounded)) continue;
+      doubtful.push_back(n);
+      there.push_back(points[n]);
+      settled.push_back(values[n]);
+    }
+    evaluator_.settle(there, threshold, settled);
+    for (std::size_t i = 0; i < doubtful.size(); ++i) values[doubtful[i]] = settled[i];
+  }
+  std::vector<std::uint8_t> holds_there(values.size());
+  std::ranges::transform(values, holds_there.begin(), [&](double w) { return holds(rule_, w) ? 1 : 0; });
+  return holds_there;
 }
 
 std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {

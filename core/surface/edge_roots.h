@@ -18,6 +18,8 @@ class RuleAlong {
   RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
 
   [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const;
+  // Whether the rule holds at points, 1, or not, 0: exactly, whatever the evaluator's tolerance is.
+  [[nodiscard]] std::vector<std::uint8_t> holds_at(const std::vector<Vec3>& points) const;
   // The winding numbers themselves, on the side of half-integers where w is; and what such a one is, as at() has it.
   [[nodiscard]] std::vector<double> winding_numbers(const std::vector<Vec3>& points) const;
   [[nodiscard]] double from_threshold(double w) const {

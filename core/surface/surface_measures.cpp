@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/distance/distance.h"
@@ -269,40 +271,55 @@ class DroppedSamples {
   std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
 };
 
-// Which points of triangles the lattice should have seen.
-class MissedBy {
+// Finds out which of the points that are dropped the lattice should have seen: of many at a time, so that neighbours
+// among them share what it takes.
+class MissedSamples {
  public:
-  MissedBy(const TriangleMesh& mesh, const RuleAlong& rule, const NodeSet& inside, double thickness)
-      : mesh_(mesh), rule_(rule), inside_(inside), thickness_(thickness) {
+  // `visit`: told the area and the triangle of each, in their order.
+  using Visit = std::function<void(double area, std::uint32_t triangle)>;
+  MissedSamples(const TriangleMesh& mesh, const RuleAlong& rule, const NodeSet& inside, double thickness, Visit visit)
+      : mesh_(mesh), rule_(rule), inside_(inside), thickness_(thickness), visit_(std::move(visit)) {
     step_ = surface_margin(inside.lattice(), false) * inside.lattice().least_spacing();
   }
 
-  [[nodiscard]] std::vector<bool> of(const AreaSamples& samples, const std::vector<bool>& dropped) const {
-    std::vector<bool> missed(dropped.size(), false);
-    std::vector<std::size_t> asked;
-    std::vector<Vec3> sides;
+  void add(const AreaSamples& samples, const std::vector<bool>& dropped) {
+    constexpr std::size_t kAtOnce = std::size_t{1} << 16;
     for (std::size_t n = 0; n < dropped.size(); ++n) {
       if (!dropped[n] || !(samples.areas[n] > 0.0)) continue;
-      const Vec3& p = samples.points[n];
-      const std::optional<bool> within = is_within(p);
+      const std::optional<bool> within = is_within(samples.points[n]);
       if (!within) continue;
       if (thickness_ > 0.0) {
-        missed[n] = !*within;
-        continue;
+        if (!*within) visit_(samples.areas[n], samples.triangles[n]);
+      } else {
+        ask(samples.points[n], samples.areas[n], samples.triangles[n]);
       }
-      const Triangle& t = mesh_.triangles[samples.triangles[n]];
-      const Vec3 normal = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
-      asked.push_back(n);
-      sides.insert(sides.end(), {p - step_ * normal, p + step_ * normal});
     }
-    const std::vector<double> values = rule_.at(sides);
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      missed[asked[i]] = std::signbit(values[2 * i]) != std::signbit(values[2 * i + 1]);
+    if (asked_.size() >= kAtOnce) finish();
+  }
+
+  // Visits those that wait. Comes last, too.
+  void finish() {
+    const std::vector<std::uint8_t> holds = rule_.holds_at(sides_);
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      if (holds[2 * i] != holds[2 * i + 1]) visit_(asked_[i].area, asked_[i].triangle);
     }
-    return missed;
+    asked_.clear();
+    sides_.clear();
   }
 
  private:
+  struct Asked {
+    double area;
+    std::uint32_t triangle;
+  };
+
+  void ask(const Vec3& p, double area, std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    const Vec3 normal = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+    asked_.push_back({area, triangle});
+    sides_.insert(sides_.end(), {p - step_ * normal, p + step_ * normal});
+  }
+
   // Whether the nearest node is in the set; nothing outside of the lattice.
   [[nodiscard]] std::optional<bool> is_within(const Vec3& p) const {
     const Lattice& lattice = inside_.lattice();
@@ -320,17 +337,10 @@ class MissedBy {
   const RuleAlong& rule_;
   const NodeSet& inside_;
   double thickness_, step_ = 0.0;
+  Visit visit_;
+  std::vector<Asked> asked_;
+  std::vector<Vec3> sides_;  // two of each: before its triangle and behind it
 };
-
-// In squares of sample_step().
-double dropped_area_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside, double thickness) {
-  double area = 0.0;
-  DroppedSamples(surface, inside, thickness)
-      .for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
-        for (std::size_t n = 0; n < dropped.size(); ++n) area += dropped[n] ? samples.areas[n] : 0.0;
-      });
-  return area;
-}
 
 }  // namespace
 
@@ -342,30 +352,38 @@ SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& 
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }
-  const double step = sample_step(inside.lattice()), dropped = dropped_area_of(surface, mesh, inside, thickness);
-  measures.dropped_area = dropped * step * step;
-  measures.drops = dropped > 0.0;
+  double dropped_area = 0.0;  // in squares of sample_step()
+  const auto add = [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
+    for (std::size_t n = 0; n < dropped.size(); ++n) dropped_area += dropped[n] ? samples.areas[n] : 0.0;
+    measures.dropped_samples += static_cast<std::uint64_t>(std::ranges::count(dropped, true));
+  };
+  DroppedSamples(surface, inside, thickness).for_each(mesh, add);
+  const double step = sample_step(inside.lattice());
+  measures.dropped_area = dropped_area * step * step;
+  measures.drops = dropped_area > 0.0;
   return measures;
 }
 
 ThinParts thin_parts(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& rule, const NodeSet& inside,
                      double thickness) {
-  const MissedBy missed_by(mesh, rule, inside, thickness);
   const Components components = components_of(mesh);
   std::vector<bool> is_left(components.count, false), is_missed(components.count, false);
+  const auto component_of = [&](std::uint32_t triangle) { return components.of_vertex[mesh.triangles[triangle][0]]; };
   ThinParts thin;
   double whole = 0.0;
+  MissedSamples missed(mesh, rule, inside, thickness, [&](double area, std::uint32_t triangle) {
+    thin.area += area;
+    is_missed[component_of(triangle)] = true;
+  });
   const auto add = [&](const AreaSamples& samples, const std::vector<bool>& dropped) {
-    const std::vector<bool> missed = missed_by.of(samples, dropped);
     for (std::size_t n = 0; n < dropped.size(); ++n) {
-      const std::uint32_t component = components.of_vertex[mesh.triangles[samples.triangles[n]][0]];
       whole += samples.areas[n];
-      thin.area += missed[n] ? samples.areas[n] : 0.0;
-      if (missed[n]) is_missed[component] = true;
-      if (!dropped[n]) is_left[component] = true;
+      if (!dropped[n]) is_left[component_of(samples.triangles[n])] = true;
     }
+    missed.add(samples, dropped);
   };
   DroppedSamples(surface, inside, thickness).for_each(mesh, add);
+  missed.finish();
   for (std::size_t c = 0; c < components.count; ++c) thin.lost += is_missed[c] && !is_left[c] ? 1 : 0;
   const double step = sample_step(inside.lattice());
   if (whole > 0.0) thin.of_all = thin.area / whole;

@@ -18,7 +18,8 @@ struct SurfaceMeasures {
   // set, as judged at points half a diagonal apart (on triangles of more than 64 diagonals, at 16 384 points each). It
   // separates nothing, or is of parts thinner than the lattice sees.
   double dropped_area = 0.0;
-  bool drops = false;  // whether there is such area, even if world units make it 0 or infinite
+  std::uint64_t dropped_samples = 0;  // how many of these points are
+  bool drops = false;                 // whether there is such area, even if world units make it 0 or infinite
 };
 
 // What a lattice is too coarse for.

@@ -135,5 +135,30 @@ TEST(EdgeCrossing, JumpsAreNotKnownAtSides) {
   EXPECT_EQ(jump({2.0, 2.0, -1}, {2.0, 2.0, 1}), 99);
 }
 
+// A far field that is off by more than places differ from the threshold.
+TEST(RuleAlong, HoldsAsItDoesWhateverTheTolerance) {
+  Random random(11);
+  const TriangleMesh mesh = test::soup(random, 200);
+  const WindingNumberEvaluator exact(mesh);
+  const WindingNumberEvaluator rough(mesh, {.summation = Summation::kFarField, .accuracy = {.tolerance = 1e-2}});
+  for (const Rule& rule : {Rule{RuleKind::kThreshold, 0.3}, Rule{RuleKind::kAbs, 0.25}, Rule{RuleKind::kOdd, 0.5}}) {
+    const RuleAlong along(exact, rule);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 300; ++n) {
+      Vec3 low = test::uniform_point(random, {{-2, -2, -2}, {2, 2, 2}});
+      Vec3 high = test::uniform_point(random, {{-2, -2, -2}, {2, 2, 2}});
+      for (int halves = 0; halves < 20; ++halves) {
+        const std::vector<std::uint8_t> ends = along.holds_at({low, 0.5 * low + 0.5 * high});
+        (ends[0] == ends[1] ? low : high) = 0.5 * low + 0.5 * high;
+      }
+      points.insert(points.end(), {low, high});
+    }
+    std::vector<double> w(points.size());
+    exact.evaluate(points, w);
+    const std::vector<std::uint8_t> found = RuleAlong(rough, rule).holds_at(points);
+    for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(found[n] != 0, holds(rule, w[n])) << w[n];
+  }
+}
+
 }  // namespace
 }  // namespace raycone

@@ -555,7 +555,7 @@ MUTANTS = [
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
         ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
-        ("core/surface/surface_measures.cpp", "std::signbit(values[2 * i]) != std::signbit(values[2 * i + 1])", "true")]),
+        ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [
         ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [

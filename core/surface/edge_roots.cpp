@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <tuple>
 
 namespace raycone {
 namespace {
@@ -65,6 +67,22 @@ class RootSearch {
   double part_ = 0.5;
 };
 
+// Asks once where points are equal: many edges have an end in common.
+std::vector<double> values_of_each(const std::vector<Vec3>& points, const ValuesAt& values_at) {
+  std::vector<std::size_t> order(points.size()), place(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t n) { return std::tuple(points[n].x, points[n].y, points[n].z); });
+  std::vector<Vec3> distinct;
+  for (const std::size_t n : order) {
+    if (distinct.empty() || distinct.back() != points[n]) distinct.push_back(points[n]);
+    place[n] = distinct.size() - 1;
+  }
+  const std::vector<double> values = values_at(distinct);
+  std::vector<double> of_each(points.size());
+  std::ranges::transform(place, of_each.begin(), [&](std::size_t at) { return values[at]; });
+  return of_each;
+}
+
 }  // namespace
 
 std::vector<double> RuleAlong::winding_numbers(const std::vector<Vec3>& points) const {
@@ -108,15 +126,14 @@ std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
   return values;
 }
 
-void find_roots(std::vector<Bracket>& brackets,
-                const std::function<std::vector<double>(const std::vector<Vec3>&)>& values_at) {
+void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at) {
   constexpr int kRounds = 90;  // halving alone would take 34
   std::vector<Vec3> points;
   for (const Bracket& bracket : brackets) {
     points.push_back(bracket.edge.point(bracket.low));
     points.push_back(bracket.edge.point(bracket.high));
   }
-  const std::vector<double> ends = values_at(points);
+  const std::vector<double> ends = values_of_each(points, values_at);
   std::vector<RootSearch> searches;
   searches.reserve(brackets.size());
   for (std::size_t i = 0; i < brackets.size(); ++i) searches.emplace_back(brackets[i], ends[2 * i], ends[2 * i + 1]);

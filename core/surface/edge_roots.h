@@ -41,9 +41,11 @@ struct Bracket {
   double root = 0.0;  // between them, as find_roots() leaves it
 };
 
+// Answers for many points at once: a value for each, that does not depend on the others.
+using ValuesAt = std::function<std::vector<double>(const std::vector<Vec3>&)>;
+
 // Narrows brackets to 2^-34 of their edges (Chandrupatla 1997), and finds where values are 0 if they change evenly
-// between the ends. `values` answers for many points at once.
-void find_roots(std::vector<Bracket>& brackets,
-                const std::function<std::vector<double>(const std::vector<Vec3>&)>& values);
+// between the ends.
+void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at);
 
 }  // namespace raycone

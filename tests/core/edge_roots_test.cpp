@@ -71,6 +71,21 @@ TEST(EdgeRoots, OfNarrowBracketsAreInTheMiddle) {
   EXPECT_EQ(brackets[0].root, 0.5 + 0x1p-37);
 }
 
+TEST(EdgeRoots, AskOnceForAnEndOfSeveralEdges) {
+  const Vec3 node{0, 0, 0};
+  std::vector<Bracket> brackets{{{node, {1, 0, 0}, 0}, 0.0, 1.0}, {{node, {0, 1, 0}, 1}, 0.0, 1.0}};
+  brackets.push_back({{{1, 1, 0}, {0, 1, 0}, 2}, 0.0, 1.0});
+  std::vector<std::size_t> asked;
+  find_roots(brackets, [&](const std::vector<Vec3>& places) {
+    asked.push_back(places.size());
+    std::vector<double> values;
+    for (const Vec3& p : places) values.push_back(0.25 - p.x - p.y + 2.0 * p.x * p.y);
+    return values;
+  });
+  EXPECT_EQ(asked[0], 4U);
+  for (const Bracket& bracket : brackets) EXPECT_NEAR(bracket.root, 0.25, 1e-15);  // some roundings of the place
+}
+
 // Halving finds what interpolation does not.
 TEST(EdgeRoots, AreFoundOfAnyFunction) {
   const double root = 0.3141592653589793;

@@ -22,7 +22,6 @@ constexpr double kSameHit = 0x1p-40;
 struct OpenEdge {
   MixedEdge edge;
   std::vector<SegmentHit> hits;  // one for each place
-  std::size_t first_probe = 0;   // of those that each hit has
 };
 
 class EdgePointFinder {
@@ -38,7 +37,7 @@ class EdgePointFinder {
 
   std::vector<EdgePoint> find() {
     find_hits();
-    rule_.is_closed() ? decide_closed() : decide_open();
+    decide();
     find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
     for (const Bracket& bracket : brackets_) {
       points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
@@ -47,10 +46,15 @@ class EdgePointFinder {
   }
 
  private:
+  // Whether the rule holds just before a place, and just behind it.
+  struct Sides {
+    bool before, behind;
+  };
   void find_hits();
-  void decide_closed();
-  void decide_open();
-  void decide(const OpenEdge& open);
+  void decide();
+  [[nodiscard]] std::vector<Sides> sides_in_closed(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
+  [[nodiscard]] std::vector<Sides> sides_in_open(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
+  [[nodiscard]] bool decides(const OpenEdge& open, std::size_t place, const Sides& sides);
 
   void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
     points_[edge.number] = {edge.point(within(hit.at)), static_cast<std::int32_t>(hit.triangle)};
@@ -64,10 +68,6 @@ class EdgePointFinder {
   double margin_;
   std::vector<EdgePoint> points_;
   std::vector<OpenEdge> open_;
-  struct Sides {
-    bool before, behind;  // whether the rule holds there
-  };
-  std::vector<Sides> sides_;  // of each hit of the edge at hand
   std::vector<Bracket> brackets_;
 };
 
@@ -111,10 +111,9 @@ void EdgePointFinder::find_hits() {
   std::ranges::sort(open_, {}, [](const OpenEdge& open) { return open.edge.number; });
 }
 
-// Between places, where w of a closed mesh is constant; the last one is not asked for.
+// Between places, where w of a closed mesh is constant; not behind the last one.
 double behind_in_closed(const std::vector<SegmentHit>& hits, std::size_t i) {
-  const double here = hits[i].at, next = i + 1 < hits.size() ? hits[i + 1].at : 1.0;
-  return here + (next - here) / 2;
+  return hits[i].at + (hits[i + 1].at - hits[i].at) / 2;
 }
 
 // Just before and just behind a place.
@@ -128,72 +127,80 @@ double behind(const std::vector<SegmentHit>& hits, std::size_t i) {
   return here + std::min(kStep, (next - here) / 4);
 }
 
-void EdgePointFinder::decide_closed() {
+// Of all edges the first place, then of those that are left the next one: most end at their first.
+void EdgePointFinder::decide() {
+  std::vector<const OpenEdge*> left;
+  for (const OpenEdge& open : open_) {
+    if (open.hits.empty()) {
+      brackets_.push_back({open.edge, 0.0, 1.0});
+    } else {
+      left.push_back(&open);
+    }
+  }
+  for (std::size_t place = 0; !left.empty(); ++place) {
+    const std::vector<Sides> sides = rule_.is_closed() ? sides_in_closed(left, place) : sides_in_open(left, place);
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      if (!decides(*left[n], place, sides[n])) left[count++] = left[n];
+    }
+    left.resize(count);
+  }
+}
+
+// Behind the last place the rule does not hold, as it does not at the end of the edge.
+std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_closed(const std::vector<const OpenEdge*>& edges,
+                                                                     std::size_t place) const {
+  const auto is_last = [&](const OpenEdge* open) { return place + 1 == open->hits.size(); };
   std::vector<Vec3> points;
-  for (OpenEdge& open : open_) {
-    open.first_probe = points.size();
-    for (std::size_t i = 0; i < open.hits.size(); ++i)
-      points.push_back(open.edge.point(behind_in_closed(open.hits, i)));
+  for (const OpenEdge* open : edges) {
+    if (!is_last(open)) points.push_back(open->edge.point(behind_in_closed(open->hits, place)));
   }
   const std::vector<double> values = rule_.at(points);
-  for (const OpenEdge& open : open_) {
-    sides_.clear();
-    for (std::size_t i = 0; i < open.hits.size(); ++i) sides_.push_back({true, values[open.first_probe + i] >= 0.0});
-    decide(open);
-  }
+  std::vector<Sides> sides;
+  std::size_t next = 0;
+  for (const OpenEdge* open : edges) sides.push_back({true, !is_last(open) && values[next++] >= 0.0});
+  return sides;
 }
 
 // What is behind a place follows from what is before it where one triangle makes the difference, and leaves the rule in
 // no doubt.
-void EdgePointFinder::decide_open() {
+std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_open(const std::vector<const OpenEdge*>& edges,
+                                                                   std::size_t place) const {
   constexpr double kClear = 0x1p-10;  // far more than w changes by itself from just before a place to just behind it
   std::vector<Vec3> points;
-  for (OpenEdge& open : open_) {
-    open.first_probe = points.size();
-    for (std::size_t i = 0; i < open.hits.size(); ++i) points.push_back(open.edge.point(before(open.hits, i)));
-  }
+  for (const OpenEdge* open : edges) points.push_back(open->edge.point(before(open->hits, place)));
   const std::vector<double> w = rule_.winding_numbers(points);
-  const auto clear_behind = [&](const OpenEdge& open, std::size_t i) -> std::optional<bool> {
-    const int jump = open.hits[i].jump;
-    const double value = jump != 0 ? rule_.from_threshold(w[open.first_probe + i] + jump) : 0.0;
-    return std::abs(value) > kClear ? std::optional(value > 0.0) : std::nullopt;
-  };
+  std::vector<Sides> sides;
+  std::vector<std::size_t> doubtful;
   points.clear();
-  for (const OpenEdge& open : open_) {
-    for (std::size_t i = 0; i < open.hits.size(); ++i) {
-      if (!clear_behind(open, i)) points.push_back(open.edge.point(behind(open.hits, i)));
-    }
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    const int jump = edges[n]->hits[place].jump;
+    const double value = jump != 0 ? rule_.from_threshold(w[n] + jump) : 0.0;
+    sides.push_back({rule_.from_threshold(w[n]) >= 0.0, value > 0.0});
+    if (std::abs(value) > kClear) continue;
+    doubtful.push_back(n);
+    points.push_back(edges[n]->edge.point(behind(edges[n]->hits, place)));
   }
-  const std::vector<double> values_behind = rule_.at(points);
-  std::size_t next = 0;
-  for (const OpenEdge& open : open_) {
-    sides_.clear();
-    for (std::size_t i = 0; i < open.hits.size(); ++i) {
-      const std::optional<bool> clear = clear_behind(open, i);
-      const bool is_behind = clear ? *clear : values_behind[next++] >= 0.0;
-      sides_.push_back({rule_.from_threshold(w[open.first_probe + i]) >= 0.0, is_behind});
-    }
-    decide(open);
-  }
+  const std::vector<double> values = rule_.at(points);
+  for (std::size_t i = 0; i < doubtful.size(); ++i) sides[doubtful[i]].behind = values[i] >= 0.0;
+  return sides;
 }
 
-// Next to an end the rule is what it is there, whatever rounding makes of the probe.
-void EdgePointFinder::decide(const OpenEdge& open) {
-  double inside_until = 0.0;
-  for (std::size_t i = 0; i < open.hits.size(); ++i) {
-    const double here = open.hits[i].at;
-    const bool is_last = i + 1 == open.hits.size();
-    if (!sides_[i].before && here != 0.0) {
-      brackets_.push_back({open.edge, inside_until, here});
-      return;
-    }
-    if (!sides_[i].behind || (is_last && (rule_.is_closed() || here == 1.0))) {
-      set_hit(open.edge, open.hits[i]);
-      return;
-    }
-    inside_until = here;
+// Whether that is where the edge leaves the set, or just before or behind it. Next to an end the rule is what it is
+// there, whatever rounding makes of the probe.
+bool EdgePointFinder::decides(const OpenEdge& open, std::size_t place, const Sides& sides) {
+  const double here = open.hits[place].at, last = place > 0 ? open.hits[place - 1].at : 0.0;
+  const bool is_last = place + 1 == open.hits.size();
+  if (!sides.before && here != 0.0) {
+    brackets_.push_back({open.edge, last, here});
+    return true;
   }
-  brackets_.push_back({open.edge, inside_until, 1.0});
+  if (!sides.behind || (is_last && (rule_.is_closed() || here == 1.0))) {
+    set_hit(open.edge, open.hits[place]);
+    return true;
+  }
+  if (is_last) brackets_.push_back({open.edge, here, 1.0});
+  return is_last;
 }
 
 }  // namespace

@@ -150,19 +150,20 @@ TEST(EdgeCrossing, JumpsAreNotKnownAtSides) {
   EXPECT_EQ(jump({2.0, 2.0, -1}, {2.0, 2.0, 1}), 99);
 }
 
-// A far field that is off by more than places differ from the threshold.
+// A far field that is off by more than w at these places is from a threshold.
 TEST(RuleAlong, HoldsAsItDoesWhateverTheTolerance) {
   Random random(11);
-  const TriangleMesh mesh = test::soup(random, 200);
+  TriangleMesh mesh = test::sphere(16);
+  std::erase_if(mesh.triangles, [&](const Triangle&) { return random() % 3 != 0; });
   const WindingNumberEvaluator exact(mesh);
   const WindingNumberEvaluator rough(mesh, {.summation = Summation::kFarField, .accuracy = {.tolerance = 1e-2}});
   for (const Rule& rule : {Rule{RuleKind::kThreshold, 0.3}, Rule{RuleKind::kAbs, 0.25}, Rule{RuleKind::kOdd, 0.5}}) {
     const RuleAlong along(exact, rule);
     std::vector<Vec3> points;
-    for (int n = 0; n < 300; ++n) {
+    for (int n = 0; n < 40; ++n) {
       Vec3 low = test::uniform_point(random, {{-2, -2, -2}, {2, 2, 2}});
       Vec3 high = test::uniform_point(random, {{-2, -2, -2}, {2, 2, 2}});
-      for (int halves = 0; halves < 20; ++halves) {
+      for (int halves = 0; halves < 30; ++halves) {
         const std::vector<std::uint8_t> ends = along.holds_at({low, 0.5 * low + 0.5 * high});
         (ends[0] == ends[1] ? low : high) = 0.5 * low + 0.5 * high;
       }

@@ -243,7 +243,7 @@ class EdgeVertices {
       numbers_.push_back(e.to);
     }
     std::ranges::sort(numbers_);
-    numbers_.erase(std::ranges::unique(numbers_).begin(), numbers_.end());
+    numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
     std::vector<Placed> placed(numbers_.size());
     for (std::uint32_t i = 0; i < placed.size(); ++i) placed[i] = {mesh.vertices[numbers_[i]].x, i};
     // By coordinates; indices tell apart only vertices that were left unwelded at one position.

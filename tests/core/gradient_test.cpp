@@ -120,6 +120,17 @@ TEST(Gradient, IsTheSumOverTheSidesOfANeedleNearItsLine) {
   }
 }
 
+// Off the line of a sliver's sides by roundings, beyond its ends: the sum over its sides must not lose them, either.
+TEST(Gradient, IsTheSumOverTheSidesOfASliverNextToItsLine) {
+  test::Random random(19);
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 along = test::uniform_point(random, box);
+    const TriangleMesh mesh{{{0, 0, 0}, 0.7 * along, along}, {{0, 1, 2}}};
+    expect_sums(mesh, {1.7 * along, -0.3 * along, 3.1 * along, -1e3 * along});
+  }
+}
+
 TEST(Gradient, OfAClosedMeshIsZero) {
   const std::vector<Vec3> points{{0.5, 0.5, 0.5}, {0, 0, 0}, {0.5, 0, 0}, {1e300, 0, -1e300}, {3, 1, 2}};
   for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 1, 1}), test::sphere(5), TriangleMesh{}}) {

@@ -47,11 +47,10 @@ void for_each_point(std::span<const Vec3> points, const Visit& visit) {
       }
     };
     const Buckets<std::uint64_t> buckets(here.size(), std::size_t{1} << kBucketBits, add);
-    parallel_for(buckets.count(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        std::ranges::sort(buckets[n]);
-        for (const std::uint64_t at : buckets[n]) visit(first + static_cast<std::uint32_t>(at));
-      }
+    parallel_for_each(buckets.count(), [&](std::size_t n) { std::ranges::sort(buckets[n]); });
+    const std::span<const std::uint64_t> order = buckets.all();
+    parallel_for(order.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) visit(first + static_cast<std::uint32_t>(order[n]));
     });
   }
 }

@@ -8,17 +8,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/lanes-inl.h"
 #include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
 
 constexpr double kLeastSquare = 0x1p-900;  // of a distance: less has lost bits, or loses them in what follows
 constexpr std::size_t kDeepest = 16;       // levels of nodes: each has eight times as many as the one above it
@@ -50,10 +46,9 @@ HWY_INLINE void visit(std::span<const ChangeNode> nodes, const Box& box, const A
       const auto taken = hn::Gt(square, hn::Load(d, &node.far_square[i]));
       if (!add(node, i, square, taken)) return;
       if (hn::AllTrue(d, taken)) continue;
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, taken, bits);
+      const std::uint32_t bits = bits_of(taken);
       for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-        if (!(bits[0] >> lane & 1U)) waiting[count++] = node.child[i + lane];
+        if (!(bits >> lane & 1U)) waiting[count++] = node.child[i + lane];
       }
     }
   }

@@ -6,8 +6,6 @@
 #define RAYCONE_CORE_PRODUCT_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,16 +14,12 @@
 
 #include "core/boundary/angle.h"
 #include "core/boundary/sample_tile.h"
+#include "core/machine/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
 
 constexpr std::size_t kFactorsPerBlock = 8;  // multiplied before anybody looks whether all went well
 // Factors within these bounds can be multiplied that many times onto a number near 1.
@@ -77,13 +71,6 @@ void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
 // or NaN.
 HWY_INLINE hn::Mask<Doubles> is_sound(const ProductLanes& z) {
   return hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct));
-}
-
-// Lanes of `trusted` as bits.
-HWY_INLINE std::uint64_t bits_of(hn::Mask<Doubles> trusted) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, trusted, bits);
-  return bits[0];
 }
 
 // Stores the trusted lanes of a block's product; the others have been multiplied in memory.

@@ -164,12 +164,6 @@ void search_packs(const DistanceTree& tree, const Box& box, double limit, std::s
   }
 }
 
-HWY_INLINE std::uint32_t bits_of(LaneMask mask) {
-  std::array<std::uint8_t, 8> bytes{};  // as many as Highway may write
-  hn::StoreMaskBits(d, mask, bytes.data());
-  return bytes[0];
-}
-
 std::uint32_t search_slots(const TrianglePack& pack, const Vec3& p, double square) {
   const VectorLanes ps = in_all_lanes(p);
   const Lanes squares = hn::Set(d, square), reach = hn::Set(d, beyond_error(square));

@@ -170,9 +170,7 @@ struct FarSamples {
   std::size_t count = 0;
 
   HWY_INLINE void add(hn::Mask<Doubles> lanes, std::size_t first) {
-    std::array<std::uint8_t, 8> bytes{};  // as many as Highway may write
-    hn::StoreMaskBits(d, lanes, bytes.data());
-    for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = bits_of(lanes); bits != 0; bits &= bits - 1) {
       places[count++] = static_cast<std::uint8_t>(first + static_cast<std::size_t>(std::countr_zero(bits)));
     }
   }

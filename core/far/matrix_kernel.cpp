@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/lanes-inl.h"
 #include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,10 +18,6 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
 constexpr std::size_t kWidth = 8;  // numbers of a row that are summed together
 
 // Four rows, in accumulators that stay in registers.

@@ -9,17 +9,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/lanes-inl.h"
 #include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
 
 // Groups of lanes that go through the coefficients together, so that sums need not wait for one another.
 template <std::size_t kGroups>

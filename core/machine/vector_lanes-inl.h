@@ -6,20 +6,13 @@
 #define RAYCONE_CORE_VECTOR_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "core/data/vec3.h"
+#include "core/machine/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
-using LaneMask = hn::Mask<Doubles>;
-constexpr Doubles d;
 
 struct VectorLanes {
   Lanes x, y, z;

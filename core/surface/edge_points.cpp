@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <mutex>
-#include <optional>
+#include <span>
 
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
@@ -17,6 +15,8 @@ namespace {
 
 // Hits that are nearer to each other, as fractions of an edge, are one: of triangles that share an edge.
 constexpr double kSameHit = 0x1p-40;
+
+constexpr std::size_t kBracketsPerTask = 4096;
 
 // An edge of which more has to be known than where it meets triangles.
 struct OpenEdge {
@@ -39,9 +39,11 @@ class EdgePointFinder {
     find_hits();
     decide();
     find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
-    for (const Bracket& bracket : brackets_) {
-      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
-    }
+    parallel_for(brackets_.size(), kBracketsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (const Bracket& bracket : std::span(brackets_).subspan(begin, end - begin)) {
+        points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
+      }
+    });
     return std::move(points_);
   }
 
@@ -51,6 +53,7 @@ class EdgePointFinder {
     bool before, behind;
   };
   void find_hits();
+  void find_hits(std::uint32_t number, HitFinder& finder, std::vector<SegmentHit>& hits, std::vector<OpenEdge>& open);
   void decide();
   [[nodiscard]] std::vector<Sides> sides_in_closed(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
   [[nodiscard]] std::vector<Sides> sides_in_open(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
@@ -85,30 +88,35 @@ void keep_places(std::vector<SegmentHit>& hits) {
 }
 
 void EdgePointFinder::find_hits() {
-  std::mutex mutex;
-  parallel_for(cells_.cells().size(), 1024, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kCellsAtOnce = 1024;
+  const std::size_t cells = cells_.cells().size();
+  std::vector<std::vector<OpenEdge>> open((cells + kCellsAtOnce - 1) / kCellsAtOnce);
+  parallel_for_each(open.size(), [&](std::size_t n) {
     std::vector<SegmentHit> hits;
-    std::vector<OpenEdge> open;
     HitFinder finder(mesh_);
-    for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
-      const SurfaceCell& cell = cells_.cells()[n];
-      const bool from_inside = cell.is_inside(0);
-      finder.enter(cells_.corner(cell, 0), triangles_.of(n));
-      cells_.for_each_edge(cell, [&](const MixedEdge& edge) {
-        finder.find(from_inside ? edge.outside : edge.inside, from_inside, hits);
-        keep_places(hits);
-        // A closed mesh changes w nowhere else.
-        if (rule_.is_closed() && hits.size() == 1) {
-          set_hit(edge, hits.front());
-        } else {
-          open.push_back({edge, hits});
-        }
-      });
+    for (std::size_t cell = n * kCellsAtOnce; cell < std::min(cells, (n + 1) * kCellsAtOnce); ++cell) {
+      find_hits(static_cast<std::uint32_t>(cell), finder, hits, open[n]);
     }
-    const std::scoped_lock lock(mutex);
-    std::ranges::move(open, std::back_inserter(open_));
   });
-  std::ranges::sort(open_, {}, [](const OpenEdge& open) { return open.edge.number; });
+  for (std::vector<OpenEdge>& some : open) std::ranges::move(some, std::back_inserter(open_));
+}
+
+// Of the edges of one cell; sets those where hits alone tell.
+void EdgePointFinder::find_hits(std::uint32_t number, HitFinder& finder, std::vector<SegmentHit>& hits,
+                                std::vector<OpenEdge>& open) {
+  const SurfaceCell& cell = cells_.cells()[number];
+  const bool from_inside = cell.is_inside(0);
+  finder.enter(cells_.corner(cell, 0), triangles_.of(number));
+  cells_.for_each_edge(cell, [&](const MixedEdge& edge) {
+    finder.find(from_inside ? edge.outside : edge.inside, from_inside, hits);
+    keep_places(hits);
+    // A closed mesh changes w nowhere else.
+    if (rule_.is_closed() && hits.size() == 1) {
+      set_hit(edge, hits.front());
+    } else {
+      open.push_back({edge, hits});
+    }
+  });
 }
 
 // Between places, where w of a closed mesh is constant; not behind the last one.

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/machine/threads.h"
+
 namespace raycone {
 namespace {
 
@@ -66,6 +68,15 @@ class RootSearch {
   Place last_, across_;
   double part_ = 0.5;
 };
+
+// On all threads.
+template <class Body>
+void for_each(std::size_t count, const Body& body) {
+  constexpr std::size_t kPerTask = 4096;
+  parallel_for(count, kPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
 
 // Asks once where points are equal: many edges have an end in common.
 std::vector<double> values_of_each(const std::vector<Vec3>& points, const ValuesAt& values_at) {
@@ -128,11 +139,11 @@ std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
 
 void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at) {
   constexpr int kRounds = 90;  // halving alone would take 34
-  std::vector<Vec3> points;
-  for (const Bracket& bracket : brackets) {
-    points.push_back(bracket.edge.point(bracket.low));
-    points.push_back(bracket.edge.point(bracket.high));
-  }
+  std::vector<Vec3> points(2 * brackets.size());
+  for_each(brackets.size(), [&](std::size_t i) {
+    points[2 * i] = brackets[i].edge.point(brackets[i].low);
+    points[2 * i + 1] = brackets[i].edge.point(brackets[i].high);
+  });
   const std::vector<double> ends = values_of_each(points, values_at);
   std::vector<RootSearch> searches;
   searches.reserve(brackets.size());
@@ -140,10 +151,10 @@ void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at) {
   for (int round = 0; round < kRounds; ++round) {
     std::erase_if(searches, [](const RootSearch& search) { return search.is_narrow(); });
     if (searches.empty()) return;
-    points.clear();
-    for (const RootSearch& search : searches) points.push_back(search.next());
+    points.resize(searches.size());
+    for_each(searches.size(), [&](std::size_t i) { points[i] = searches[i].next(); });
     const std::vector<double> values = values_at(points);
-    for (std::size_t i = 0; i < searches.size(); ++i) searches[i].narrow(values[i], round);
+    for_each(searches.size(), [&](std::size_t i) { searches[i].narrow(values[i], round); });
   }
 }
 

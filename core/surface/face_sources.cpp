@@ -43,13 +43,6 @@ bool is_along(const Corners& face, const Vec3& normal) {
   return std::abs(dot(normal, face.normal())) >= kSharpCosine;
 }
 
-bool may_be_of(const Corners& face, const Vec3& point_of_source, const Vec3& normal, double off) {
-  for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
-    if (!(std::abs(dot(normal, *corner - point_of_source)) <= off)) return false;
-  }
-  return is_along(face, normal);
-}
-
 // Faces beside one that closes a hole, and in line with it, close it too, if they are on no triangle: at a rim all of
 // their corners may be. `may_close`: of each face, whether it is on none.
 void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surface) {
@@ -90,14 +83,21 @@ SourceSettler::SourceSettler(const TriangleMesh& input, const TriangleNormals& n
                              const DistanceEvaluator& distance, double off)
     : input_(input), normals_(normals), distance_(distance), off_(off) {}
 
+bool SourceSettler::may_be_of(const SurfaceMesh& surface, std::size_t number, std::uint32_t source) const {
+  const Corners face = corners_of(surface.mesh, number);
+  const Vec3 &point = input_.vertices[input_.triangles[source][0]], normal = normals_.of(source);
+  for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
+    if (!(std::abs(dot(normal, *corner - point)) <= off_)) return false;
+  }
+  return is_along(face, normal);
+}
+
 std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surface) const {
   std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
   parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t face = begin; face < end; ++face) {
       if (surface.sources[face] == kHole) continue;
-      const auto source = static_cast<std::uint32_t>(surface.sources[face]);
-      const Vec3& point = input_.vertices[input_.triangles[source][0]];
-      doubtful[face] = may_be_of(corners_of(surface.mesh, face), point, normals_.of(source), off_) ? 0 : 1;
+      doubtful[face] = may_be_of(surface, face, static_cast<std::uint32_t>(surface.sources[face])) ? 0 : 1;
     }
   });
   return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
@@ -112,11 +112,12 @@ void SourceSettler::settle(SurfaceMesh& surface) const {
   std::vector<std::uint32_t> nearest(faces.size());
   distance_.find_nearest(middles, nearest);
   std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);
-  for (std::size_t n = 0; n < faces.size(); ++n) {
-    surface.sources[faces[n]] = static_cast<std::int32_t>(nearest[n]);
-    const Vec3& point = input_.vertices[input_.triangles[nearest[n]][0]];
-    off_mesh[faces[n]] = may_be_of(corners_of(surface.mesh, faces[n]), point, normals_.of(nearest[n]), off_) ? 0 : 1;
-  }
+  parallel_for(faces.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      surface.sources[faces[n]] = static_cast<std::int32_t>(nearest[n]);
+      off_mesh[faces[n]] = may_be_of(surface, faces[n], nearest[n]) ? 0 : 1;
+    }
+  });
   spread_holes(off_mesh, surface);
 }
 

@@ -1,6 +1,7 @@
 // Which triangle of the mesh each face of a surface is of.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,7 @@ class SourceSettler {
   void settle(SurfaceMesh& surface) const;
 
  private:
+  [[nodiscard]] bool may_be_of(const SurfaceMesh& surface, std::size_t number, std::uint32_t source) const;
   [[nodiscard]] std::vector<std::uint32_t> doubtful_faces(const SurfaceMesh& surface) const;
 
   const TriangleMesh& input_;

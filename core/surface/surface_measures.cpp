@@ -8,13 +8,13 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/distance/distance.h"
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
+#include "core/mesh/triangle_runs.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/surface.h"
 
@@ -103,18 +103,20 @@ struct AreaSamples {
   std::vector<std::uint32_t> triangles;
 };
 
+constexpr double kMostRows = 180.0;  // of a triangle: each is a small part then
+constexpr double kPerStep = 1.4;     // rows, and parts of a row: two of them to a square of a step
+
+double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostRows); }
+
 // In rows along the shortest side, so that needles have as few as their area asks for.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
-  constexpr double kMost = 180.0;   // of so many rows, each is a small part
-  constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a square of a step
   const Triangle& t = mesh.triangles[triangle];
   const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
   const std::array lengths{length_of_vector(side(0)), length_of_vector(side(1)), length_of_vector(side(2))};
   const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
   const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
   const double area = length_of_vector(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
-  const auto parts_of = [&](double length) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMost); };
-  const double rows = parts_of(std::ranges::max(lengths)), in_last_row = parts_of(lengths[apex]);
+  const double rows = parts_of(std::ranges::max(lengths), step), in_last_row = parts_of(lengths[apex], step);
   for (double row = 0.0; row < rows; row += 1.0) {
     const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
     const double centre = (to * to * to - from * from * from) * 2.0 / 3.0 / part;
@@ -125,6 +127,14 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
       samples.triangles.push_back(triangle);
     }
   }
+}
+
+// That many or fewer, found in far less time than they are.
+double most_samples(const TriangleMesh& mesh, std::uint32_t triangle, double step) {
+  constexpr double kLonger = 2.0;  // at most, a side than its extent along an axis: above the square root of 3
+  const Box box = box_of_triangle(mesh, triangle);
+  const double rows = parts_of(kLonger * largest_coordinate(box.upper - box.lower), step);
+  return rows * rows;
 }
 
 double sample_step(const Lattice& lattice) { return 0.5 * length_of_vector(lattice.spacing); }
@@ -221,48 +231,61 @@ class DroppedSamples {
   // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order.
   template <class Visit>
   void for_each(const TriangleMesh& mesh, const Visit& visit) {
-    std::array<Part, 16> parts;
-    constexpr std::size_t kTrianglesPerPart = 8, kAtOnce = kTrianglesPerPart * std::tuple_size_v<decltype(parts)>;
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t first = 0; first < count; first += kAtOnce) {
-      parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-          const std::size_t triangle = first + n * kTrianglesPerPart;
-          parts[n] = part_of(mesh, std::min(triangle, count), std::min(triangle + kTrianglesPerPart, count));
-        }
-      });
-      for (Part& part : parts) {
-        decide(part);
-        if (!part.dropped.empty()) visit(part.samples, part.dropped);
+    constexpr std::size_t kPartsAtOnce = 64;
+    for (std::size_t next = 0; next < mesh.triangles.size();) {
+      std::vector<Part> parts;
+      while (parts.size() < kPartsAtOnce && next < mesh.triangles.size()) {
+        parts.push_back(part_from(mesh, next));
+        next = parts.back().end;
       }
+      parallel_for_each(parts.size(), [&](std::size_t n) { take_samples(mesh, parts[n]); });
+      decide(parts);
+      for (const Part& part : parts) visit(part.samples, part.dropped);
     }
   }
 
  private:
+  // Of some triangles.
   struct Part {
-    AreaSamples samples;
-    std::vector<bool> dropped;
-    std::vector<std::size_t> doubtful;  // samples
+    std::size_t begin, end;
+    AreaSamples samples{};
+    std::vector<bool> dropped{};
+    std::vector<std::size_t> doubtful{};  // samples
   };
 
-  [[nodiscard]] Part part_of(const TriangleMesh& mesh, std::size_t begin, std::size_t end) const {
-    Part part;
-    for (std::size_t i = begin; i < end; ++i) add_samples(part.samples, mesh, static_cast<std::uint32_t>(i), step_);
-    part.dropped.resize(part.samples.points.size(), false);
-    for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
-      if (!near_.is_near(part.samples.points[n])) part.doubtful.push_back(n);
+  // As many triangles as a task has enough to do with.
+  [[nodiscard]] Part part_from(const TriangleMesh& mesh, std::size_t begin) const {
+    constexpr double kEnough = 4096.0;
+    Part part{begin, begin};
+    for (double samples = 0.0; part.end < mesh.triangles.size() && samples < kEnough; ++part.end) {
+      samples += most_samples(mesh, static_cast<std::uint32_t>(part.end), step_);
     }
     return part;
   }
 
-  void decide(Part& part) {
-    if (part.doubtful.empty()) return;
-    if (!distance_) distance_.emplace(surface_.mesh);
+  void take_samples(const TriangleMesh& mesh, Part& part) const {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      add_samples(part.samples, mesh, static_cast<std::uint32_t>(i), step_);
+    }
+    part.dropped.resize(part.samples.points.size(), false);
+    for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
+      if (!near_.is_near(part.samples.points[n])) part.doubtful.push_back(n);
+    }
+  }
+
+  void decide(std::vector<Part>& parts) {
     std::vector<Vec3> points;
-    for (const std::size_t n : part.doubtful) points.push_back(part.samples.points[n]);
+    for (const Part& part : parts) {
+      for (const std::size_t n : part.doubtful) points.push_back(part.samples.points[n]);
+    }
+    if (points.empty()) return;
+    if (!distance_) distance_.emplace(surface_.mesh);
     std::vector<double> distances(points.size());
     distance_->evaluate(points, distances, most_);
-    for (std::size_t i = 0; i < points.size(); ++i) part.dropped[part.doubtful[i]] = distances[i] > most_;
+    auto distance = distances.cbegin();
+    for (Part& part : parts) {
+      for (const std::size_t n : part.doubtful) part.dropped[n] = *distance++ > most_;
+    }
   }
 
   const SurfaceMesh& surface_;

@@ -189,7 +189,8 @@ struct DistanceEvaluator::Implementation {
     };
     BlockPhase phase;
     for (std::size_t a = 0; a < 3; ++a) phase[a] = static_cast<std::size_t>(samples.first[a] & (kSide - 1));
-    visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, visitor);
+    constexpr std::size_t kY = 1;  // as blocks are added: see DistanceBlocks
+    visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, kY, visitor);
   }
 
   double far_beyond = kFar;  // in units; none is near a mesh that is the origin

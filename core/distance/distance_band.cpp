@@ -143,15 +143,17 @@ class Descent {
 }  // namespace
 
 void visit_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BlockPhase& phase,
-                const BandVisitor& visitor) {
-  const BlockEnds ends(phase[1]);
-  const std::size_t count = rows.ys.size();
+                std::size_t axis, const BandVisitor& visitor) {
+  const BlockEnds ends(phase[axis]);
+  const SampleBox all{{0, 0, 0}, {rows.xs.size(), rows.ys.size(), rows.zs.size()}};
+  const std::size_t count = all.end[axis];
   parallel_for(ends.count(0, count), 1, [&](std::size_t first, std::size_t last) {
     Descent descent(tree, rows, band, phase, visitor);
-    for (std::size_t strip = first; strip < last; ++strip) {
-      const std::size_t begin = strip == 0 ? 0 : ends.behind(0, strip),
-                        end = std::min(ends.behind(0, strip + 1), count);
-      descent.fill({{0, begin, 0}, {rows.xs.size(), end, rows.zs.size()}}, {}, kNowhere);
+    for (std::size_t n = first; n < last; ++n) {
+      SampleBox strip = all;
+      strip.begin[axis] = n == 0 ? 0 : ends.behind(0, n);
+      strip.end[axis] = std::min(ends.behind(0, n + 1), count);
+      descent.fill(strip, {}, kNowhere);
     }
   });
 }
@@ -174,7 +176,8 @@ void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, c
       std::copy_n(squares.begin() + static_cast<std::ptrdiff_t>(first), row.size(), row.begin());
     });
   };
-  visit_band(tree, rows, band, {}, visitor);
+  const std::size_t longer = rows.ys.size() >= rows.zs.size() ? 1 : 2;  // slabs may be a few samples thick
+  visit_band(tree, rows, band, {}, longer, visitor);
 }
 
 }  // namespace raycone

@@ -16,8 +16,7 @@ namespace raycone {
 // Blocks begin at indices of the lattice that are multiples of 8. Per axis: the index of the first sample modulo 8.
 using BlockPhase = std::array<std::size_t, 3>;
 
-// Who wants to know of the band. Called from all threads, but of a strip of blocks, which have the same place along y,
-// from one.
+// Who wants to know of the band. Called from all threads, but from one of a strip of blocks.
 struct BandVisitor {
   // Samples that are surely beyond the band.
   std::function<void(const SampleBox& samples)> beyond;
@@ -28,9 +27,10 @@ struct BandVisitor {
 };
 
 // Visits all samples (xs[i], ys[j], zs[k]) of `rows` that may be within `band`. Coordinates of samples are below 2^400
-// in magnitude. Threaded over strips of blocks. Numbers do not depend on threads.
+// in magnitude. Threaded over strips, blocks that have the same place along `axis`, which is 1 or 2. Numbers depend
+// neither on that nor on threads.
 void visit_band(const DistanceTree& tree, const LatticeRows& rows, double band, const BlockPhase& phase,
-                const BandVisitor& visitor);
+                std::size_t axis, const BandVisitor& visitor);
 
 // What samples get.
 struct BandNumbers {

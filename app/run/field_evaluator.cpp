@@ -73,7 +73,7 @@ void FieldEvaluator::settle(const Point& point, FieldSamples& samples) const {
     for (const double threshold : thresholds_) {
       doubtful.clear(), points.clear(), settled.clear();
       for (std::size_t n = begin; n < end; ++n) {
-        if (std::abs(values[n] - threshold) > doubt) continue;
+        if (!may_be_across(values[n], threshold, doubt)) continue;
         doubtful.push_back(n), points.push_back(point(n)), settled.push_back(values[n]);
       }
       winding_number_.settle(points, threshold, settled);

@@ -33,6 +33,11 @@ inline constexpr double kIndistinguishable = 1e-24;
   return 0.5 - std::abs(w - nearest_integer) - 0x1p-53 * std::abs(w);
 }
 
+// Whether w may be on the wrong side of `critical` if it is off by `doubt` at most, but for its last rounding.
+[[nodiscard]] inline bool may_be_across(double w, double critical, double doubt) {
+  return std::abs(w - critical) <= doubt + 0x1p-53 * std::abs(w);
+}
+
 // How far w (finite) is from the nearest number where the rule changes its mind, at most: numbers that are nearer to w
 // than this are on w's side. Off by rounding, some units of w in the last place.
 [[nodiscard]] double distance_to_threshold(const Rule& rule, double w);

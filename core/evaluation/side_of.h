@@ -1,7 +1,6 @@
 // On which side of a rule a winding number is.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -24,8 +23,7 @@ class SideOf {
   // 1 where the rule holds, else 0; `w` as the mesh's set_values() sets it at the query.
   [[nodiscard]] std::uint8_t operator()(const Vec3& scaled_query, double w) const {
     for (const double threshold : thresholds_) {
-      const double rounded = 0x1p-53 * std::abs(w);  // by the last sum alone, which the doubt need not have
-      if (std::abs(w - threshold) <= doubt_ + rounded) w = mesh_.boundary().settle(scaled_query, w, threshold);
+      if (may_be_across(w, threshold, doubt_)) w = mesh_.boundary().settle(scaled_query, w, threshold);
     }
     return holds(rule_, w) ? 1 : 0;
   }

@@ -144,7 +144,8 @@ class WindingNumberEvaluator {
   // settle() makes values right about another number, too. values[i], which was evaluated at points[i], is moved to the
   // side of `critical` on which w is; it is `critical` itself where w cannot be told from it. A value takes a
   // millisecond or more per thousand exterior edges where the direct sum cannot tell, else as long as that sum. None
-  // need be given that differs from critical by more than doubt() turns; doubt() is 0 for closed meshes. Thread-safe.
+  // need be given that may_be_across(value, critical, doubt()) says no of; doubt(), in turns, is 0 for closed meshes,
+  // whose values are exact. Thread-safe.
   [[nodiscard]] double doubt() const;
   void settle(std::span<const Vec3> points, double critical, std::span<double> values) const;
 

@@ -116,8 +116,7 @@ std::vector<std::uint8_t> RuleAlong::holds_at(const std::vector<Vec3>& points) c
     std::vector<Vec3> there;
     std::vector<double> settled;
     for (std::size_t n = 0; n < values.size(); ++n) {
-      const double rounded = 0x1p-53 * std::abs(values[n]);  // by the last sum alone, which the doubt need not have
-      if (!(std::abs(values[n] - threshold) <= evaluator_.doubt() + rounded)) continue;
+      if (!may_be_across(values[n], threshold, evaluator_.doubt())) continue;
       doubtful.push_back(n);
       there.push_back(points[n]);
       settled.push_back(values[n]);

@@ -20,15 +20,10 @@ Quad square_root(Quad x) {
 
 // A vertex as seen from the query.
 struct QuadVertex {
-  Difference x, y, z;
   QuadVec3 p;
   Quad norm;
   Quad s;  // |p| - p_x without cancellation
-  explicit QuadVertex(const Vec3& v, const Vec3& q)
-      : x(difference(v.x, q.x)),
-        y(difference(v.y, q.y)),
-        z(difference(v.z, q.z)),
-        p{x.rounded(), y.rounded(), z.rounded()} {
+  explicit QuadVertex(const Vec3& v, const Vec3& q) : p(quad_difference(v, q)) {
     const Quad across = p.y * p.y + p.z * p.z;
     norm = square_root(p.x * p.x + across);
     s = p.x > 0 ? across / (norm + p.x) : norm - p.x;
@@ -67,8 +62,7 @@ Form normal_form(const QuadVertex& a, const QuadVertex& b, const QuadVec3& n) {
 template <class Real>
 NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
   const QuadVertex ca(a, q), cb(b, q);
-  const QuadVec3 n{determinant(ca.y, ca.z, cb.y, cb.z), determinant(ca.z, ca.x, cb.z, cb.x),
-                   determinant(ca.x, ca.y, cb.x, cb.y)};
+  const QuadVec3 n = cross_of_differences(a, b, q);
   const Form plain = plain_form(ca, cb, n.x), normal = normal_form(ca, cb, n);
   // Written so that a form of 0 / 0, whose condition is NaN, loses.
   const Form& best = plain.condition() <= normal.condition() || !(normal.condition() >= 0) ? plain : normal;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/boundary/sample_tile.h"
+#include "core/exact/exact_determinant.h"
 #include "core/exact/quad.h"
 #include "core/machine/threads.h"
 
@@ -26,13 +27,11 @@ Vec3 within_doubles(const Vec3& v) {
   return {std::clamp(v.x, -kMost, kMost), std::clamp(v.y, -kMost, kMost), std::clamp(v.z, -kMost, kMost)};
 }
 
-QuadVec3 quad_difference(const Vec3& a, const Vec3& b) { return {Quad(a.x) - b.x, Quad(a.y) - b.y, Quad(a.z) - b.z}; }
-
 // What an edge adds, for queries next to it and for numbers whose products leave the doubles.
 Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q) {
   const QuadVec3 a = quad_difference(from, q), b = quad_difference(to, q);
   const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), ab = dot(a, b);
-  const QuadVec3 normal = cross(la < lb ? a : b, quad_difference(to, from));
+  const QuadVec3 normal = cross_of_differences(from, to, q);
   const Quad square = dot(normal, normal);
   if (square == 0) return {};
   const Quad opening = ab < 0 ? square / (la * lb - ab) : la * lb + ab;

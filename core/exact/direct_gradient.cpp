@@ -2,6 +2,8 @@
 
 #include <quadmath.h>
 
+#include "core/exact/exact_determinant.h"
+
 namespace raycone {
 namespace {
 
@@ -14,11 +16,9 @@ void add_side(const Vec3& from, const Vec3& to, const Vec3& q, DirectGradient& s
   const bool swapped = lexicographic_order(to, from) < 0;
   const Vec3& first = swapped ? to : from;
   const Vec3& second = swapped ? from : to;
-  const QuadVec3 a{Quad(first.x) - q.x, Quad(first.y) - q.y, Quad(first.z) - q.z};
-  const QuadVec3 b{Quad(second.x) - q.x, Quad(second.y) - q.y, Quad(second.z) - q.z};
-  const QuadVec3 step{Quad(second.x) - first.x, Quad(second.y) - first.y, Quad(second.z) - first.z};
+  const QuadVec3 a = quad_difference(first, q), b = quad_difference(second, q), step = quad_difference(second, first);
   const Quad aa = dot(a, a), bb = dot(b, b);
-  const QuadVec3 normal = cross(aa < bb ? a : b, step);
+  const QuadVec3 normal = cross_of_differences(first, second, q);
   const Quad square = dot(normal, normal);
   if (square == 0) return;
   const Quad at_a = dot(a, step), at_b = dot(b, step), cos_a = at_a / sqrtq(aa), cos_b = at_b / sqrtq(bb);

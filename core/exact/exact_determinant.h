@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/data/vec3.h"
 #include "core/exact/double_double.h"
 #include "core/exact/quad.h"
 
@@ -58,8 +59,15 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   return sum.rounded();
 }
 
-// The same, rounded to double then, and never -0. 106 bits are enough unless it lies next to the middle between two
-// doubles, cancels nearly, or comes near to underflow (NaN and infinity fail the tests, too).
+// (a - q) x (b - q), each component as exact.
+[[nodiscard]] inline QuadVec3 cross_of_differences(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const Difference ax = difference(a.x, q.x), ay = difference(a.y, q.y), az = difference(a.z, q.z);
+  const Difference bx = difference(b.x, q.x), by = difference(b.y, q.y), bz = difference(b.z, q.z);
+  return {determinant(ay, az, by, bz), determinant(az, ax, bz, bx), determinant(ax, ay, bx, by)};
+}
+
+// The same as determinant(), rounded to double then, and never -0. 106 bits are enough unless it lies next to the
+// middle between two doubles, cancels nearly, or comes near to underflow (NaN and infinity fail the tests, too).
 [[nodiscard]] inline double rounded_determinant(const Difference& a, const Difference& b, const Difference& c,
                                                 const Difference& d) {
   const auto exactly = [](const Difference& x) { return exact_sum(x.plus, x.minus); };

@@ -23,11 +23,8 @@ struct AreaVector {
   long double x, y, z;
 };
 AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto part = [&](int y, int z) {
-    return static_cast<long double>(
-        determinant(difference(b[y], a[y]), difference(b[z], a[z]), difference(c[y], a[y]), difference(c[z], a[z])));
-  };
-  return {part(1, 2), part(2, 0), part(0, 1)};
+  const QuadVec3 v = cross_of_differences(b, c, a);
+  return {static_cast<long double>(v.x), static_cast<long double>(v.y), static_cast<long double>(v.z)};
 }
 
 long double norm(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }

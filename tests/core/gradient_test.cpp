@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/exact/direct_gradient.h"
@@ -161,6 +162,34 @@ TEST(Gradient, OnTheLineOfAnEdgeThatEdgeAddsNothing) {
     const Vec3 gradient = gradients_of(mesh, {q}).front();
     EXPECT_EQ(gradient, without(q));
     EXPECT_TRUE(std::isfinite(gradient.z));
+  }
+}
+
+// Coordinates of such queries have other magnitudes than the edge's: no difference of the two fits 113 bits.
+TEST(Gradient, NextToASkewEdgeIsThatOfItsLine) {
+  const Vec3 from{-0.25, -0.75, 0}, to{0.25, 0.75, 0};
+  const TriangleMesh mesh = weld({{from, to, {0, 0, 1}}, {{{0, 1, 2}}}}, {});
+  const auto of_edge = [&](const Vec3& q) {
+    std::vector<ExteriorEdge> edges = exterior_edges(mesh);
+    std::erase_if(edges, [&](const ExteriorEdge& e) { return mesh.vertices[e.from].z + mesh.vertices[e.to].z != 0.0; });
+    Vec3 value;
+    GradientEvaluator(mesh, edges).evaluate(std::vector<Vec3>{q}, {&value, 1});
+    return value;
+  };
+  const auto defined = [&](const Vec3& q) {
+    const TriangleMesh flat = weld({{from, to, from}, {{{0, 1, 2}}}}, {});  // whose sides cancel
+    EXPECT_EQ(component(direct_gradient(flat, q).value, 2), 0.0);
+    return component(direct_gradient(mesh, q).value, 2);
+  };
+  for (const double scale : {0x1p-115, 0x1p-130, 0x1p-1000}) {
+    EXPECT_EQ(of_edge({scale, 3 * scale, 0}), Vec3{}) << scale;
+    EXPECT_LT(std::abs(defined({scale, 3 * scale, 0})), 10.0) << scale;
+  }
+  // From a point so near to its middle the edge is a line: 1 / (2 pi d).
+  for (const double scale : {1e-20, 0x1p-115, 1e-40, 1e-300}) {
+    const double expected = std::sqrt(10.0) / (2 * std::numbers::pi * scale);
+    EXPECT_NEAR(std::abs(of_edge({scale, 2 * scale, 0}).z), expected, 1e-12 * expected) << scale;
+    EXPECT_NEAR(std::abs(defined({scale, 2 * scale, 0})), expected, 1e-12 * expected) << scale;
   }
 }
 

@@ -6,8 +6,6 @@
 namespace raycone {
 namespace {
 
-double length_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
-
 // Without overflow, whatever the step.
 Vec3 unit(const Vec3& step, double length) { return {step.x / length, step.y / length, step.z / length}; }
 
@@ -31,7 +29,7 @@ PlacedLattice::PlacedLattice(const Lattice& lattice)
 
 PlacedLattice::PlacedLattice(const Vec3& at, const std::array<Vec3, 3>& index_steps,
                              const std::array<std::int64_t, 3>& first, const std::array<std::int64_t, 3>& count)
-    : grid{at, {length_of(index_steps[0]), length_of(index_steps[1]), length_of(index_steps[2])}, first, count},
+    : grid{at, {safe_norm(index_steps[0]), safe_norm(index_steps[1]), safe_norm(index_steps[2])}, first, count},
       origin(at),
       steps(index_steps) {}
 

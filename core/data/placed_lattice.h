@@ -51,7 +51,7 @@ struct PlacedLattice {
 // The box of all samples, up to rounding.
 [[nodiscard]] Box box_of(const PlacedLattice& lattice);
 
-// Where in the lattice a place lies, in indices.
+// Where in the lattice a place lies, in indices. Precondition: lattice.spans_space().
 [[nodiscard]] Vec3 indices_of(const PlacedLattice& lattice, const Vec3& place);
 
 // The same samples, counted along the axes of the world.

@@ -11,6 +11,7 @@
 #include "core/boundary/sample_tile.h"
 #include "core/exact/exact_determinant.h"
 #include "core/exact/quad.h"
+#include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -43,12 +44,18 @@ Vec3 careful_part_of(const GradientSegment& segment, const Vec3& q) {
   return careful_part(segment.from, segment.to, segment.weight, q);
 }
 
+PowerOfTwo scale_of(const TriangleMesh& mesh) {
+  const DefaultFloatingPoint guard;
+  return unit_scale(mesh);
+}
+
 constexpr Vec3 kNoMinusZero{0.0, 0.0, 0.0};  // to be added
 
 }  // namespace
 
 GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, SimdLevel level)
-    : scale_(unit_scale(mesh)), inverse_(-scale_.exponent()), sum_parts_(gradient_kernel(level)) {
+    : scale_(scale_of(mesh)), inverse_(-scale_.exponent()), sum_parts_(gradient_kernel(level)) {
+  const DefaultFloatingPoint guard;
   segments_.reserve(edges.size());
   for (const ExteriorEdge& edge : edges) {
     const Vec3 from = scale_(mesh.vertices[edge.from]), to = scale_(mesh.vertices[edge.to]);

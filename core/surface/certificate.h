@@ -45,9 +45,10 @@ struct NearFaults {
 };
 
 // The faults that faults_of() finds in a mesh since it was changed: each that a changed face has part in, and equal
-// vertices nearby. Sorts what is near the change, after a look at each face, in a bit or more per cell of the lattice.
-// `mesh`: after the change; within the lattice, or not far from it; without the faces that are gone, and the vertices
-// that no face has. But for nodes: these are changed_nodes().
+// vertices nearby. An edge that is wrong counts as two vertices whose faces are no cycle. Sorts what is near the
+// change, after a look at each face, in a bit or more per cell of the lattice. `mesh`: after the change; within the
+// lattice, or not far from it; without the faces that are gone, and the vertices that no face has. But for nodes: these
+// are changed_nodes().
 [[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
 // The nodes of a lattice that a mesh goes around an odd number of times more, or less, since it was changed: that were

@@ -344,6 +344,7 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
 ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
                          const FacePoints& face_points, const CellCreases& creases, double tolerance,
                          const SurfaceMargins& margins, ContourCells kind) {
+  check_point_numbers(edge_points.size() + face_points.positions().size());
   const std::size_t count = cells.cells().size();
   constexpr std::size_t kCellsPerPart = 512;
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);

@@ -135,6 +135,10 @@ std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const Edge
   return full - std::min(full, cut);
 }
 
+void check_point_numbers(std::size_t points) {
+  if (points > kFirstApex) throw std::length_error("raycone: a surface of more than 2147483647 vertices");
+}
+
 // One kind of items after the other: the memory of parts is given back before the next one needs some.
 ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                         std::span<const Vec3> face_points, const SparePoints* spare) {
@@ -145,8 +149,8 @@ ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoi
     end.triangles += part.triangles.size();
     end.apexes += part.apexes.size();
   }
-  if (edge_points.size() + face_points.size() + end.apexes > kFirstApex || end.triangles > kMaxTriangles)
-    throw std::length_error("raycone: a surface of more than 2147483647 vertices or faces");
+  check_point_numbers(edge_points.size() + face_points.size() + end.apexes);
+  if (end.triangles > kMaxTriangles) throw std::length_error("raycone: a surface of more than 2147483647 faces");
   const PointNumbers numbers(edge_points.size(), face_points.size(), spare);
 
   ContouredSurface contoured;

@@ -46,6 +46,9 @@ struct SparePoints {
   }
 };
 
+// Throws std::length_error where there are more points than have numbers.
+void check_point_numbers(std::size_t points);
+
 // Cuts the polygons of all parts into triangles, without the points that are spare. Returns how many triangles in
 // planes there are less than tetrahedra would have.
 std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,

@@ -31,7 +31,7 @@ class RuleAlong {
 
  private:
   const WindingNumberEvaluator& evaluator_;
-  const Rule& rule_;
+  Rule rule_;
 };
 
 // Two places of an edge, between which it leaves the set.

@@ -23,6 +23,8 @@ class NodeSet {
   // Empty.
   explicit NodeSet(const Lattice& lattice);
 
+  // Threads may set different rows at a time; insert() is for one thread.
+
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] std::int64_t count(int axis) const { return lattice_.counts[static_cast<std::size_t>(axis)]; }
 

@@ -53,10 +53,11 @@ class LatticeOutOfRange : public std::runtime_error {
 // The surface that separates `inside`, which nodes_inside() found by `evaluator` of `mesh` and the rule, and where it
 // has a thickness insert_near(), from the other nodes: closed, oriented outward, 2-manifold, without
 // self-intersections; all of that has been checked, exactly, on the vertices returned. They lie on the mesh (where the
-// source is a triangle) or where the winding number passes a threshold of the rule (kHole), at most by the margin, or
-// plane_tolerance(), off. With `simplify` no point of the surface is farther than that from the surface without, nor
-// the other way round. A face has a source whose plane it is in, within the last; one that cuts an edge off has
-// one near to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
+// source is a triangle) or where the winding number passes a threshold of the rule (kHole), off by four margins of the
+// longest spacing at most, or plane_tolerance(); the margin is surface_margin(), and 64 times as much, then 4096 times,
+// where a surface has faults. With `simplify` no point of the surface is farther than that from the surface without,
+// nor the other way round. A face has a source whose plane it is in, as nearly; one that cuts an edge off has one near
+// to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
 // `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // LatticeOutOfRange, std::length_error for more than 2^31 - 1 faces.
 [[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,

@@ -50,7 +50,8 @@ std::uint64_t mixed_cells(const NodeSet& nodes) {
 struct SurfaceCells::Layer {
   std::vector<SurfaceCell> cells;
   std::vector<std::uint32_t> rows;  // where each begins
-  std::uint32_t edges = 0, first_cell = 0, first_edge = 0;
+  std::uint64_t edges = 0;
+  std::uint32_t first_cell = 0, first_edge = 0;
 
   void add_row(const NodeSet& nodes, std::int64_t j, std::int64_t k);
 };
@@ -61,7 +62,7 @@ void SurfaceCells::Layer::add_row(const NodeSet& nodes, std::int64_t j, std::int
   for (std::int64_t word = 0; word < words; ++word) {
     for (std::uint64_t left = mixed_among(around, word, words); left != 0; left &= left - 1) {
       const std::int64_t i = word * 64 + std::countr_zero(left);
-      SurfaceCell cell{{i, j, k}, 0, edges};
+      SurfaceCell cell{{i, j, k}, 0, static_cast<std::uint32_t>(edges)};
       for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
         const auto [x, y, z] = node_at(cell, corner);
         if (x < nodes.count(0) && nodes.holds(x, y, z)) cell.inside |= static_cast<std::uint8_t>(1U << corner);

@@ -21,11 +21,9 @@
 namespace raycone {
 namespace {
 
-double length_of_vector(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
-
 double area_of_triangle(const TriangleMesh& mesh, const Triangle& t) {
   const Vec3& a = mesh.vertices[t[0]];
-  return length_of_vector(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a)) / 2.0;
+  return safe_norm(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a)) / 2.0;
 }
 
 // The distance of a point from some point of a triangle: that below it, or the nearest by its barycentric coordinates.
@@ -40,7 +38,7 @@ double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const 
   const double sum = std::max(second + third, 1.0);
   second /= sum;
   third /= sum;
-  return length_of_vector(from - second * u - third * v);
+  return safe_norm(from - second * u - third * v);
 }
 
 // Of each vertex from the sources of its faces, at most; -1 where it has none. `enough`: no need to look for less.
@@ -112,10 +110,10 @@ double parts_of(double length, double step) { return std::clamp(std::ceil(kPerSt
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
   const Triangle& t = mesh.triangles[triangle];
   const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
-  const std::array lengths{length_of_vector(side(0)), length_of_vector(side(1)), length_of_vector(side(2))};
+  const std::array lengths{safe_norm(side(0)), safe_norm(side(1)), safe_norm(side(2))};
   const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
   const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
-  const double area = length_of_vector(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
+  const double area = safe_norm(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
   const double rows = parts_of(std::ranges::max(lengths), step), in_last_row = parts_of(lengths[apex], step);
   for (double row = 0.0; row < rows; row += 1.0) {
     const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
@@ -137,7 +135,7 @@ double most_samples(const TriangleMesh& mesh, std::uint32_t triangle, double ste
   return rows * rows;
 }
 
-double sample_step(const Lattice& lattice) { return 0.5 * length_of_vector(lattice.spacing); }
+double sample_step(const Lattice& lattice) { return 0.5 * safe_norm(lattice.spacing); }
 
 // Whether a surface between the nodes of a lattice is near to a point, as the nodes tell: it passes between any two
 // neighbours of which just one is inside.
@@ -147,7 +145,7 @@ class NearByNodes {
     // What numbers of cells round is less than a margin.
     constexpr double kLess = 0x1p-20, kMargins = 4.0;
     const double part = 1.0 - kLess - kMargins * surface_margin(inside.lattice(), false);
-    const double most = part * length_of_vector(inside.lattice().spacing);
+    const double most = part * safe_norm(inside.lattice().spacing);
     most_square_ = most * most;
   }
 
@@ -226,7 +224,7 @@ class DroppedSamples {
       : surface_(surface),
         near_(inside),
         step_(sample_step(inside.lattice())),
-        most_(length_of_vector(inside.lattice().spacing) + thickness) {}
+        most_(safe_norm(inside.lattice().spacing) + thickness) {}
 
   // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order.
   template <class Visit>

@@ -328,7 +328,7 @@ MUTANTS = [
     Mutant("band_ends_with_what_is_near", "samples that are not far may be farther than that from the mesh", [
         ("core/distance/distance.cpp", "const double unit_band = std::min(to_unit(band), 4 * kFar);",
          "const double unit_band = std::min(to_unit(band), kFar);"),
-        ("core/distance/distance.cpp", "visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, visitor);",
+        ("core/distance/distance.cpp", "visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, kY, visitor);",
          "visit_band(nearest(), rows, std::min(to_unit(band), kFar), phase, visitor);")]),
     Mutant("origin_has_a_size", "squares of distances to a mesh without a size underflow", [
         ("core/distance/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),

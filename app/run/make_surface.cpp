@@ -103,7 +103,8 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   FinishedSurface closed = surface_of(name, mesh, *evaluator, inside, options);
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  const SurfaceMeasures measures = measure_surface(made.surface, mesh, inside, options.thickness);
+  DroppedSamples dropped(made.surface, inside, options.thickness);
+  const SurfaceMeasures measures = measure_surface(made.surface, mesh, dropped);
   made.report = report_of(made.surface, measures);
   if (measures.drops) {
     const double points = 2.0 * static_cast<double>(measures.dropped_samples);
@@ -113,8 +114,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
           .tolerance = for_sides.tolerance, .samples = points, .sides_only = true, .points = points};
       evaluator.emplace(mesh, EvaluatorOptions{.accuracy = for_points, .edges = &edges});
     }
-    const ThinParts thin =
-        thin_parts(made.surface, mesh, RuleAlong(*evaluator, options.rule), inside, options.thickness);
+    const ThinParts thin = thin_parts(mesh, RuleAlong(*evaluator, options.rule), dropped);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   }
   return made;

@@ -5,8 +5,8 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/surface/contour.h"
+#include "core/surface/dropped_samples.h"
 #include "core/surface/edge_roots.h"
-#include "core/surface/node_set.h"
 
 namespace raycone {
 
@@ -29,14 +29,13 @@ struct ThinParts {
   std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
-// Of a surface between `inside` and the other nodes.
+// `dropped`: of the surface.
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,
-                                              const NodeSet& inside, double thickness = 0.0);
+                                              DroppedSamples& dropped);
 
-// Of a surface of `inside` that drops area. A point of that separates where the rule differs a margin before
-// and behind the triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is
-// outside of the lattice does not count. Judged at the points that dropped_area is.
-[[nodiscard]] ThinParts thin_parts(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& rule,
-                                   const NodeSet& inside, double thickness);
+// Of a surface that drops area. A point of that separates where the rule differs a margin before and behind the
+// triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is outside of the
+// lattice does not count. Judged at the points that dropped_area is.
+[[nodiscard]] ThinParts thin_parts(const TriangleMesh& mesh, const RuleAlong& rule, DroppedSamples& dropped);
 
 }  // namespace raycone

@@ -1070,6 +1070,11 @@ TEST(MeshCorners, TakeTheNearestVertexEach) {
   EXPECT_EQ(vertices, expected);
 }
 
+SurfaceMeasures measured(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
+  DroppedSamples dropped(surface, inside, 0.0);
+  return measure_surface(surface, mesh, dropped);
+}
+
 TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   const TriangleMesh mesh = rotated(test::open_box());
   const auto [surface, lattice] = surface_of(mesh, 20);
@@ -1084,7 +1089,7 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
   EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-  EXPECT_GT(measure_surface(surface, mesh, inside).hole_area, 0.0);
+  EXPECT_GT(measured(surface, mesh, inside).hole_area, 0.0);
 }
 
 TEST(Surface, InSinglePrecisionIsRightThere) {
@@ -1131,10 +1136,10 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   wall.triangles.push_back({first, first + 1, first + 2});
   const auto [surface, lattice] = surface_of(box, 20);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
-  EXPECT_NEAR(measure_surface(surface, wall, inside).dropped_area, 0.18, 1e-12);
-  EXPECT_EQ(measure_surface(surface, box, inside).dropped_area, 0.0);
-  EXPECT_TRUE(measure_surface(surface, wall, inside).drops);
-  EXPECT_FALSE(measure_surface(surface, box, inside).drops);
+  EXPECT_NEAR(measured(surface, wall, inside).dropped_area, 0.18, 1e-12);
+  EXPECT_EQ(measured(surface, box, inside).dropped_area, 0.0);
+  EXPECT_TRUE(measured(surface, wall, inside).drops);
+  EXPECT_FALSE(measured(surface, box, inside).drops);
 }
 
 // A triangle as one, and as a fan of needles, has the same area.
@@ -1150,7 +1155,7 @@ TEST(SurfaceMeasures, AddUpNeedles) {
   }
   const auto [surface, lattice] = surface_of(box, 20);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
-  EXPECT_NEAR(measure_surface(surface, needles, inside).dropped_area, 0.18, 1e-12);  // a sum of some thousand parts
+  EXPECT_NEAR(measured(surface, needles, inside).dropped_area, 0.18, 1e-12);  // a sum of some thousand parts
 }
 
 // They find most distances without a search.
@@ -1169,7 +1174,7 @@ TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
       for (const std::uint32_t corner : surface.mesh.triangles[i]) points.push_back(surface.mesh.vertices[corner]);
     }
     const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-    EXPECT_EQ(measure_surface(surface, mesh, inside).max_distance, largest_distance_of(points, mesh)) << round;
+    EXPECT_EQ(measured(surface, mesh, inside).max_distance, largest_distance_of(points, mesh)) << round;
   }
 }
 
@@ -1184,7 +1189,8 @@ TEST(SurfaceMeasures, TellWhatIsTooThin) {
     mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
     for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     const WindingNumberEvaluator evaluator(mesh);
-    return thin_parts(surface, mesh, RuleAlong(evaluator, Rule{}), inside, thickness);
+    DroppedSamples dropped(surface, inside, thickness);
+    return thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);
   };
   const double h = lattice.spacing.x;
   // A gap within the box, and the same faces the other way round, which separate nothing there.

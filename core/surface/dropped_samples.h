@@ -1,0 +1,53 @@
+// Which points of a mesh's triangles a surface passes by at a distance.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+#include "core/distance/distance.h"
+#include "core/surface/contour.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// The centres of parts of triangles, all about as large, and what area each of them stands for.
+struct AreaSamples {
+  std::vector<Vec3> points;
+  std::vector<double> areas;  // in squares of DroppedSamples::step()
+  std::vector<std::uint32_t> triangles;
+};
+
+// Finds the points that are dropped: farther from the surface than a cell's diagonal and the thickness of the set.
+class DroppedSamples {
+ public:
+  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay.
+  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness);
+
+  [[nodiscard]] const NodeSet& inside() const { return inside_; }
+  [[nodiscard]] double thickness() const { return thickness_; }  // world units
+  [[nodiscard]] double step() const { return step_; }            // of points, half a cell's diagonal
+
+  using Visit = std::function<void(const AreaSamples& samples, const std::vector<bool>& dropped)>;
+  // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order. The same
+  // for any number of threads. Builds a search structure for the surface when that is first needed.
+  void for_each(const TriangleMesh& mesh, const Visit& visit);
+
+ private:
+  struct Part;
+  [[nodiscard]] Part part_from(const TriangleMesh& mesh, std::size_t begin) const;
+  void take_samples(const TriangleMesh& mesh, Part& part) const;
+  void decide(std::span<Part> parts);
+
+  const SurfaceMesh& surface_;
+  const NodeSet& inside_;
+  double thickness_, step_, most_;
+  std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
+};
+
+}  // namespace raycone

@@ -34,7 +34,11 @@ bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return in_box(a, 
 
 }  // namespace
 
-int exact_edge_orientation(const Vec3& a, const Vec3& b, const Vec3& q) { return orientation_along(1, a, b, q); }
+int exact_edge_orientation(const Vec3& a, const Vec3& b, const Vec3& q) {
+  // Level with each other, as most ties on lattices are.
+  if ((a.y == q.y && b.y == q.y) || (a.z == q.z && b.z == q.z)) return 0;
+  return orientation_along(1, a, b, q);
+}
 
 int plane_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   assert(DefaultFloatingPoint::holds());

@@ -28,7 +28,8 @@ class Simplifier {
         lattice_(inside.lattice()),
         kept_(kept),
         off_(surface.mesh.triangles.size(), 0.0),
-        into_(surface.mesh.vertices.size()) {
+        into_(surface.mesh.vertices.size()),
+        seen_in_(surface.mesh.vertices.size(), 0) {
     const VertexFaces faces(surface.mesh);
     for (std::uint32_t v = 0; v < into_.size(); ++v) {
       const auto star = faces.of(v);
@@ -56,7 +57,7 @@ class Simplifier {
  private:
   struct Pull {
     std::uint32_t target;
-    double off;
+    double off, shape;  // of the faces that it leaves: the most, and the least
   };
 
   // In each pass no vertex is pulled that a neighbour was pulled into, so that faces grow evenly.
@@ -95,10 +96,15 @@ class Simplifier {
     return ring;
   }
 
-  [[nodiscard]] std::optional<Pull> best_pull(std::uint32_t v, double most) const {
+  [[nodiscard]] std::optional<Pull> best_pull(std::uint32_t v, double most) {
     const std::vector<std::uint32_t> ring = ring_of(v);
+    ++look_;
     std::vector<Vec3> places;
-    for (const std::uint32_t neighbour : ring) places.push_back(surface_.mesh.vertices[neighbour]);
+    for (const std::uint32_t neighbour : ring) {
+      places.push_back(surface_.mesh.vertices[neighbour]);
+      seen_in_[neighbour] = look_;
+    }
+    StarChange change(surface_.mesh.vertices[v], places);
     double before = 0.0, shape = kLeastShape;
     for (const std::uint32_t face : star_[v]) {
       before = std::max(before, off_[face]);
@@ -106,15 +112,23 @@ class Simplifier {
     }
     std::optional<Pull> best;
     for (std::size_t n = 0; n < ring.size(); ++n) {
-      const double left = (best ? best->off : most) - before;
-      if (!(left > 0.0) || !keeps_topology(ring[n], ring)) continue;
-      const StarChange change(surface_.mesh.vertices[v], places, n);
-      if (!keeps_shape(change, shape)) continue;
+      if (!keeps_topology(ring[n], ring.size())) continue;
+      const double here = least_shape(places, n);
+      const double left = (best ? std::min(most, most_instead(*best, here)) : most) - before;
+      if (!(here >= shape) || !(left > 0.0)) continue;
+      change.pull_into(n);
       const std::optional<double> distance = change.distance(left);
       if (!distance || change.passes_node(lattice_, *distance)) continue;
-      best = Pull{ring[n], before + *distance};
+      best = Pull{ring[n], before + *distance, here};
     }
     return best;
+  }
+
+  // What a pull that leaves faces of this shape may cost to be better: about as much where they are rounder, as noise
+  // shall not choose.
+  [[nodiscard]] static double most_instead(const Pull& other, double shape) {
+    constexpr double kAbout = 0.01;
+    return other.off * (shape > other.shape ? 1.0 + kAbout : 1.0 - kAbout);
   }
 
   [[nodiscard]] Corners3 corners_of(const Triangle& t) const {
@@ -122,16 +136,26 @@ class Simplifier {
     return {at[t[0]], at[t[1]], at[t[2]]};
   }
 
-  [[nodiscard]] static bool keeps_shape(const StarChange& change, double least) {
-    return std::ranges::all_of(change.after(), [&](const Corners3& c) { return shape_of(c) >= least; });
+  // Of the faces around a vertex when it is pulled into that neighbour.
+  [[nodiscard]] static double least_shape(const std::vector<Vec3>& ring, std::size_t target) {
+    double least = 1.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::size_t next = (i + 1) % ring.size();
+      if (i != target && next != target) least = std::min(least, shape_of({ring[target], ring[i], ring[next]}));
+    }
+    return least;
   }
 
-  // As PatchMerger::keeps_topology() has it; besides, a tetrahedron is as small as a closed surface gets.
-  [[nodiscard]] bool keeps_topology(std::uint32_t target, const std::vector<std::uint32_t>& ring) const {
-    const std::vector<std::uint32_t> others = ring_of(target);
-    const auto common = std::ranges::count_if(
-        others, [&](std::uint32_t other) { return std::ranges::find(ring, other) != ring.end(); });
-    return common == 2 && ring.size() + others.size() > 6;
+  // As PatchMerger::keeps_topology() has it; besides, a tetrahedron is as small as a closed surface gets. The
+  // vertex that is looked at has so many neighbours.
+  [[nodiscard]] bool keeps_topology(std::uint32_t target, std::size_t neighbours) const {
+    std::size_t common = 0;  // each is a corner of two faces
+    for (const std::uint32_t face : star_[target]) {
+      for (const std::uint32_t corner : surface_.mesh.triangles[face]) {
+        common += corner != target && seen_in_[corner] == look_ ? 1 : 0;
+      }
+    }
+    return common == 2 * 2 && neighbours + star_[target].size() > 6;
   }
 
   void pull(std::uint32_t v, const Pull& by) {
@@ -158,6 +182,8 @@ class Simplifier {
   std::vector<double> off_;  // of each face: how far its points, and those it stands for, are from where they were
   std::vector<std::vector<std::uint32_t>> star_;  // faces
   std::vector<std::uint32_t> into_;
+  std::uint64_t look_ = 0;              // how many vertices were looked at
+  std::vector<std::uint64_t> seen_in_;  // of each vertex: in which look it was a neighbour last
 };
 
 }  // namespace

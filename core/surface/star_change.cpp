@@ -10,6 +10,10 @@ namespace {
 // What rounding may do, beside numbers of the size of the faces. It decides on the careful side.
 constexpr double kDoubt = 1e-9;
 
+// What turn() rounds, beside squares of the largest coordinate: its differences are of up to twice that, and each of
+// its two products, of up to four squares, rounds by 3 u (u = 2^-53), their difference by as much again.
+constexpr double kTurnRounds = 32 * 0x1p-53;
+
 double turn(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -29,12 +33,17 @@ std::optional<double> height_of(const std::vector<Corners3>& faces, const Vec3& 
   return std::nullopt;
 }
 
-// How far apart two lines are in height where they cross; 0 where they do not.
-double gap_at_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+// How far apart two lines are in height where they cross, at most; 0 where they do not, nor where they cannot be told
+// from one line, which ends at corners. `size`: no coordinate is larger.
+double gap_at_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double size) {
   const double ca = turn(c, d, a), cb = turn(c, d, b), ac = turn(a, b, c), ad = turn(a, b, d);
-  if (ca * cb >= 0.0 || ac * ad >= 0.0) return 0.0;
+  const double rounded = kTurnRounds * size * size;
+  if (ca * cb >= 0.0 || ac * ad >= 0.0 || std::abs(ca - cb) <= 2 * rounded) return 0.0;
   const double along = ca / (ca - cb), across = ac / (ac - ad);
-  return std::abs(a.z + along * (b.z - a.z) - (c.z + across * (d.z - c.z)));
+  // Both are within 0 and 1, whatever turns round.
+  const double off_along = rounded / std::abs(ca - cb), off_across = std::min(1.0, rounded / std::abs(ac - ad));
+  return std::abs(a.z + along * (b.z - a.z) - (c.z + across * (d.z - c.z))) + off_along * std::abs(b.z - a.z) +
+         off_across * std::abs(d.z - c.z);
 }
 
 Vec3 across_of(const Vec3& n) {
@@ -48,28 +57,35 @@ Vec3 across_of(const Vec3& n) {
 
 }  // namespace
 
-StarChange::StarChange(const Vec3& vertex, const std::vector<Vec3>& ring, std::size_t target)
-    : vertex_(vertex), target_(target) {
+StarChange::StarChange(const Vec3& vertex, const std::vector<Vec3>& ring) : vertex_(vertex), ring_(ring) {
   Vec3 sum;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const std::size_t next = (i + 1) % ring.size();
-    before_.push_back({vertex, ring[i], ring[next]});
-    if (i != target && next != target) after_.push_back({ring[target], ring[i], ring[next]});
-    sum = sum + cross(ring[i] - vertex, ring[next] - vertex);
+    sum = sum + cross(ring[i] - vertex, ring[(i + 1) % ring.size()] - vertex);
   }
   const double length = std::sqrt(dot(sum, sum));
   axes_[2] = 1.0 / length * sum;
   axes_[0] = across_of(axes_[2]);
   axes_[1] = cross(axes_[2], axes_[0]);
-  const auto all_seen = [&](const std::vector<Corners3>& faces) {
-    std::vector<Corners3> result;
-    for (const Corners3& c : faces) result.push_back({seen(c[0]), seen(c[1]), seen(c[2])});
-    return result;
-  };
   seen_vertex_ = seen(vertex);
-  for (const Vec3& neighbour : ring) seen_ring_.push_back(seen(neighbour));
-  seen_before_ = all_seen(before_);
-  seen_after_ = all_seen(after_);
+  for (const Vec3& neighbour : ring) {
+    seen_ring_.push_back(seen(neighbour));
+    size_ = std::max(size_, largest_coordinate(seen_ring_.back()));
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    seen_before_.push_back({seen_vertex_, seen_ring_[i], seen_ring_[(i + 1) % ring.size()]});
+  }
+}
+
+void StarChange::pull_into(std::size_t target) {
+  target_ = target;
+  after_.clear();
+  seen_after_.clear();
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    const std::size_t next = (i + 1) % ring_.size();
+    if (i == target || next == target) continue;
+    after_.push_back({ring_[target], ring_[i], ring_[next]});
+    seen_after_.push_back({seen_ring_[target], seen_ring_[i], seen_ring_[next]});
+  }
 }
 
 Vec3 StarChange::seen(const Vec3& p) const {
@@ -96,17 +112,29 @@ std::optional<double> StarChange::distance(double most) const {
   if (!is_graph()) return std::nullopt;
   const std::optional<double> at_vertex = height_of(seen_after_, seen_vertex_);
   if (!at_vertex) return std::nullopt;
-  double gap = std::abs(*at_vertex), size = gap;
+  double gap = std::abs(*at_vertex);
+  if (!(gap < most)) return std::nullopt;
   const Vec3& target = seen_ring_[target_];
   for (std::size_t i = 0; i < seen_ring_.size(); ++i) {
+    if (i == target_) continue;
     const Vec3& spoke = seen_ring_[i];
-    size = std::max({size, std::abs(spoke.x), std::abs(spoke.y), std::abs(spoke.z)});
-    for (std::size_t j = 0; j < seen_ring_.size() && i != target_; ++j) {
-      if (j != i && j != target_) gap = std::max(gap, gap_at_crossing(seen_vertex_, spoke, target, seen_ring_[j]));
+    for (std::size_t j = 0; j < seen_ring_.size(); ++j) {
+      if (j == i || j == target_) continue;
+      gap = std::max(gap, gap_at_crossing(seen_vertex_, spoke, target, seen_ring_[j], size_));
     }
   }
-  gap += kDoubt * kDoubt * size + 0x1p-45 * size;
+  gap += rounding();
   return gap < most ? std::optional(gap) : std::nullopt;
+}
+
+// Of what is seen, and of heights: sums of three coordinates, weighted by parts of a face's area, each of which is off
+// by what turns round in that area. The same for all stars of a size whose faces are not thin, so that it does not
+// choose between pulls.
+double StarChange::rounding() const {
+  constexpr double kOfMost = 0x1p-42;
+  double least = size_ * size_;
+  for (const Corners3& c : seen_after_) least = std::min(least, turn(c[0], c[1], c[2]));
+  return 0x1p-45 * size_ + size_ * std::max(kOfMost, 3 * kTurnRounds * size_ * size_ / least);
 }
 
 bool StarChange::is_between(const Vec3& node) const {

@@ -18,11 +18,11 @@ using Corners3 = std::array<Vec3, 3>;
 // linear between the crossings of their edges.
 class StarChange {
  public:
-  // `ring`: the neighbours in the order of the faces around `vertex`; it is pulled into the one numbered `target`.
-  StarChange(const Vec3& vertex, const std::vector<Vec3>& ring, std::size_t target);
+  // `ring`: the neighbours in the order of the faces around `vertex`.
+  StarChange(const Vec3& vertex, const std::vector<Vec3>& ring);
 
-  // Those that have an area.
-  [[nodiscard]] const std::vector<Corners3>& after() const { return after_; }
+  // The vertex is pulled into the neighbour of this number. All that follows is about the last such call.
+  void pull_into(std::size_t target);
 
   // No point of the faces after is farther from those before, and the other way round. Nothing where that is not below
   // `most`, or where there is no such direction.
@@ -36,16 +36,19 @@ class StarChange {
   // By two coordinates across the direction and the height along it.
   [[nodiscard]] Vec3 seen(const Vec3& p) const;
   [[nodiscard]] bool is_graph() const;
+  [[nodiscard]] double rounding() const;
   [[nodiscard]] bool is_between(const Vec3& node) const;
   [[nodiscard]] bool passes_node_below_vertex(const Lattice& lattice) const;
 
   Vec3 vertex_;
+  std::vector<Vec3> ring_;
   std::array<Vec3, 3> axes_;  // the direction is the last
   Vec3 seen_vertex_;
   std::vector<Vec3> seen_ring_;
-  std::size_t target_;
-  std::vector<Corners3> before_, after_;
-  std::vector<Corners3> seen_before_, seen_after_;
+  double size_ = 0.0;  // no coordinate of the seen ring is larger
+  std::size_t target_ = 0;
+  std::vector<Corners3> seen_before_;
+  std::vector<Corners3> after_, seen_after_;  // those that have an area
 };
 
 }  // namespace raycone

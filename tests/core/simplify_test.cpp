@@ -78,6 +78,13 @@ TriangleMesh fan_of(const Vec3& apex, const std::vector<Vec3>& ring) {
   return mesh;
 }
 
+// Of a neighbour of the vertex.
+StarChange pulled(const Vec3& vertex, const std::vector<Vec3>& ring, std::size_t target) {
+  StarChange change(vertex, ring);
+  change.pull_into(target);
+  return change;
+}
+
 TEST(StarChange, NoPointIsFartherThanItSays) {
   Random random(3);
   int compared = 0;
@@ -85,7 +92,7 @@ TEST(StarChange, NoPointIsFartherThanItSays) {
     const std::vector<Vec3> ring = random_ring(random, 0.3);
     const Vec3 vertex{0, 0, uniform(random, -0.3, 0.3)};
     const auto target = static_cast<std::size_t>(n % 6);
-    const std::optional<double> distance = StarChange(vertex, ring, target).distance(10.0);
+    const std::optional<double> distance = pulled(vertex, ring, target).distance(10.0);
     if (!distance) continue;
     ++compared;
     const TriangleMesh before = fan_of(vertex, ring), after = fan_of(ring[target], ring);
@@ -100,7 +107,7 @@ TEST(StarChange, OfFacesInOnePlaneIsNothing) {
   Random random(4);
   const std::vector<Vec3> ring = random_ring(random, 0.0);
   for (std::size_t target = 0; target < ring.size(); ++target) {
-    const std::optional<double> distance = StarChange({0, 0, 0}, ring, target).distance(1.0);
+    const std::optional<double> distance = pulled({0, 0, 0}, ring, target).distance(1.0);
     EXPECT_LT(distance.value_or(0.0), 1e-12);
   }
 }
@@ -122,7 +129,7 @@ TEST(SimplifiedSurface, LeavesWhatMergingMayMove) {
 TEST(StarChange, SeesNodesBetween) {
   // A tip of height 0.5 over a square that becomes flat.
   const std::vector<Vec3> ring{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
-  const StarChange change({0, 0, 0.5}, ring, 0);
+  const StarChange change = pulled({0, 0, 0.5}, ring, 0);
   const std::optional<double> distance = change.distance(1.0);
   ASSERT_TRUE(distance);
   EXPECT_NEAR(*distance, 0.5, 1e-9);

@@ -534,7 +534,7 @@ MUTANTS = [
         ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
          "    if (roles_[target] == VertexRole::kForeign) {\n")]),
     Mutant("all_is_near_the_surface", "nodes of one kind say nothing about where the surface is", [
-        ("core/surface/surface_measures.cpp", "return inside != 0 && inside != 8;", "return inside != 0 || inside != 8;")]),
+        ("core/surface/dropped_samples.cpp", "return inside != 0 && inside != 8;", "return inside != 0 || inside != 8;")]),
     Mutant("farthest_by_source_alone", "a vertex may be farther from the mesh than the others whose sources are", [
         ("core/surface/surface_measures.cpp", "largest = std::max(largest, std::ranges::max(distances));",
          "largest = std::max(largest, std::ranges::min(distances));")]),
@@ -559,7 +559,7 @@ MUTANTS = [
     Mutant("simplify_forgets", "distances that a face moved by add up", [
         ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [
-        ("core/surface/star_change.cpp", "if (j != i && j != target_) gap = std::max(", "if (j != i && j != target_ && j > 99) gap = std::max(")]),
+        ("core/surface/star_change.cpp", "if (j == i || j == target_) continue;", "if (j == i || j == target_ || j < 99) continue;")]),
     Mutant("simplify_over_nodes", "no node lies between faces before and after", [
         ("core/surface/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
     Mutant("nearest_is_any_of_several", "of triangles that are equally near, the first is the nearest", [
@@ -644,7 +644,7 @@ MUTANTS = [
         ("core/surface/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
          "if (kept[v] != kept_[v] && v % 2 == 0) changed.push_back(v);")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
-        ("core/surface/face_sources.cpp", "*corner - point_of_source)) <= off)", "*corner - point_of_source)) <= 1e9 * off)")]),
+        ("core/surface/face_sources.cpp", "*corner - point)) <= off_)", "*corner - point_of_source)) <= 1e9 * off)")]),
     Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [
         ("core/far/shared_corners.cpp", "return square * (1 + 0x1p-40);", "return 0.9 * square;")]),
     Mutant("small_nodes_too_near", "triangles of a node look small from beyond its radius and their longest side only", [

@@ -99,9 +99,12 @@ class InflatingSource final : public ByteSource {
   std::optional<std::uint64_t> size() const override { return size_; }
 
  private:
+  // Where output was full, zlib may hold more: the rest of a match, and the end of the data, behind which bare deflate
+  // has no bytes.
   void inflate_some() {
-    const std::string_view packed = input_.pending();
-    if (packed.empty()) {
+    const bool is_held = std::exchange(was_full_, false);
+    const std::string_view packed = is_held ? std::string_view() : input_.pending();
+    if (packed.empty() && !is_held) {
       if (!between_) input_.fail("the compressed data end too early");
       at_end_ = true;
       return;
@@ -111,6 +114,7 @@ class InflatingSource final : public ByteSource {
     state_.avail_in = static_cast<uInt>(packed.size());
     const int result = inflate(&state_, Z_NO_FLUSH);
     input_.consume(packed.size() - state_.avail_in);
+    was_full_ = state_.avail_out == 0 && result == Z_OK;
     if (result == Z_MEM_ERROR) throw std::bad_alloc();
     if (result == Z_STREAM_END) {
       between_ = is_gzip_;
@@ -138,6 +142,7 @@ class InflatingSource final : public ByteSource {
   std::optional<std::uint64_t> size_;
   bool between_ = false;  // two gzip files
   bool at_end_ = false;
+  bool was_full_ = false;  // the output
   std::uint64_t done_ = 0;
 };
 

@@ -95,10 +95,11 @@ def stl_binary():
         struct.pack("<12fH", 0, 0, 0, *VERTICES[a], *VERTICES[b], *VERTICES[c], 0) for a, b, c in FACES)
 
 
-def npy():
-    head = "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 3), }"
+def npy(points=POINTS):
+    head = "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 3), }" % len(points)
     head += " " * (-(len(head) + 11) % 64) + "\n"
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + struct.pack("<9d", *sum(POINTS, ()))
+    data = b"".join(struct.pack("<3d", *p) for p in points)
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
 
 
 def npz(method=zipfile.ZIP_STORED, array=None):
@@ -177,6 +178,12 @@ class Compressed(unittest.TestCase):
                 self.assertEqual(self.works("points t.obj %s" % self.write(packed_name, packed)), expected, packed_name)
         for packed_name, packed in self.packed("p.csv", POINT_FILES["p.csv"]):
             self.assertEqual(self.works("points t.obj -", input=packed), self.works("points t.obj p.csv"), packed_name)
+
+    def test_deflated_members_end_where_a_piece_of_them_does(self):
+        """128 KiB are unpacked at a time; the byte that ends the data holds the last match, too."""
+        for n in range(5458, 5475):
+            path = self.write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
+            self.assertEqual(self.works("points t.obj " + path).count(b"\n"), n + 1)
 
     def refused(self, words, name, stdout=b""):
         result = self.run_raycone(words)

@@ -34,7 +34,7 @@ class SampledPoints final : public PointReader {
     for (const std::int64_t face : faces_) normals_.push_back(face < 0 ? Vec3{} : sampler_.normal(face));
     return {normals_, faces_};
   }
-  [[nodiscard]] bool would_block() const override { return false; }
+  [[nodiscard]] bool would_block() override { return false; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return sampler_.size(); }
 
  private:

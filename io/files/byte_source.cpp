@@ -48,7 +48,7 @@ class FileSource final : public ByteSource {
     }
   }
 
-  bool is_ready() const override { return is_readable(descriptor_, 0); }
+  bool is_ready() override { return is_readable(descriptor_, 0); }
 
   std::optional<std::uint64_t> size() const override {
     struct stat status {};

@@ -16,8 +16,8 @@ class ByteSource {
 
   // Reads at most `size` bytes, at least one, and waits until there is one; 0 at the end. Throws InputError.
   virtual std::size_t read(char* bytes, std::size_t size) = 0;
-  // Whether read() would not have to wait.
-  [[nodiscard]] virtual bool is_ready() const { return true; }
+  // Whether read() would not have to wait. May read ahead to find out; throws InputError.
+  [[nodiscard]] virtual bool is_ready() { return true; }
   // Whether only read() at the end tells that bytes are damaged, as of what is packed.
   [[nodiscard]] virtual bool is_checked_at_end() const { return false; }
 

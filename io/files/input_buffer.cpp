@@ -41,7 +41,7 @@ void InputBuffer::check_rest() {
   } while (fill());
 }
 
-bool InputBuffer::would_wait() const { return !at_end_ && !source_->is_ready(); }
+bool InputBuffer::would_wait() { return !at_end_ && !source_->is_ready(); }
 
 std::optional<std::uint64_t> InputBuffer::file_size() const { return source_->size(); }
 

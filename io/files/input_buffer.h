@@ -27,8 +27,8 @@ class InputBuffer {
   // Appends what can be read at once to pending(), waiting until there is something; false at the end of the input.
   // pending() grows as long as nobody consumes it: it is for the caller to stop. Throws InputError.
   bool fill();
-  // Whether fill() would have to wait.
-  [[nodiscard]] bool would_wait() const;
+  // Whether fill() would have to wait. May read ahead to find out, but leaves pending() as it is. Throws InputError.
+  [[nodiscard]] bool would_wait();
   // Reads on to the end where only that tells whether bytes are damaged, and consumes them. Throws InputError.
   void check_rest();
   // Offset in the input of the first byte of pending().

@@ -49,19 +49,19 @@ class PackedInput {
     end_ = begun.size();
   }
 
-  // What is there, at least one byte unless at the end.
-  std::string_view pending() {
-    if (begin_ == end_) {
-      begin_ = 0;
-      end_ = source_->read(bytes_.data(), bytes_.size());
-    }
-    return {bytes_.data() + begin_, end_ - begin_};
+  // What has been read and not consumed.
+  [[nodiscard]] std::string_view pending() const { return {bytes_.data() + begin_, end_ - begin_}; }
+  // Reads more, once nothing is pending; false at the end.
+  bool fill() {
+    begin_ = 0;
+    end_ = source_->read(bytes_.data(), bytes_.size());
+    return end_ > 0;
   }
   void consume(std::size_t count) {
     begin_ += count;
     offset_ += count;
   }
-  [[nodiscard]] bool is_ready() const { return begin_ < end_ || source_->is_ready(); }
+  [[nodiscard]] bool is_ready() { return begin_ < end_ || source_->is_ready(); }
 
   [[noreturn]] void fail(const std::string& what) const { fail_at_byte(name_, offset_, what); }
 
@@ -73,110 +73,157 @@ class PackedInput {
   std::uint64_t offset_ = 0;
 };
 
-// By zlib: gzip files, or bare deflate.
-class InflatingSource final : public ByteSource {
+// Reads through a decoder. That one may hold bytes for which there was no room, and what has come of its input may
+// yield none: only decoding ahead tells whether there is a byte.
+class DecodingSource : public ByteSource {
  public:
-  InflatingSource(PackedInput input, int window, std::optional<std::uint64_t> size)
-      : input_(std::move(input)), is_gzip_(window == kGzipWindow), size_(size) {
+  explicit DecodingSource(PackedInput input) : input_(std::move(input)) {}
+
+  std::size_t read(char* bytes, std::size_t size) final {
+    std::size_t count = take_ahead(bytes, size);
+    while (count == 0 && !at_end_) count = decode_some(bytes, size);
+    return count;
+  }
+  bool is_ready() final {
+    while (begin_ == end_ && !at_end_) {
+      if (!was_full_ && !input_.is_ready()) return false;
+      ahead_.resize(kBlock);
+      begin_ = 0;
+      end_ = decode_some(ahead_.data(), ahead_.size());
+    }
+    return true;
+  }
+  bool is_checked_at_end() const final { return true; }
+
+ protected:
+  // Decodes what it holds, and what is pending of input(), as far as there is room, and returns the number of bytes.
+  virtual std::size_t decode(char* bytes, std::size_t size) = 0;
+  // Whether the input may end here.
+  [[nodiscard]] virtual bool may_end() const = 0;
+
+  PackedInput& input() { return input_; }
+  void set_end() { at_end_ = true; }
+  [[noreturn]] void fail_as_damaged(const char* what) const {
+    input_.fail(std::string("damaged compressed data: ") + what);
+  }
+
+ private:
+  // Waits where the decoder holds nothing and needs input. May return 0 before the end.
+  std::size_t decode_some(char* bytes, std::size_t size) {
+    if (!was_full_ && input_.pending().empty() && !input_.fill()) {
+      if (!may_end()) input_.fail("the compressed data end too early");
+      set_end();
+      return 0;
+    }
+    const std::size_t room = std::min(size, kBlock), count = decode(bytes, room);
+    was_full_ = count == room;
+    return count;
+  }
+
+  std::size_t take_ahead(char* bytes, std::size_t size) {
+    const std::size_t count = std::min(size, end_ - begin_);
+    std::copy_n(ahead_.begin() + static_cast<std::ptrdiff_t>(begin_), count, bytes);
+    begin_ += count;
+    return count;
+  }
+
+  PackedInput input_;
+  std::vector<char> ahead_;  // bytes decoded before they were asked for are those in [begin_, end_)
+  std::size_t begin_ = 0, end_ = 0;
+  bool was_full_ = false;  // the room, so that the decoder may hold more
+  bool at_end_ = false;
+};
+
+// By zlib: gzip files, or bare deflate, behind which nothing needs to be: what zlib holds may be all that is left.
+class InflatingSource final : public DecodingSource {
+ public:
+  InflatingSource(PackedInput packed, int window, std::optional<std::uint64_t> size)
+      : DecodingSource(std::move(packed)), is_gzip_(window == kGzipWindow), size_(size) {
     if (inflateInit2(&state_, window) != Z_OK) throw std::bad_alloc();
   }
   ~InflatingSource() override { inflateEnd(&state_); }
   InflatingSource(const InflatingSource&) = delete;
   InflatingSource& operator=(const InflatingSource&) = delete;
 
-  std::size_t read(char* bytes, std::size_t size) override {
-    state_.next_out = reinterpret_cast<Bytef*>(bytes);
-    state_.avail_out = static_cast<uInt>(std::min(size, kBlock));
-    const uInt room = state_.avail_out;
-    while (state_.avail_out == room && !at_end_) inflate_some();
-    const std::size_t count = room - state_.avail_out;
-    done_ += count;
-    if (size_ && (done_ > *size_ || (count == 0 && done_ != *size_))) input_.fail("another size than announced");
-    return count;
-  }
-  bool is_ready() const override { return at_end_ || input_.is_ready(); }
-  bool is_checked_at_end() const override { return true; }
   std::optional<std::uint64_t> size() const override { return size_; }
 
  private:
-  // Where output was full, zlib may hold more: the rest of a match, and the end of the data, behind which bare deflate
-  // has no bytes.
-  void inflate_some() {
-    const bool is_held = std::exchange(was_full_, false);
-    const std::string_view packed = is_held ? std::string_view() : input_.pending();
-    if (packed.empty() && !is_held) {
-      if (!between_) input_.fail("the compressed data end too early");
-      at_end_ = true;
-      return;
-    }
-    if (between_ && !begins_member(packed)) return;
+  std::size_t decode(char* bytes, std::size_t size) override {
+    if (between_ && !begins_member()) return 0;
+    const std::string_view packed = input().pending();
     state_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
     state_.avail_in = static_cast<uInt>(packed.size());
+    state_.next_out = reinterpret_cast<Bytef*>(bytes);
+    state_.avail_out = static_cast<uInt>(size);
     const int result = inflate(&state_, Z_NO_FLUSH);
-    input_.consume(packed.size() - state_.avail_in);
-    was_full_ = state_.avail_out == 0 && result == Z_OK;
+    input().consume(packed.size() - state_.avail_in);
     if (result == Z_MEM_ERROR) throw std::bad_alloc();
+    const std::size_t count = size - state_.avail_out;
+    done_ += count;
     if (result == Z_STREAM_END) {
-      between_ = is_gzip_;
-      at_end_ = !is_gzip_;
+      end_member();
     } else if (result != Z_OK && result != Z_BUF_ERROR) {
-      input_.fail(std::string("damaged compressed data: ") + (state_.msg != nullptr ? state_.msg : "a dictionary"));
+      fail_as_damaged(state_.msg != nullptr ? state_.msg : "a dictionary");
+    } else if (size_ && done_ > *size_) {
+      fail_as_of_another_size();
     }
+    return count;
+  }
+
+  void end_member() {
+    between_ = is_gzip_;
+    if (is_gzip_) return;
+    if (size_ && done_ != *size_) fail_as_of_another_size();
+    set_end();
   }
 
   // Behind a gzip file may be another one, and zeros that fill a block of a tape.
-  bool begins_member(std::string_view packed) {
+  bool begins_member() {
+    const std::string_view packed = input().pending();
+    if (packed.empty()) return false;
     if (packed.front() == '\0') {
-      input_.consume(1);
+      input().consume(1);
       return false;
     }
-    if (packed.front() != kGzipMagic.front()) input_.fail("something other than compressed data behind them");
+    if (packed.front() != kGzipMagic.front()) input().fail("something other than compressed data behind them");
     between_ = false;
     inflateReset(&state_);
     return true;
   }
 
-  PackedInput input_;
+  bool may_end() const override { return between_; }
+  [[noreturn]] void fail_as_of_another_size() { input().fail("another size than announced"); }
+
   z_stream state_{};
   bool is_gzip_;
   std::optional<std::uint64_t> size_;
   bool between_ = false;  // two gzip files
-  bool at_end_ = false;
-  bool was_full_ = false;  // the output
   std::uint64_t done_ = 0;
 };
 
-class ZstandardSource final : public ByteSource {
+class ZstandardSource final : public DecodingSource {
  public:
-  explicit ZstandardSource(PackedInput input)
-      : input_(std::move(input)), state_(ZSTD_createDStream(), &ZSTD_freeDStream) {
+  explicit ZstandardSource(PackedInput packed)
+      : DecodingSource(std::move(packed)), state_(ZSTD_createDStream(), &ZSTD_freeDStream) {
     if (!state_) throw std::bad_alloc();
   }
 
-  std::size_t read(char* bytes, std::size_t size) override {
+ private:
+  std::size_t decode(char* bytes, std::size_t size) override {
+    const std::string_view packed = input().pending();
+    if (packed.empty() && !within_) return 0;
+    ZSTD_inBuffer in{packed.data(), packed.size(), 0};
     ZSTD_outBuffer out{bytes, size, 0};
-    while (out.pos == 0) {
-      const std::string_view packed = input_.pending();
-      if (packed.empty() && !within_) return 0;
-      ZSTD_inBuffer in{packed.data(), packed.size(), 0};
-      const std::size_t result = ZSTD_decompressStream(state_.get(), &out, &in);
-      input_.consume(in.pos);
-      if (ZSTD_isError(result)) fail(result);
-      within_ = result != 0;
-      if (packed.empty() && out.pos == 0) input_.fail("the compressed data end too early");
-    }
+    const std::size_t result = ZSTD_decompressStream(state_.get(), &out, &in);
+    input().consume(in.pos);
+    if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+    if (ZSTD_isError(result)) fail_as_damaged(ZSTD_getErrorName(result));
+    within_ = result != 0;
     return out.pos;
   }
-  bool is_ready() const override { return input_.is_ready(); }
-  bool is_checked_at_end() const override { return true; }
 
- private:
-  [[noreturn]] void fail(std::size_t result) const {
-    if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
-    input_.fail(std::string("damaged compressed data: ") + ZSTD_getErrorName(result));
-  }
+  bool may_end() const override { return !within_; }
 
-  PackedInput input_;
   std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> state_;
   bool within_ = false;  // a frame
 };
@@ -195,7 +242,7 @@ class UnpackingSource final : public ByteSource {
     begun_.erase(0, count);
     return count;
   }
-  bool is_ready() const override { return !begun_.empty() || source_->is_ready(); }
+  bool is_ready() override { return !begun_.empty() || source_->is_ready(); }
   bool is_checked_at_end() const override { return source_->is_checked_at_end(); }
   std::optional<std::uint64_t> size() const override { return source_->size(); }
   bool is_seekable() const override { return source_->is_seekable(); }

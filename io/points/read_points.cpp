@@ -25,7 +25,7 @@ class StoredPoints : public PointReader {
     next_ += count;
     return count > 0;
   }
-  [[nodiscard]] bool would_block() const override { return false; }
+  [[nodiscard]] bool would_block() override { return false; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return points_.size(); }
 
  private:

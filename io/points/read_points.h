@@ -39,8 +39,9 @@ class PointReader {
   // Of the batch that next() gave last, where its points are drawn from a surface; valid until the next one.
   [[nodiscard]] virtual SurfacePlaces places() { return {}; }
 
-  // Whether a further next() would have to wait for input now: the moment to flush what has been answered.
-  [[nodiscard]] virtual bool would_block() const = 0;
+  // Whether a further next() would have to wait for input now: the moment to flush what has been answered. Reads ahead
+  // to find out, as part of a point is no question. Throws InputError.
+  [[nodiscard]] virtual bool would_block() = 0;
 
   // Whether there are columns to choose from, as in text.
   [[nodiscard]] virtual bool has_columns() const { return false; }

@@ -195,7 +195,7 @@ class RowMajorReader : public NpyPointReader {
   }
 
   // Reads what has arrived: half a row is no answer.
-  [[nodiscard]] bool would_block() const override {
+  [[nodiscard]] bool would_block() override {
     while (row_ < header_.rows && input_->pending().size() < row_size()) {
       if (input_->would_wait()) return true;
       if (!input_->fill()) return false;
@@ -230,7 +230,7 @@ class ColumnMajorReader : public NpyPointReader {
     return !batch.empty();
   }
 
-  [[nodiscard]] bool would_block() const override { return false; }
+  [[nodiscard]] bool would_block() override { return false; }
 
  private:
   void hold() {

@@ -34,7 +34,7 @@ class RawPointReader final : public PointReader {
   }
 
   // Reads what has arrived: part of a point is no question.
-  [[nodiscard]] bool would_block() const override {
+  [[nodiscard]] bool would_block() override {
     while (input_->pending().size() < kPointSize) {
       if (input_->would_wait()) return true;
       if (!input_->fill()) return false;

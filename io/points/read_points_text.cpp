@@ -61,7 +61,7 @@ std::optional<Columns> named_columns(const std::vector<std::string_view>& names)
 class TextPointReader : public PointReader {
  public:
   TextPointReader(std::unique_ptr<InputBuffer> input, const ReadPointsOptions& options)
-      : lines_(std::make_unique<TableLines>(std::move(input))), columns_are_given_(options.columns) {
+      : lines_(std::move(input)), columns_are_given_(options.columns) {
     if (!options.columns) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int column = (*options.columns)[axis];
@@ -72,8 +72,8 @@ class TextPointReader : public PointReader {
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.clear();
-    while (batch.size() < max && (batch.empty() || !lines_->would_wait())) {
-      const auto line = lines_->next();
+    while (batch.size() < max && (batch.empty() || !lines_.would_wait())) {
+      const auto line = lines_.next();
       if (!line) break;
       const bool is_first = !std::exchange(started_, true);
       if (is_first && take_header(*line)) continue;
@@ -82,7 +82,7 @@ class TextPointReader : public PointReader {
     return !batch.empty();
   }
 
-  [[nodiscard]] bool would_block() const override { return lines_->would_wait(); }
+  [[nodiscard]] bool would_block() override { return lines_.would_wait(); }
   [[nodiscard]] bool has_columns() const override { return true; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
@@ -90,7 +90,7 @@ class TextPointReader : public PointReader {
   // Whether the first line is a header, which it is if no coordinate in it is a number, or looks like one, and one of
   // them is a name. Takes the columns from it.
   bool take_header(std::string_view line) {
-    if (line.find('\0') != std::string_view::npos) lines_->fail("the input is binary, expected text");
+    if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
     std::vector<std::string_view> names;
     TableFields fields(line, delimiter_of(line));
     while (const auto field = fields.next()) names.push_back(*field);
@@ -133,16 +133,16 @@ class TextPointReader : public PointReader {
   [[nodiscard]] double coordinate(std::string_view field, std::size_t column) const {
     const auto number = number_of(field);
     if (number && std::isfinite(*number)) return *number;
-    lines_->fail("column " + std::to_string(column + 1) + " is " + (field.empty() ? "empty" : quoted(field)) +
-                 ", expected a finite number");
+    lines_.fail("column " + std::to_string(column + 1) + " is " + (field.empty() ? "empty" : quoted(field)) +
+                ", expected a finite number");
   }
 
   [[noreturn]] void fail_short(std::string_view line, std::size_t found, std::size_t last) const {
-    lines_->fail("found " + quoted(line) + " with " + counted(found, "column") + ", expected at least " +
-                 std::to_string(last + 1));
+    lines_.fail("found " + quoted(line) + " with " + counted(found, "column") + ", expected at least " +
+                std::to_string(last + 1));
   }
 
-  std::unique_ptr<TableLines> lines_;  // would_block() reads ahead: the points stay the same
+  TableLines lines_;
   Columns columns_{0, 1, 2};
   bool columns_are_given_;
   bool started_ = false;

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import zipfile
 
@@ -184,6 +185,25 @@ class Compressed(unittest.TestCase):
         for n in range(5458, 5475):
             path = self.write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
             self.assertEqual(self.works("points t.obj " + path).count(b"\n"), n + 1)
+
+    def test_answers_come_as_soon_as_their_points_have(self):
+        """256 KiB are read at a time. They end within the last block here, behind which nothing comes before the answers."""
+        first, last = b"0.1 0.2 0.3\n", b"1 1 1\n"
+        frame = bytes.fromhex("28b52ffd0038")  # a window of 128 KiB
+        for size, kind, block in ((len(first), 0, first), (1 << 17, 1, b"\n"), ((1 << 17) - 15, 1, b"\n"), (len(last), 0, last)):
+            frame += struct.pack("<I", size << 3 | kind << 1)[:3] + block  # kind 1: a byte repeated
+        words = [RAYCONE, "points", "t.obj", "-", "--quiet"]
+        with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+            hang = threading.Timer(PATIENCE, process.kill)
+            hang.start()
+            process.stdin.write(frame)
+            process.stdin.flush()
+            answers = [process.stdout.readline() for _ in range(3)]
+            hang.cancel()
+            process.stdin.write(bytes((1, 0, 0)))  # an empty block ends the frame
+            process.stdin.close()
+        self.assertEqual([answer[:4] for answer in answers], [b"x,y,", b"0.1,", b"1,1,"])
+        self.assertEqual(process.returncode, 0)
 
     def refused(self, words, name, stdout=b""):
         result = self.run_raycone(words)

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "io/files/file_error.h"
 
@@ -14,7 +17,8 @@ namespace {
 
 constexpr int kGzip = 15 + 16, kBare = -15;  // as zlib counts
 
-std::string deflated(std::string_view bytes, int window, int strategy = Z_DEFAULT_STRATEGY) {
+// `flush`: Z_FINISH, or Z_SYNC_FLUSH where more may follow.
+std::string deflated(std::string_view bytes, int window, int strategy = Z_DEFAULT_STRATEGY, int flush = Z_FINISH) {
   z_stream stream{};
   if (deflateInit2(&stream, 9, Z_DEFLATED, window, 8, strategy) != Z_OK) throw std::bad_alloc();
   std::string packed(deflateBound(&stream, bytes.size()), '\0');
@@ -22,7 +26,7 @@ std::string deflated(std::string_view bytes, int window, int strategy = Z_DEFAUL
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());
   stream.avail_out = static_cast<uInt>(packed.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  EXPECT_EQ(deflate(&stream, flush), flush == Z_FINISH ? Z_STREAM_END : Z_OK);
   packed.resize(stream.total_out);
   deflateEnd(&stream);
   return packed;
@@ -68,6 +72,73 @@ TEST(Unpack, GivesWhatWasPackedInPiecesOfAnySize) {
   for (std::size_t piece = 1; piece < 300; ++piece) {
     ASSERT_EQ(all_of(*unpacked(open_bytes(once), "f"), piece), bytes) << piece;
     ASSERT_EQ(all_of(*unpacked(open_bytes(twice), "f"), piece), bytes + bytes) << piece;
+  }
+}
+
+// --- Bytes that arrive by and by ------------------------------------------------------------------------------------
+
+// What a client has sent and not closed: to read more is to wait for ever.
+class OpenPipe final : public ByteSource {
+ public:
+  explicit OpenPipe(std::string sent) : sent_(std::move(sent)) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    if (begin_ == sent_.size()) throw std::logic_error("waits");
+    const std::size_t count = sent_.copy(bytes, size, begin_);
+    begin_ += count;
+    return count;
+  }
+  bool is_ready() override { return begin_ < sent_.size(); }
+
+ private:
+  std::string sent_;
+  std::size_t begin_ = 0;
+};
+
+// All that comes without waiting of packed bytes that have been sent.
+std::string arrived(const std::string& sent) {
+  const auto source = unpacked(std::make_unique<OpenPipe>(sent), "f");
+  std::string all, bytes(std::size_t{1} << 18, '\0');
+  while (source->is_ready()) all.append(bytes, 0, source->read(bytes.data(), bytes.size()));
+  return all;
+}
+
+// Frames of one block each, that says `byte` some times (RFC 8878, 3.1.1); a byte of it before and behind.
+std::string zstandard_frame(char byte, std::uint32_t times) {
+  const std::uint32_t head = times << 3 | 1 << 1 | 1;  // a run, the last block
+  std::string frame("\x28\xb5\x2f\xfd\x00\x38", 6);    // a window of 128 KiB
+  for (int n = 0; n < 3; ++n) frame += static_cast<char>(head >> (8 * n) & 0xFF);
+  return frame + byte;
+}
+
+TEST(Unpack, GivesAllThatHasComeOfZstandardFrames) {
+  std::string sent, expected;
+  for (int n = 0; n < 5; ++n) {
+    for (const std::uint32_t times : {1u, 131072u, 131071u, 7u}) {
+      sent += zstandard_frame('a', times);
+      expected.append(times, 'a');
+      EXPECT_EQ(arrived(sent).size(), expected.size());
+    }
+  }
+  const std::string begun = sent + zstandard_frame('b', 10);
+  for (std::size_t cut = 1; cut < 10; ++cut) EXPECT_EQ(arrived(begun.substr(0, sent.size() + cut)), expected) << cut;
+}
+
+TEST(Unpack, GivesAllThatHasComeOfDeflatedBytes) {
+  for (std::size_t size = (1 << 17) - 2; size < (1 << 17) + 300; ++size) {
+    const std::string bytes = "x" + std::string(size - 1, '\0');
+    const std::string sent = deflated(bytes, kGzip, Z_DEFAULT_STRATEGY, Z_SYNC_FLUSH);
+    ASSERT_EQ(arrived(sent).size(), size);
+    // The empty block that ends what is flushed holds nothing; without it, some of a match may.
+    for (const std::size_t cut : {1, 2, 3, 4}) ASSERT_EQ(arrived(sent.substr(0, sent.size() - cut)).size(), size);
+  }
+}
+
+TEST(Unpack, WaitsForMoreOfATrailer) {
+  const std::string bytes(1000, 'x'), packed = deflated(bytes, kGzip);
+  for (std::size_t cut = 0; cut <= 8; ++cut) {
+    EXPECT_EQ(arrived(packed.substr(0, packed.size() - cut)), bytes) << cut;
+    EXPECT_EQ(arrived(packed + packed.substr(0, packed.size() - cut)), bytes + bytes) << cut;
   }
 }
 

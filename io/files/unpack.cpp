@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <deque>
 #include <new>
 #include <utility>
 #include <vector>
@@ -284,6 +285,18 @@ class UnpackingSource final : public ByteSource {
   bool at_end_ = false;
 };
 
+// The next `size` bytes, less at the end.
+std::string next_piece(ByteSource& source, std::size_t size) {
+  std::string bytes(size, '\0');
+  std::size_t done = 0, count = 0;
+  do {
+    count = source.read(bytes.data() + done, size - done);
+    done += count;
+  } while (count > 0 && done < size);
+  bytes.resize(done);
+  return bytes;
+}
+
 }  // namespace
 
 bool is_packed(std::string_view bytes) { return packing_of(bytes) != Packing::kNone; }
@@ -292,16 +305,19 @@ std::unique_ptr<ByteSource> unpacked(std::unique_ptr<ByteSource> packed, const s
   return std::make_unique<UnpackingSource>(std::move(packed), name);
 }
 
+// In pieces, which are given back as they are joined: nobody knows the size, and room for it that grows would for a
+// while take more than twice as much.
 std::string unpacked(std::string_view packed, const std::string& name) {
   const std::unique_ptr<ByteSource> source = unpacked(open_bytes(packed), name);
-  std::string bytes(std::max(kBlock, 4 * packed.size()), '\0');  // most meshes need no more room
+  std::deque<std::string> pieces;
   std::size_t size = 0;
-  while (const std::size_t count = source->read(bytes.data() + size, bytes.size() - size)) {
-    size += count;
-    if (size == bytes.size()) bytes.resize(size + size / 2);
-  }
-  bytes.resize(size);
-  bytes.shrink_to_fit();
+  do {
+    pieces.push_back(next_piece(*source, std::max(kBlock, size / 8)));
+    size += pieces.back().size();
+  } while (!pieces.back().empty());
+  std::string bytes;
+  bytes.reserve(size);
+  for (; !pieces.empty(); pieces.pop_front()) bytes += pieces.front();
   return bytes;
 }
 

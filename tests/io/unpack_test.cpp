@@ -2,9 +2,13 @@
 #include "io/files/unpack.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <zlib.h>
 
+#include <cstdint>
+#include <cstring>
 #include <memory>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -73,6 +77,27 @@ TEST(Unpack, GivesWhatWasPackedInPiecesOfAnySize) {
     ASSERT_EQ(all_of(*unpacked(open_bytes(once), "f"), piece), bytes) << piece;
     ASSERT_EQ(all_of(*unpacked(open_bytes(twice), "f"), piece), bytes + bytes) << piece;
   }
+}
+
+// At most so many bytes of memory were resident at a time.
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+TEST(Unpack, TakesLittleMoreMemoryThanItsResult) {
+  constexpr std::size_t kSize = std::size_t{1} << 24;
+  std::string bytes(kSize, '\0');
+  std::mt19937 random(1);
+  for (std::size_t n = 0; n < kSize; n += 4) {
+    const auto word = static_cast<std::uint32_t>(random());
+    std::memcpy(&bytes[n], &word, 4);
+  }
+  const std::string packed = deflated(bytes, kGzip);  // takes as much
+  const std::size_t before = peak_memory();
+  EXPECT_EQ(unpacked(packed, "f"), bytes);
+  EXPECT_LT(peak_memory() - before, 2.5 * kSize);
 }
 
 // --- Bytes that arrive by and by ------------------------------------------------------------------------------------

@@ -16,7 +16,8 @@ namespace raycone {
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
 // side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
 // half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
-// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Negative distances stay negative.
+// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Negative distances stay negative, and bounds
+// are rounded up.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field)
@@ -26,6 +27,7 @@ class Narrowing {
   Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
       : keeps_sides_(field.kind == FieldKind::kReal || field.kind == FieldKind::kDensity),
         keeps_negative_(field.kind == FieldKind::kDistance),
+        is_bound_(field.kind == FieldKind::kBound),
         of_magnitude_(field.threshold_of_magnitude),
         threshold_(field.threshold),
         low_(std::min(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
@@ -35,6 +37,7 @@ class Narrowing {
 
   [[nodiscard]] float operator()(double value) const {
     const float stored = nearest_(value);
+    if (is_bound_) return static_cast<double>(stored) < value ? up(stored) : stored;
     if (keeps_negative_ && value < 0.0) return std::min(stored, down(0.0F));
     if (!keeps_sides_ || static_cast<double>(stored) == value) return stored;
     if (of_magnitude_) return std::copysign(on_side(std::abs(stored), std::abs(value)), stored);
@@ -66,6 +69,7 @@ class Narrowing {
 
   bool keeps_sides_;
   bool keeps_negative_;
+  bool is_bound_;
   bool of_magnitude_;
   double threshold_, low_, high_;
   float (*nearest_)(double);

@@ -15,12 +15,6 @@ Narrowing narrowing_of(const FieldDescription& field, bool half) {
   return {field, &nearest_half, &next_half_above};
 }
 
-float rounded_up(double bound) {
-  const float nearest = static_cast<float>(bound);
-  return static_cast<double>(nearest) < bound ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-                                              : nearest;
-}
-
 template <typename Value>
 Value level_set_background(double band_width, double voxel, bool half) {
   auto background = static_cast<Value>(band_width);

@@ -16,9 +16,6 @@ namespace raycone::vdb {
 // Rounds to floats, with `half` to those that fit in 16 bits.
 [[nodiscard]] Narrowing narrowing_of(const FieldDescription& field, bool half);
 
-// A bound as a float that still is one.
-[[nodiscard]] float rounded_up(double bound);
-
 // The least value that is no narrower than the band, also as OpenVDB's checkLevelSet measures it: in voxels. With
 // `half`, of those that fit in 16 bits. Value: float or double.
 template <typename Value>
@@ -42,12 +39,6 @@ struct StoreCount {
   using Number = std::int64_t;
   using Stored = float;
   Stored operator()(Number count) const { return static_cast<float>(static_cast<double>(count)); }
-};
-
-struct StoreBound {
-  using Number = double;
-  using Stored = float;
-  Stored operator()(Number bound) const { return rounded_up(bound); }
 };
 
 // Adding 0 turns -0 into 0, here and below.

@@ -370,7 +370,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
     case FieldKind::kCount:
       return make_builder<FloatGrid>(plan, vdb::StoreCount{}, narrow_background);
     case FieldKind::kBound:
-      return make_builder<FloatGrid>(plan, vdb::StoreBound{}, narrow_background);
+      return make_builder<FloatGrid>(plan, vdb::StoreFloat{Narrowing(plan.field)}, narrow_background);
     case FieldKind::kDistance:
       return wide ? make_level_set_builder<DoubleGrid>(plan) : make_level_set_builder<FloatGrid>(plan);
     case FieldKind::kVector:

@@ -95,7 +95,7 @@ TEST(Narrowing, IsTheNearestFloatElsewhere) {
 
 TEST(Narrowing, LeavesOtherFieldsAlone) {
   FieldDescription field = winding_of({});
-  for (const FieldKind kind : {FieldKind::kDistance, FieldKind::kCount, FieldKind::kBound}) {
+  for (const FieldKind kind : {FieldKind::kDistance, FieldKind::kCount}) {
     field.kind = kind;
     const double below = std::nextafter(0.5, 0.0);
     EXPECT_EQ(Narrowing(field)(below), 0.5F);
@@ -113,6 +113,24 @@ TEST(Narrowing, KeepsNegativeDistancesNegative) {
   }
   EXPECT_EQ(narrowing(-0.0), 0.0F);
   EXPECT_EQ(narrowing(-0.3), -0.3F);
+}
+
+TEST(Narrowing, RoundsBoundsUp) {
+  Random random(4);
+  FieldDescription field;
+  field.kind = FieldKind::kBound;
+  const Narrowing narrowing(field);
+  int moved = 0;
+  for (int n = 0; n < 1000; ++n) {
+    const double bound = std::ldexp(test::uniform(random, 0.5, 1), -n);
+    const float stored = narrowing(bound);
+    EXPECT_GE(static_cast<double>(stored), bound);
+    EXPECT_LT(static_cast<double>(std::nextafter(stored, 0.0F)), bound);
+    moved += stored != static_cast<float>(bound);
+  }
+  EXPECT_GT(moved, 100);  // the nearest float would have been no bound
+  EXPECT_EQ(narrowing(0.0), 0.0F);
+  EXPECT_EQ(narrowing(0x1p-50), 0x1p-50F);
 }
 
 // Eleven binary digits, as halves between 2^-14 and 65504 have.

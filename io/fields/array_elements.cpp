@@ -191,7 +191,7 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
     return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, largest, output);
   }
   const Narrowing narrowing(field, &nearest_half, &next_half_above);
-  // Winding numbers beyond are stored as the largest half, which every rule takes for the same.
+  // Winding numbers beyond are stored as the largest half.
   const double largest = field.kind == FieldKind::kDistance ? kLargestHalf : kAny;
   return std::make_unique<TypedElements<HalfElement>>(HalfElement{narrowing}, largest, output);
 }

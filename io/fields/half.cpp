@@ -36,6 +36,7 @@ float half_from_bits(std::uint16_t bits) {
 }
 
 float next_half_above(float half) {
+  if (static_cast<double>(half) >= kLargestHalf) return half;
   const std::uint16_t bits = bits_of_half(half);
   return half_from_bits(static_cast<std::uint16_t>((bits & kSign) != 0 ? bits - 1 : bits + 1));
 }

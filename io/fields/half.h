@@ -10,7 +10,7 @@ inline constexpr double kLargestHalf = 65504.0;
 // The half nearest to `value`, ties to even; beyond the largest one, that. Precondition: not NaN.
 [[nodiscard]] float nearest_half(double value);
 
-// The next half above `half`, which is one below the largest.
+// The next half above the half `half`; of the largest, that.
 [[nodiscard]] float next_half_above(float half);
 
 // The bits of a float that is a half, -0 as 0, and back.

@@ -16,14 +16,16 @@ namespace raycone {
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
 // side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
 // half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
-// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Negative distances stay negative, and bounds
+// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Where a threshold lies beyond all that can be
+// stored, numbers beyond that become the largest on their side of 0. Negative distances stay negative, and bounds
 // are rounded up.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field)
       : Narrowing(field, field.kind == FieldKind::kVector ? &float_in_range : &nearest_float, &next_float) {}
 
-  // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards.
+  // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards,
+  // or itself where it is the largest.
   Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
       : keeps_sides_(field.kind == FieldKind::kReal || field.kind == FieldKind::kDensity),
         keeps_negative_(field.kind == FieldKind::kDistance),
@@ -59,10 +61,11 @@ class Narrowing {
     if (std::abs(number - nearest_integer) == 0.5 && (number > value || number < 0.0)) {
       stored = number > value ? down(stored) : up(stored);
     }
-    if (value >= threshold_) {
-      while (static_cast<double>(stored) < high_) stored = up(stored);
-    } else {
-      while (static_cast<double>(stored) >= low_) stored = down(stored);
+    const bool reaches = value >= threshold_;
+    while (reaches ? static_cast<double>(stored) < high_ : static_cast<double>(stored) >= low_) {
+      const float next = reaches ? up(stored) : down(stored);
+      if (next == stored) break;
+      stored = next;
     }
     return stored;
   }

@@ -40,6 +40,8 @@ TEST(Half, TheNearestIsNearestWithTiesToEven) {
     ASSERT_EQ(next_half_above(static_cast<float>(low)), high);
     ASSERT_EQ(next_half_above(static_cast<float>(-high)), -low);
   }
+  EXPECT_EQ(next_half_above(65504.0F), 65504.0F);
+  EXPECT_EQ(next_half_above(-65504.0F), -65472.0F);
   EXPECT_EQ(nearest_half(1e300), kLargestHalf);
   EXPECT_EQ(nearest_half(-1e300), -kLargestHalf);
   EXPECT_EQ(nearest_half(5e-324), 0.0F);

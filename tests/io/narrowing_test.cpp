@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/data/rule.h"
+#include "io/fields/half.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -113,6 +115,25 @@ TEST(Narrowing, KeepsNegativeDistancesNegative) {
   }
   EXPECT_EQ(narrowing(-0.0), 0.0F);
   EXPECT_EQ(narrowing(-0.3), -0.3F);
+}
+
+// docs/formats.md: winding numbers beyond 65504 become that with f16.
+TEST(Narrowing, StopsAtTheLargestHalf) {
+  for (const double threshold : {65503.7, 65504.0, 65504.5, 70000.0, 131008.0, 140000.0, 1e12}) {
+    for (const Rule& rule : {Rule{RuleKind::kThreshold, threshold}, Rule{RuleKind::kThreshold, -threshold},
+                             Rule{RuleKind::kAbs, threshold}}) {
+      const Narrowing narrowing(winding_of(rule), &nearest_half, &next_half_above);
+      for (const double value : values_about({1.0, 65504.0, 65504.5, 70000.0, 131008.0, 140000.0, 1e12})) {
+        const double stored = narrowing(value);
+        ASSERT_TRUE(std::abs(stored) <= kLargestHalf) << value << " for " << threshold;
+        EXPECT_LE(std::abs(stored - std::clamp(value, -kLargestHalf, kLargestHalf)), 32)
+            << value << " for " << threshold;
+        if (std::abs(value) > kLargestHalf + 1 && std::abs(threshold) > kLargestHalf) {
+          EXPECT_EQ(stored, std::copysign(kLargestHalf, value)) << value << " for " << threshold;
+        }
+      }
+    }
+  }
 }
 
 TEST(Narrowing, RoundsBoundsUp) {

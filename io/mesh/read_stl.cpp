@@ -2,6 +2,7 @@
 // corners is what orients a triangle. Format: 3D Systems, "StereoLithography Interface Specification", 1988.
 #include <limits>
 
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/text_scanner.h"
@@ -24,9 +25,10 @@ class AsciiStlReader {
       if (text_.skip_word("facet")) {
         read_facet();
       } else if (text_.skip_word("solid")) {
-        groups_.start_group(read_name(), builder_.triangle_count());
+        name_ = read_name([this] { return begins_facet(); });
+        groups_.start_group(std::string(name_), builder_.triangle_count());
       } else if (text_.skip_word("endsolid")) {
-        static_cast<void>(read_name());
+        skip_end_name();
       } else {
         text_.fail_expecting("'facet' or 'endsolid'");
       }
@@ -38,26 +40,47 @@ class AsciiStlReader {
   }
 
  private:
-  // A name of any bytes: up to the end of the line, or to a facet that begins in it.
-  std::string read_name() {
+  // A name of any bytes, without blanks around it: up to the end of the line, or to the first word in it where `ends()`
+  // says so.
+  template <class Ends>
+  std::string_view read_name(const Ends& ends) {
+    const std::size_t line_end = next_line();
+    text_.skip_whitespace();
     const std::string_view rest = text_.rest();
     const std::size_t start = text_.offset();
-    text_.skip_line();
-    const std::size_t next_line = text_.offset();
-    text_.seek(start);
     std::size_t end = start;
-    for (text_.skip_whitespace(); text_.offset() < next_line; text_.skip_whitespace()) {
-      if (begins_facet()) return trimmed(rest.substr(0, end - start));
+    for (; text_.offset() < line_end; text_.skip_whitespace()) {
+      if (ends()) return rest.substr(0, end - start);
       text_.skip_token();
       end = text_.offset();
     }
-    text_.seek(next_line);
-    return trimmed(rest.substr(0, end - start));
+    text_.seek(line_end);
+    return rest.substr(0, end - start);
   }
 
-  static std::string trimmed(std::string_view name) {
-    while (!name.empty() && is_space(name.front())) name.remove_prefix(1);
-    return cut_name(name);
+  // Behind `endsolid`: the solid's own name, whatever that holds, or words up to another solid or a facet. Where there
+  // is no other solid but a name with that word, what it starts is empty and left out.
+  void skip_end_name() {
+    skip_own_name();
+    read_name([this] { return is_word(text_.peek_word(), "solid") || begins_facet(); });
+  }
+
+  void skip_own_name() {
+    const std::size_t start = text_.offset(), line_end = next_line();
+    text_.skip_whitespace();
+    if (text_.offset() >= line_end || !text_.rest().starts_with(name_)) return text_.seek(start);
+    text_.advance(name_.size());
+    if (!text_.at_end() && !is_space(text_.peek())) text_.seek(start);
+  }
+
+  // Where the next line starts. Looked for once a line: all solids may be in a single one.
+  std::size_t next_line() {
+    const std::size_t start = text_.offset();
+    if (start < line_end_) return line_end_;
+    text_.skip_line();
+    line_end_ = text_.offset();
+    text_.seek(start);
+    return line_end_;
   }
 
   // Names may hold the word "facet", so it takes more than that.
@@ -121,6 +144,8 @@ class AsciiStlReader {
   TextScanner text_;
   MeshBuilder builder_;
   GroupCollector groups_;
+  std::string_view name_;     // of the solid
+  std::size_t line_end_ = 0;  // of the line that was looked at last: where the next one starts
 };
 
 Vec3 load_vertex(const char* bytes) {

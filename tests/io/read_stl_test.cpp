@@ -1,5 +1,14 @@
 // The STL reader on good and on broken files, ASCII and binary.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "io/mesh/read_mesh.h"
 #include "tests/support/reader_checks.h"
@@ -97,6 +106,99 @@ TEST(ReadStl, AsciiFacetMayBeginInTheLineOfASolidOrEndsolid) {
                               "ENDLOOP ENDFACET ENDSOLID"))
                 .mesh.vertices,
             kCorners);
+}
+
+// "name: first triangle" of each group.
+std::vector<std::string> groups_of(const std::string& text) {
+  const FaceGroups groups = parse(text).groups;
+  std::vector<std::string> all;
+  for (const GroupRun& run : groups.runs) all.push_back(groups.names[run.group] + ": " + std::to_string(run.first));
+  return all;
+}
+
+TEST(ReadStl, AsciiSolidMayBeginInTheLineOfAnEndsolid) {
+  using Groups = std::vector<std::string>;
+  const Groups both{"a: 0", "b: 2"};
+  const std::string two = kFacet + kFacet;
+  for (const std::string end : {"endsolid a", "endsolid", "ENDSOLID  a ", "endsolid other name"}) {
+    for (const std::string between : {"\n", " ", "\n\n", "\t"}) {
+      const std::string text = "solid a\n" + two + end + between + "solid b\n" + kFacet + "endsolid b\n";
+      EXPECT_EQ(groups_of(text), both) << text;
+      EXPECT_EQ(groups_of(in_one_line(text)), both) << text;
+    }
+  }
+  EXPECT_EQ(groups_of("solid a\n" + two + "endsolid a SOLID b " + kFacet), both);
+}
+
+TEST(ReadStl, AsciiEndsolidMayNameASolidWithThatWordInItsName) {
+  for (const std::string name : {"solid", "a solid", "my solid part", "solid facet", "a  solid"}) {
+    const std::vector<std::string> both{name + ": 0", "b: 1"};
+    const std::string text = "solid " + name + "\n" + kFacet + "endsolid " + name;
+    EXPECT_EQ(groups_of(text + "\nsolid b\n" + kFacet + "endsolid b"), both) << name;
+    EXPECT_EQ(groups_of(text + " solid b\n" + kFacet + "endsolid b"), both) << name;
+    EXPECT_EQ(groups_of(text + "\n"), std::vector<std::string>{both[0]}) << name;
+  }
+  // Another name than the solid's.
+  EXPECT_EQ(groups_of("solid a\n" + kFacet + "endsolid my solid\nsolid b\n" + kFacet),
+            (std::vector<std::string>{"a: 0", "b: 1"}));
+}
+
+// A text that is read page by page: all pages but the last four read are protected, so that the system tells whenever
+// another one is.
+class CountedPages {
+ public:
+  explicit CountedPages(const std::string& text) : size_(text.size()) {
+    start_ = static_cast<char*>(mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    if (start_ == MAP_FAILED) throw std::bad_alloc();
+    text.copy(start_, size_);
+    mprotect(start_, size_, PROT_NONE);
+    counted_ = this;
+    struct sigaction action {};
+    action.sa_sigaction = [](int, siginfo_t* info, void*) { counted_->open(static_cast<char*>(info->si_addr)); };
+    action.sa_flags = SA_SIGINFO;
+    sigaction(SIGSEGV, &action, &before_);
+  }
+  ~CountedPages() {
+    sigaction(SIGSEGV, &before_, nullptr);
+    munmap(start_, size_);
+  }
+  CountedPages(const CountedPages&) = delete;
+  CountedPages& operator=(const CountedPages&) = delete;
+
+  [[nodiscard]] std::string_view text() const { return {start_, size_}; }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+ private:
+  static constexpr std::size_t kPage = 4096;
+
+  void open(char* at) {
+    if (at < start_ || at >= start_ + size_) _exit(1);  // a real fault
+    char*& oldest = open_[count_++ % open_.size()];
+    if (oldest != nullptr) mprotect(oldest, kPage, PROT_NONE);
+    oldest = start_ + static_cast<std::size_t>(at - start_) / kPage * kPage;
+    mprotect(oldest, kPage, PROT_READ);
+  }
+
+  static CountedPages* counted_;
+  char* start_ = nullptr;
+  std::size_t size_;
+  std::size_t count_ = 0;
+  std::array<char*, 4> open_{};
+  struct sigaction before_ {};
+};
+CountedPages* CountedPages::counted_ = nullptr;
+
+std::size_t pages_read(int solids) {
+  const std::string one = in_one_line("solid a\n" + kFacet + "endsolid a\n");
+  std::string text;
+  for (int n = 0; n < solids; ++n) text += one;
+  const CountedPages pages(text);
+  EXPECT_EQ(test::parse(read_stl, pages.text()).mesh.triangles.size(), static_cast<std::size_t>(solids));
+  return pages.count();
+}
+
+TEST(ReadStl, AsciiSolidsInOneLineTakeTimeInProportion) {
+  EXPECT_LT(pages_read(4000), 2.5 * static_cast<double>(pages_read(2000)));
 }
 
 TEST(ReadStl, AsciiNamesMayHoldKeywords) {

@@ -1,5 +1,6 @@
-// Bytes of a glTF asset. A URI is followed only into the asset's own directory: a mesh from a stranger must not make
-// the tool read (and a batch list in its reports) other files of the user.
+// Bytes of a glTF asset. A URI's path is followed only into the asset's own directory: a mesh from a stranger must not
+// name other files of the user, for the tool to read and a batch to list in its reports. Symbolic links there are
+// followed wherever they lead (docs/formats.md).
 #include "io/mesh/gltf_resources.h"
 
 #include <algorithm>

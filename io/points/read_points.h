@@ -46,7 +46,7 @@ class PointReader {
   // Whether there are columns to choose from, as in text.
   [[nodiscard]] virtual bool has_columns() const { return false; }
 
-  // Number of points in total where the format announces it (NPY, PLY).
+  // Number of points in total, where it is known before they are read: of NPY, NPZ, PLY, and raw numbers in a file.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
 };
 

@@ -3,12 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <span>
-#include <vector>
 
-#include "core/machine/threads.h"
 #include "io/fields/field_writer.h"
 
 namespace raycone {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/machine/threads.h"
-#include "io/fields/half.h"
 #include "io/fields/narrowing.h"
 #include "io/files/file_error.h"
+#include "io/files/half.h"
 
 namespace raycone {
 namespace {

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
+#include "io/files/half.h"
 #include "io/files/npy_head.h"
 #include "io/points/point_readers.h"
 
@@ -85,29 +85,14 @@ void check_size(const NpyHeader& header, const InputBuffer& input) {
 
 // --- Values ---------------------------------------------------------------------------------------------------------
 
-// IEEE 754 binary16: exact in double.
-double half_to_double(std::uint16_t bits) {
-  constexpr int kExponentBias = 15;
-  constexpr int kMantissaBits = 10;
-  const int exponent = bits >> kMantissaBits & 0x1F;
-  const int mantissa = bits & 0x3FF;
-  double magnitude = 0.0;
-  if (exponent == 0x1F) {
-    magnitude = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
-  } else if (exponent == 0) {
-    magnitude = std::ldexp(mantissa, 1 - kExponentBias - kMantissaBits);
-  } else {
-    magnitude = std::ldexp(mantissa + (1 << kMantissaBits), exponent - kExponentBias - kMantissaBits);
-  }
-  return bits & 0x8000 ? -magnitude : magnitude;
-}
-
 template <class Number>
 double load_number(const char* bytes, std::endian order) {
   return static_cast<double>(load<Number>(bytes, order));
 }
 
-double load_half(const char* bytes, std::endian order) { return half_to_double(load<std::uint16_t>(bytes, order)); }
+double load_half(const char* bytes, std::endian order) {
+  return static_cast<double>(half_from_bits(load<std::uint16_t>(bytes, order)));
+}
 
 // Conversion of one stored number, chosen once per file.
 using Loader = double (*)(const char*, std::endian);

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "io/fields/half.h"
+#include "io/files/half.h"
 
 namespace raycone::vdb {
 bool has_chosen_precision(FieldKind kind) {

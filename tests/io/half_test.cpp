@@ -1,5 +1,5 @@
 // Numbers of 16 bits against their definition: all of them, and doubles between neighbours.
-#include "io/fields/half.h"
+#include "io/files/half.h"
 
 #include <gtest/gtest.h>
 
@@ -24,6 +24,14 @@ TEST(Half, AllOfThemAreWhatTheirBitsSay) {
       ASSERT_EQ(half_from_bits(signed_bits), by_definition(signed_bits)) << bits;
       ASSERT_EQ(bits_of_half(half_from_bits(signed_bits)), bits == 0 ? 0 : signed_bits) << bits;
     }
+  }
+}
+
+TEST(Half, ThoseOfExponent31AreNoNumbers) {
+  EXPECT_EQ(half_from_bits(0x7C00), HUGE_VALF);
+  EXPECT_EQ(half_from_bits(0xFC00), -HUGE_VALF);
+  for (const int bits : {0x7C01, 0x7E00, 0x7FFF, 0xFE00}) {
+    EXPECT_TRUE(std::isnan(half_from_bits(static_cast<std::uint16_t>(bits))));
   }
 }
 

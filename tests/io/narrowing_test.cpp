@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/data/rule.h"
-#include "io/fields/half.h"
+#include "io/files/half.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

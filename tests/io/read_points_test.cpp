@@ -364,6 +364,11 @@ TEST_F(ReadPoints, NpyValueThatIsNotFiniteIsAnErrorWithItsByte) {
       npy("<f8", "False", "(2, 3)", bytes_of<double>({1, 2, 3, 4, std::numeric_limits<double>::infinity(), 6}));
   EXPECT_EQ(error_of(file),
             "pts:byte " + std::to_string(file.size() - 16) + ": row 1 has y = inf, expected a finite number");
+  for (const auto& [bits, number] : {std::pair<std::uint16_t, std::string>{0xFC00, "-inf"}, {0x7E00, "nan"}}) {
+    const std::string halves = npy("<f2", "False", "(1, 3)", bytes_of<std::uint16_t>({0x3C00, 0x3C00, bits}));
+    EXPECT_EQ(error_of(halves), "pts:byte " + std::to_string(halves.size() - 2) + ": row 0 has z = " + number +
+                                    ", expected a finite number");
+  }
 }
 
 TEST_F(ReadPoints, NpyInCOrderStreamsThroughAPipe) {

@@ -38,7 +38,7 @@ MUTANTS = [
 
     # --- Numbers of 16 bits ---
     Mutant("half_ties_upwards", "a double becomes the nearest half, of two the even one", [
-        ("io/fields/half.cpp", "std::nearbyint(clamped / step)", "std::floor(clamped / step + 0.5)")]),
+        ("io/files/half.cpp", "std::nearbyint(clamped / step)", "std::floor(clamped / step + 0.5)")]),
     Mutant("half_across_the_threshold", "a stored number is on the threshold's side", [
         ("io/fields/array_elements.cpp", "return bits_of_half(narrowing(number));",
          "return bits_of_half(nearest_half(number));")]),

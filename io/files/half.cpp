@@ -1,12 +1,14 @@
-#include "io/fields/half.h"
+#include "io/files/half.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace raycone {
 namespace {
 
 constexpr int kLeastExponent = -14, kDigits = 10;  // of normal numbers; behind the point
+constexpr int kNoNumber = 31;                      // the exponent's field
 constexpr std::uint16_t kSign = 0x8000, kMagnitude = 0x7FFF;
 
 }  // namespace
@@ -31,7 +33,8 @@ std::uint16_t bits_of_half(float half) {
 float half_from_bits(std::uint16_t bits) {
   const int field = (bits & kMagnitude) >> kDigits, digits = bits & ((1 << kDigits) - 1);
   const int leading = field == 0 ? 0 : 1 << kDigits;
-  const double magnitude = std::ldexp(leading + digits, std::max(field, 1) - 1 + kLeastExponent - kDigits);
+  double magnitude = std::ldexp(leading + digits, std::max(field, 1) - 1 + kLeastExponent - kDigits);
+  if (field == kNoNumber) magnitude = digits == 0 ? std::numeric_limits<double>::infinity() : std::nan("");
   return static_cast<float>((bits & kSign) != 0 ? -magnitude : magnitude);
 }
 

@@ -13,8 +13,9 @@ inline constexpr double kLargestHalf = 65504.0;
 // The next half above the half `half`; of the largest, that.
 [[nodiscard]] float next_half_above(float half);
 
-// The bits of a float that is a half, -0 as 0, and back.
+// The bits of a float that is a half, -0 as 0.
 [[nodiscard]] std::uint16_t bits_of_half(float half);
+// And back. Of exponent 31 infinity, or NaN where digits follow.
 [[nodiscard]] float half_from_bits(std::uint16_t bits);
 
 }  // namespace raycone

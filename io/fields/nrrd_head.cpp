@@ -202,7 +202,7 @@ NrrdHead read_nrrd_head(const std::string& path) {
       head.pairs.emplace(without_escapes(key), without_escapes(rest.substr(1)));
     } else if (rest.starts_with(' ')) {
       if (!head.fields.emplace(lower_case(key), rest.substr(1)).second) {
-        fail_head(path, "its head has two fields \"" + lower_case(key) + '"');
+        fail_head(path, "its head has two fields \"" + excerpt(lower_case(key)) + '"');
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -25,12 +26,14 @@ namespace raycone {
   return text.size() >= lower.size() && is_word(text.substr(text.size() - lower.size()), lower);
 }
 
-// With '?' for each other byte, so that messages are one line of valid UTF-8 whatever a file holds.
-[[nodiscard]] inline std::string printable_ascii(std::string_view text) {
-  std::string printable(text);
+// What a message tells of a text in a file: its beginning, "..." where it goes on, and '?' for each byte that is not
+// printable, so that messages are one short line of valid UTF-8 whatever a file holds.
+[[nodiscard]] inline std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 120;
+  std::string beginning(text.substr(0, kMost));
   std::ranges::replace_if(
-      printable, [](char c) { return c < ' ' || c > '~'; }, '?');
-  return printable;
+      beginning, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kMost ? beginning + "..." : beginning;
 }
 
 // The shortest text that reads back as the same double.

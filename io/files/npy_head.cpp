@@ -68,7 +68,7 @@ class HeadParser {
     while (*c != ')') {
       std::uint64_t size = 0;
       const auto [after, error] = std::from_chars(c, shape.data() + shape.size(), size);
-      if (error != std::errc()) fail("shape " + printable_npy(shape) + ", expected (n, 3)");
+      if (error != std::errc()) fail("shape " + excerpt(shape) + ", expected (n, 3)");
       head.shape.push_back(size);
       for (c = after; is_between(*c);) ++c;
     }
@@ -80,11 +80,6 @@ class HeadParser {
 };
 
 }  // namespace
-
-std::string printable_npy(std::string_view text) {
-  constexpr std::size_t kMaxQuoted = 40;
-  return printable_ascii(text.substr(0, kMaxQuoted));
-}
 
 void require_bytes(InputBuffer& input, std::size_t count, const char* what) {
   while (input.pending().size() < count) {

@@ -25,7 +25,4 @@ struct NpyHead {
 // Waits until `count` bytes are pending; throws InputError where the input ends before.
 void require_bytes(InputBuffer& input, std::size_t count, const char* what);
 
-// The beginning of `text`, without what a terminal would not print.
-[[nodiscard]] std::string printable_npy(std::string_view text);
-
 }  // namespace raycone

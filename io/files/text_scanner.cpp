@@ -203,10 +203,9 @@ bool TextScanner::skip_continuation() {
 std::string TextScanner::found() const {
   if (at_end()) return "the end of the file";
   if (is_line_end(*position_) || *position_ == '#') return "the end of the line";
-  constexpr std::size_t kLongest = 32;
   std::string_view word = peek_word();
   if (word.empty()) word = {position_, 1};
-  return "'" + printable_ascii(word.substr(0, kLongest)) + (word.size() > kLongest ? "...'" : "'");
+  return "'" + excerpt(word) + "'";
 }
 
 void TextScanner::fail_at(std::size_t offset, const std::string& what) const {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/unpack.h"
 
@@ -124,12 +125,13 @@ ZipReader::Member read_entry(Fields& fields, const std::string& path) {
   member.name = fields.text(static_cast<std::size_t>(name));
   read_extra(Fields(fields.text(static_cast<std::size_t>(extra)), path), member);
   (void)fields.text(static_cast<std::size_t>(comment));
-  if ((flags & kEncrypted) != 0) fail(path, member.name + " is encrypted");
+  if ((flags & kEncrypted) != 0) fail(path, excerpt(member.name) + " is encrypted");
   if (method != kStored && method != kDeflated) {
-    fail(path, member.name + " is compressed by method " + std::to_string(method) + ", expected none or deflate");
+    fail(path,
+         excerpt(member.name) + " is compressed by method " + std::to_string(method) + ", expected none or deflate");
   }
   member.deflated = method == kDeflated;
-  if (!member.deflated && member.size != member.packed_size) fail(path, member.name + " has two sizes");
+  if (!member.deflated && member.size != member.packed_size) fail(path, excerpt(member.name) + " has two sizes");
   return member;
 }
 
@@ -190,16 +192,19 @@ std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
   const std::unique_ptr<ByteSource> file = in_memory_ ? open_bytes(*in_memory_) : open_source(path_);
   const std::string header = bytes_at(*file, path_, member.header, kHeader);
   Fields fields(header, path_);
-  if (fields.number(4) != 0x04034b50) fail(path_, member.name + " is not where the directory says");
+  if (fields.number(4) != 0x04034b50) fail(path_, excerpt(member.name) + " is not where the directory says");
   (void)fields.text(22);
   const std::uint64_t name = fields.number(2), extra = fields.number(2);
   const std::uint64_t data = member.header + kHeader + name + extra;
-  if (data > file_size_ || member.packed_size > file_size_ - data) fail(path_, member.name + " lies beyond its end");
+  if (data > file_size_ || member.packed_size > file_size_ - data)
+    fail(path_, excerpt(member.name) + " lies beyond its end");
   const auto offset = static_cast<std::size_t>(data), size = static_cast<std::size_t>(member.packed_size);
   std::unique_ptr<ByteSource> part =
       in_memory_ ? open_bytes(in_memory_->substr(offset, size)) : open_part(path_, data, member.packed_size);
   return member.deflated ? inflated(std::move(part), member.size, name_of(member)) : std::move(part);
 }
+
+std::string ZipReader::name_of(const Member& member) const { return path_ + '(' + excerpt(member.name) + ')'; }
 
 std::unique_ptr<ByteSource> ZipReader::open_checked(const Member& member) const {
   return std::make_unique<CheckedSource>(open(member), member.checksum, name_of(member));

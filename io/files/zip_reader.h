@@ -38,7 +38,7 @@ class ZipReader {
   [[nodiscard]] std::unique_ptr<ByteSource> open(const Member& member) const;
   // The same, to be read from start to end: there they are compared with the checksum. read_at() compares nothing.
   [[nodiscard]] std::unique_ptr<ByteSource> open_checked(const Member& member) const;
-  [[nodiscard]] std::string name_of(const Member& member) const { return path_ + '(' + member.name + ')'; }
+  [[nodiscard]] std::string name_of(const Member& member) const;
 
  private:
   void read_directory(const ByteSource& file);

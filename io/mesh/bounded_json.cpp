@@ -8,7 +8,6 @@
 
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
-#include "io/mesh/mesh_error.h"
 
 namespace raycone {
 namespace {
@@ -34,7 +33,7 @@ std::string reason_of(const std::string& message) {
     const std::size_t found = reason.find(prefix);
     if (found != std::string::npos) reason = reason.substr(found + prefix.size());
   }
-  return short_and_printable(reason);
+  return excerpt(reason);
 }
 
 // Builds the wanted part of the document as the parser meets it. The library's own filter, a callback, takes time
@@ -62,8 +61,7 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
     if (is_wanted_(open_.size(), key)) {
       // Which of the two is meant, nobody can tell.
       if (open_.back()->contains(key)) {
-        throw InputError(text_.file + ": JSON with two members '" + short_and_printable(key) +
-                         "' in one object, expected one");
+        throw InputError(text_.file + ": JSON with two members '" + excerpt(key) + "' in one object, expected one");
       }
       member_ = &(*open_.back())[std::move(key)];
     } else {
@@ -131,10 +129,6 @@ nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted) {
   DocumentBuilder builder(text, is_wanted);
   Json::sax_parse(text.json.begin(), text.json.end(), &builder);
   return builder.take();
-}
-
-std::string short_and_printable(std::string_view text) {
-  return printable_ascii(text.substr(0, kMaxQuoted)) + (text.size() > kMaxQuoted ? "..." : "");
 }
 
 }  // namespace raycone

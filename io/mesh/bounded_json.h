@@ -24,7 +24,4 @@ using IsWanted = bool (*)(std::size_t depth, std::string_view key);
 // InputError, also where an object has two members of one name, LimitError where the objects and arrays are too many.
 [[nodiscard]] nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted);
 
-// For messages: cut where it is long, other bytes than those of printable ASCII as '?'.
-[[nodiscard]] std::string short_and_printable(std::string_view text);
-
 }  // namespace raycone

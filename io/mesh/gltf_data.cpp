@@ -13,6 +13,7 @@
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
@@ -27,7 +28,7 @@ std::shared_ptr<const tinygltf::Model> load_model(const std::string& json, const
   std::string error, warning;
   const auto size = static_cast<unsigned>(json.size());
   if (!tinygltf::TinyGLTF().LoadASCIIFromString(model.get(), &error, &warning, json.c_str(), size, "")) {
-    throw InputError(file + ": " + short_and_printable(error) + ", expected a glTF document");
+    throw InputError(file + ": " + excerpt(error) + ", expected a glTF document");
   }
   return model;
 }
@@ -53,7 +54,7 @@ void check_extensions(const tinygltf::Model& model, const std::string& file) {
     const bool is_read =
         extension == "KHR_mesh_quantization" || extension == kGltfVisibility || extension == kGltfDraco;
     if (!is_read && !leaves_geometry_alone(extension)) {
-      throw InputError(file + ": requires the extension " + extension + ", which is not supported");
+      throw InputError(file + ": requires the extension " + excerpt(extension) + ", which is not supported");
     }
   }
 }

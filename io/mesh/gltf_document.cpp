@@ -12,9 +12,9 @@
 #include <sstream>
 #include <utility>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/mesh/bounded_json.h"
-#include "io/mesh/mesh_error.h"
 
 namespace raycone {
 namespace {
@@ -215,7 +215,7 @@ class Checker {
       const double number = value.get<double>();
       if (number >= 0.0 && number <= 0x1p53 && std::floor(number) == number) value = static_cast<std::uint64_t>(number);
     }
-    const std::string text = value.is_number_unsigned() ? "" : value.dump(-1, ' ', true).substr(0, kMaxQuoted);
+    const std::string text = value.is_number_unsigned() ? "" : excerpt(value.dump(-1, ' ', true));
     if (!value.is_number_unsigned()) fail(place, member, " is " + text + ", expected a non-negative integer");
     const auto number = value.get<std::uint64_t>();
     const auto& [path, kind, name, presence, limit] = member.row;
@@ -251,7 +251,7 @@ void check_version(const Json& asset, const std::string& file) {
     const std::string text = asset[key].get<std::string>();
     const auto version = parse_version(text);
     if (version && is_good(*version)) return;
-    throw InputError(file + ": document: " + name + " " + short_and_printable(text) + ", expected glTF 2.0");
+    throw InputError(file + ": document: " + name + " " + excerpt(text) + ", expected glTF 2.0");
   };
   if (!asset.contains("version")) throw InputError(file + ": document: asset version is missing, expected glTF 2.0");
   check("version", "version", [](const auto& version) { return version.first == 2; });

@@ -83,10 +83,7 @@ bool leaves_directory(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const NamedBytes& source, std::size_t buffer, std::string_view uri, const std::string& why) {
-  std::string quoted(uri.substr(0, kMaxQuoted));
-  std::replace_if(
-      quoted.begin(), quoted.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, '?');
-  throw InputError(source.name + ": buffer " + std::to_string(buffer) + ": \"" + quoted + "\" " + why);
+  throw InputError(source.name + ": buffer " + std::to_string(buffer) + ": \"" + excerpt(uri) + "\" " + why);
 }
 
 std::string decode_data_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri) {

@@ -10,9 +10,6 @@
 
 namespace raycone {
 
-// Characters of a file that an error quotes at most.
-inline constexpr std::size_t kMaxQuoted = 120;
-
 inline constexpr const char* kNonFiniteCorner =
     "a vertex that faces use has a coordinate that is not finite, expected finite numbers";
 

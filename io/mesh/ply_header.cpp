@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "io/files/ascii.h"
+
 namespace raycone {
 namespace {
 
@@ -81,8 +83,8 @@ class HeaderReader {
     const std::string name(next_word());
     text_.skip_blanks();
     const std::optional<std::int64_t> count = text_.integer();
-    if (!count) text_.fail_expecting("the number of elements '" + name + "'");
-    if (*count < 0) text_.fail("expected 0 or more elements '" + name + "', found " + std::to_string(*count));
+    if (!count) text_.fail_expecting("the number of elements '" + excerpt(name) + "'");
+    if (*count < 0) text_.fail("expected 0 or more elements '" + excerpt(name) + "', found " + std::to_string(*count));
     header_.elements.push_back({name, static_cast<std::uint64_t>(*count), {}});
   }
 

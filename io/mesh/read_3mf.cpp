@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/data/warning.h"
+#include "io/files/ascii.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/zip_reader.h"
@@ -69,7 +70,7 @@ class ThreeMfPackage {
     const ThreeMfModel& from = model(use.part);
     const auto found = from.objects.find(use.object);
     if (found != from.objects.end()) return found->second;
-    throw InputError(file_ + '(' + use.part.substr(0, kMaxQuoted) + "): no object " + std::to_string(use.object) +
+    throw InputError(file_ + '(' + excerpt(use.part) + "): no object " + std::to_string(use.object) +
                      ", which a component or an item of the build names");
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/text_scanner.h"
@@ -223,7 +224,7 @@ class PlyReader {
   std::uint64_t checked_rows(const PlyElement& element) {
     if (element.properties.empty()) return 0;
     if (element.count > body_.max_rows(element)) {
-      body_.fail_at(body_.next_offset(), counted(element.count, "element") + " '" + element.name +
+      body_.fail_at(body_.next_offset(), counted(element.count, "element") + " '" + excerpt(element.name) +
                                              "' announced, but only " + remaining_bytes(body_.remaining()));
     }
     return element.count;

@@ -91,8 +91,7 @@ class ModelReader {
       open_.push_back(*element);
       enter(name, attributes);
     } else if (open_.empty()) {
-      attributes.fail("element " + std::string(name.substr(0, kMaxQuoted)) + ", expected " + std::string(kCore) +
-                      "model");
+      attributes.fail("element " + excerpt(name) + ", expected " + std::string(kCore) + "model");
     } else {
       if (name == kBeamLattice && object_ != nullptr) ++object_->lattices;
       ++passed_over_;
@@ -167,7 +166,7 @@ class ModelReader {
       const auto uri = prefixes_.find(prefix);
       const std::string& meant = uri == prefixes_.end() ? prefix : uri->second;
       if (std::ranges::count(kHarmless, meant) == 0) {
-        attributes.fail("requires the extension " + meant.substr(0, kMaxQuoted) + ", which is not supported");
+        attributes.fail("requires the extension " + excerpt(meant) + ", which is not supported");
       }
     }
   }
@@ -243,7 +242,7 @@ std::string ThreeMfParts::root() {
 const ZipReader::Member& ThreeMfParts::find(const std::string& name) const {
   const auto found = parts_.find(lower_case(name));
   if (found != parts_.end()) return *found->second;
-  throw InputError(file_ + ": no part " + name.substr(0, kMaxQuoted) + ", expected a 3MF package");
+  throw InputError(file_ + ": no part " + excerpt(name) + ", expected a 3MF package");
 }
 
 ThreeMfModel ThreeMfParts::read_model(const ZipReader::Member& part) {

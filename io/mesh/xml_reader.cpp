@@ -9,9 +9,9 @@
 #include <new>
 #include <type_traits>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/text_scanner.h"
-#include "io/mesh/mesh_error.h"
 
 namespace raycone {
 namespace {
@@ -127,7 +127,7 @@ double XmlAttributes::number(std::string_view name) const {
   const std::string_view value = text(name);
   const auto number = number_of(value);
   if (!number || !std::isfinite(*number)) {
-    fail(std::string(name) + " is '" + std::string(value.substr(0, kMaxQuoted)) + "', expected a finite number");
+    fail(std::string(name) + " is '" + excerpt(value) + "', expected a finite number");
   }
   return *number;
 }
@@ -137,7 +137,7 @@ std::uint32_t XmlAttributes::index(std::string_view name) const {
   std::uint32_t index = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), index);
   if (error != std::errc() || end != value.data() + value.size()) {
-    fail(std::string(name) + " is '" + std::string(value.substr(0, kMaxQuoted)) + "', expected an index of 32 bits");
+    fail(std::string(name) + " is '" + excerpt(value) + "', expected an index of 32 bits");
   }
   return index;
 }

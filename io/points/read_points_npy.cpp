@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
@@ -47,7 +48,7 @@ void interpret_type(const InputBuffer& input, const NpyHead& head, NpyHeader& he
   const bool known = type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
                      std::find(kTypes.begin(), kTypes.end(), type.substr(1)) != kTypes.end();
   if (!known) {
-    fail(input, "file of type " + printable_npy(type) + ", expected real or integer numbers of at most 64 bits");
+    fail(input, "file of type " + excerpt(type) + ", expected real or integer numbers of at most 64 bits");
   }
   header.kind = type[1];
   header.item_size = static_cast<std::size_t>(type[2] - '0');
@@ -59,7 +60,7 @@ NpyHeader read_header(InputBuffer& input) {
   NpyHeader header;
   interpret_type(input, head, header);
   if (head.shape.size() != 2 || head.shape[1] < 3) {
-    fail(input, "shape " + printable_npy(head.shape_text) + ", expected (n, 3 or more)");
+    fail(input, "shape " + excerpt(head.shape_text) + ", expected (n, 3 or more)");
   }
   header.fortran_order = head.fortran_order;
   header.rows = head.shape[0];

@@ -17,8 +17,6 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kMaxQuoted = 40;
-
 // What number_of() does not read may be meant as a number: "1D0", "0x1", "1 000", a Unicode minus.
 bool starts_like_number(std::string_view field) {
   for (const std::string_view sign : {"+", "-", "\u2212", "."}) {
@@ -32,11 +30,6 @@ bool has_letter(std::string_view field) {
   return std::any_of(field.begin(), field.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
   });
-}
-
-// A field as part of a message.
-std::string quoted(std::string_view field) {
-  return "'" + printable_ascii(field.substr(0, kMaxQuoted)) + (field.size() > kMaxQuoted ? "...'" : "'");
 }
 
 using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
@@ -133,12 +126,12 @@ class TextPointReader : public PointReader {
   [[nodiscard]] double coordinate(std::string_view field, std::size_t column) const {
     const auto number = number_of(field);
     if (number && std::isfinite(*number)) return *number;
-    lines_.fail("column " + std::to_string(column + 1) + " is " + (field.empty() ? "empty" : quoted(field)) +
-                ", expected a finite number");
+    lines_.fail("column " + std::to_string(column + 1) + " is " +
+                (field.empty() ? "empty" : "'" + excerpt(field) + "'") + ", expected a finite number");
   }
 
   [[noreturn]] void fail_short(std::string_view line, std::size_t found, std::size_t last) const {
-    lines_.fail("found " + quoted(line) + " with " + counted(found, "column") + ", expected at least " +
+    lines_.fail("found '" + excerpt(line) + "' with " + counted(found, "column") + ", expected at least " +
                 std::to_string(last + 1));
   }
 

@@ -28,7 +28,7 @@ std::size_t choose_grid(const std::string& path, const std::vector<std::string>&
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  throw InputError(path + ": has no grid '" + wanted + "', expected one of: " + all);
+  throw InputError(path + ": has no grid '" + wanted + "', expected one of: " + excerpt(all));
 }
 
 // An entry of /proc/self/status, in bytes.
@@ -134,7 +134,7 @@ openvdb::GridBase::ConstPtr read_whole(const std::string& path, const std::strin
 }
 
 [[noreturn]] void fail(const std::string& path, const openvdb::GridBase& grid, const std::string& what) {
-  throw InputError(path + ": grid '" + grid.getName() + "' " + what);
+  throw InputError(path + ": grid '" + excerpt(grid.getName()) + "' " + what);
 }
 
 // The transform, with the samples of `extent`.
@@ -278,7 +278,7 @@ auto read_file(const std::string& path, const Read& read_something) {
     if (!memory.is_tightest()) throw;
     throw InputError(path + ": not a readable OpenVDB file: it announces more than it holds");
   } catch (const std::exception& error) {  // OpenVDB's own and the standard library's
-    throw InputError(path + ": not a readable OpenVDB file: " + error.what());
+    throw InputError(path + ": not a readable OpenVDB file: " + excerpt(error.what()));
   }
 }
 

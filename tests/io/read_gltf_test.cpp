@@ -463,6 +463,13 @@ TEST(ReadGltf, OtherRequiredExtensionsAreRefusedByName) {
   }
 }
 
+TEST(ReadGltf, MessagesAreOneShortLineWhateverAnExtensionIsCalled) {
+  Asset asset;
+  asset.rest += R"(,"extensionsRequired":["a\nb\u001b)" + std::string(200, 'c') + R"("])";
+  EXPECT_EQ(error_of(asset),
+            "a.glb: requires the extension a?b?" + std::string(116, 'c') + "..., which is not supported");
+}
+
 TEST(ReadGltf, InstancingIsRefusedAlsoWhereMerelyUsed) {
   Asset asset;
   asset.nodes = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}])";

@@ -179,8 +179,8 @@ TEST(ReadObj, MessagesAreOnePrintableLine) {
             "f:1: expected a coordinate, found '?"
             "?"
             "?'");
-  EXPECT_EQ(error_of("v " + std::string(50, 'y')),
-            "f:1: expected a coordinate, found '" + std::string(32, 'y') + "...'");
+  EXPECT_EQ(error_of("v " + std::string(121, 'y')),
+            "f:1: expected a coordinate, found '" + std::string(120, 'y') + "...'");
 }
 
 TEST(ReadObj, LineNumbersCountContinuedLines) {

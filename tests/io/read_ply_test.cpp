@@ -228,6 +228,8 @@ TEST(ReadPly, BadHeadersAreNamed) {
   EXPECT_EQ(error_of(kAscii + "element vertex -3\n"), "f:3: expected 0 or more elements 'vertex', found -3");
   EXPECT_EQ(error_of(kAscii + "element vertex\n"),
             "f:3: expected the number of elements 'vertex', found the end of the line");
+  EXPECT_EQ(error_of(kAscii + "element \x1b" + std::string(200, 'x') + " -3\n"),
+            "f:3: expected 0 or more elements '?" + std::string(119, 'x') + "...', found -3");
   EXPECT_EQ(error_of(kAscii + "property float x\n"), "f:3: property before the first element");
   EXPECT_EQ(error_of(kAscii + "element vertex 3\nproperty real x\n"),
             "f:4: expected a type such as 'float' or 'int32', found 'real'");

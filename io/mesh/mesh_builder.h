@@ -5,15 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/data/warning.h"
-#include "io/files/counted.h"
-#include "io/files/file_error.h"
+#include "io/mesh/mesh_error.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -47,8 +45,7 @@ class MeshBuilder {
 
   // `offset` is where the file has it: kept for vertices that are not finite, an error only once a face uses them.
   void add_vertex(const Vec3& vertex, std::size_t offset) {
-    if (vertex_count() == std::numeric_limits<std::uint32_t>::max())
-      throw LimitError(name_ + ": more than 4294967295 vertices, which 32-bit indices cannot address");
+    if (vertex_count() == kMaxVertices) fail_too_many_vertices(name_);
     if (!is_finite(vertex)) non_finite_.push_back({vertex_count(), offset});
     parsed_.mesh.vertices.push_back(vertex);
   }

@@ -10,6 +10,15 @@
 
 namespace raycone {
 
+// As many as indices of 32 bits tell apart.
+inline constexpr std::size_t kMaxVertices = 0xFFFFFFFF;
+
+// Throws LimitError.
+[[noreturn]] inline void fail_too_many_vertices(const std::string& name) {
+  throw LimitError(name + ": more than " + std::to_string(kMaxVertices) +
+                   " vertices, which 32-bit indices cannot address");
+}
+
 inline constexpr const char* kNonFiniteCorner =
     "a vertex that faces use has a coordinate that is not finite, expected finite numbers";
 

@@ -2,7 +2,6 @@
 // Format: 3MF Core Specification 1.3; io/mesh/three_mf_model.cpp reads the parts of a package.
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -13,9 +12,8 @@
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/zip_reader.h"
+#include "io/mesh/append_placed.h"
 #include "io/mesh/face_groups.h"
-#include "io/mesh/mesh_builder.h"
-#include "io/mesh/mesh_error.h"
 #include "io/mesh/read_mesh.h"
 #include "io/mesh/three_mf_model.h"
 
@@ -40,7 +38,9 @@ class ThreeMfPackage {
       if (it == instances_.begin() || it->object != std::prev(it)->object) {
         groups_.start_group(it->object->name, parsed_.mesh.triangles.size());
       }
-      append(*it);
+      const TriangleMesh& mesh = it->object->mesh;
+      spend(mesh.vertices.size() + mesh.triangles.size());
+      append_placed(mesh, it->placement, file_, parsed_.mesh);
     }
     parsed_.groups = groups_.finish(parsed_.mesh.triangles.size());
     parsed_.unit = root.unit;
@@ -97,26 +97,6 @@ class ThreeMfPackage {
     ++depth_;
     for (const ThreeMfUse& component : placed.components) place(component, placement);
     --depth_;
-  }
-
-  void append(const Instance& instance) {
-    const TriangleMesh& mesh = instance.object->mesh;
-    spend(mesh.vertices.size() + mesh.triangles.size());
-    const std::size_t first = parsed_.mesh.vertices.size();
-    if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max() - first) {
-      throw LimitError(file_ + ": more than 4294967295 vertices, which 32-bit indices cannot address");
-    }
-    for (const Vec3& vertex : mesh.vertices) {
-      parsed_.mesh.vertices.push_back(transformed(instance.placement, vertex));
-      if (!is_finite(parsed_.mesh.vertices.back())) {
-        throw InputError(file_ + ": a vertex is not finite once its transform is applied, expected finite coordinates");
-      }
-    }
-    for (Triangle triangle : mesh.triangles) {
-      for (std::uint32_t& corner : triangle) corner += static_cast<std::uint32_t>(first);
-      if (instance.placement.mirrored) std::swap(triangle[1], triangle[2]);
-      parsed_.mesh.triangles.push_back(triangle);
-    }
   }
 
   // Bounds what a small file may ask for by naming an object many times.

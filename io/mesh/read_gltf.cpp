@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <span>
@@ -16,16 +15,16 @@
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/affine_map.h"
+#include "io/mesh/append_placed.h"
 #include "io/mesh/gltf_data.h"
 #include "io/mesh/gltf_document.h"
 #include "io/mesh/gltf_resources.h"
 #include "io/mesh/mesh_builder.h"
+#include "io/mesh/mesh_error.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
 namespace {
-
-constexpr std::uint64_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
 // Makes room for `count` more elements, growing geometrically all the same.
 template <class Element>
@@ -106,9 +105,7 @@ class MeshAssembler {
 
   Range append_vertices(std::vector<Vec3> positions) {
     const Range range{result_.vertices.size(), positions.size()};
-    if (positions.size() > kMaxVertices - range.first) {
-      throw LimitError(place_ + "more than " + std::to_string(kMaxVertices) + " vertices");
-    }
+    if (positions.size() > kMaxVertices - range.first) fail_too_many_vertices(file_);
     if (range.first == 0) {
       result_.vertices = std::move(positions);
     } else {
@@ -309,29 +306,7 @@ std::vector<Instance> instances_of(const tinygltf::Model& model, const std::stri
   return instances;
 }
 
-// --- World ----------------------------------------------------------------------------------------------------------
-
-// Adds `mesh`, placed as `instance` says, to `world`.
-void append(const TriangleMesh& mesh, const Instance& instance, const std::string& file, TriangleMesh& world) {
-  const std::size_t first = world.vertices.size();
-  if (mesh.vertices.size() > kMaxVertices - first) {
-    throw LimitError(file + ": more than " + std::to_string(kMaxVertices) + " vertices");
-  }
-  make_room(world.vertices, mesh.vertices.size());
-  make_room(world.triangles, mesh.triangles.size());
-  for (const Vec3& vertex : mesh.vertices) world.vertices.push_back(transformed(instance.placement, vertex));
-  for (Triangle triangle : mesh.triangles) {
-    for (std::uint32_t& corner : triangle) {
-      corner += static_cast<std::uint32_t>(first);
-      if (!is_finite(world.vertices[corner])) {
-        throw InputError(file + ": mesh " + std::to_string(instance.mesh) + ": vertex " +
-                         std::to_string(corner - first) + " is not finite once its node's transform is applied");
-      }
-    }
-    if (instance.placement.mirrored) std::swap(triangle[1], triangle[2]);
-    world.triangles.push_back(triangle);
-  }
-}
+// --- Warnings -------------------------------------------------------------------------------------------------------
 
 std::vector<Warning> warnings_of(const Omissions& omissions) {
   std::vector<Warning> warnings;
@@ -367,7 +342,8 @@ ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions
     const TriangleMesh mesh = assembler.assemble(group->mesh);
     groups.start_group(data.model().meshes[group->mesh].name, parsed.mesh.triangles.size());
     data.spend(mesh.vertices.size() + mesh.triangles.size(), static_cast<std::uint64_t>(end - group));
-    for (; group != end; ++group) append(mesh, *group, source.name, parsed.mesh);
+    const std::string name = source.name + ": mesh " + std::to_string(group->mesh);
+    for (; group != end; ++group) append_placed(mesh, group->placement, name, parsed.mesh);
   }
   parsed.groups = groups.finish(parsed.mesh.triangles.size());
   parsed.skipped_faces = omissions.incomplete_faces;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -182,9 +181,7 @@ class ModelReader {
   }
 
   void add_vertex(const XmlAttributes& attributes) {
-    if (object_->mesh.vertices.size() == std::numeric_limits<std::uint32_t>::max()) {
-      throw LimitError(name_ + ": more than 4294967295 vertices, which 32-bit indices cannot address");
-    }
+    if (object_->mesh.vertices.size() == kMaxVertices) fail_too_many_vertices(name_);
     object_->mesh.vertices.push_back({attributes.number("x"), attributes.number("y"), attributes.number("z")});
   }
 

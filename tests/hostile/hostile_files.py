@@ -547,7 +547,7 @@ add("coordinate_control.3mf", package(model_3mf(OBJECT_3MF.replace('z="0"', 'z="
 add("transform_short.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0"/>')), 2, "transform: expected 12 finite numbers")
 add("transform_long.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 0 5"/>')), 2, "transform: more than 12 numbers")
 add("transform_infinite.3mf", package(model_3mf(build='<item objectid="1" transform="inf 0 0 0 1 0 0 0 1 0 0 0"/>')), 2, "transform: expected 12 finite numbers")
-add("transform_overflow.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 1e308 0 0"/>').replace('x="1"', 'x="1.7e308"')), 2, "a vertex is not finite once its transform is applied")
+add("transform_overflow.3mf", package(model_3mf(build='<item objectid="1" transform="1 0 0 0 1 0 0 0 1 1e308 0 0"/>').replace('x="1"', 'x="1.7e308"')), 2, "is not finite once its transform is applied")
 add("transform_of_zeros.3mf", package(model_3mf(build='<item objectid="1" transform="0 0 0 0 0 0 0 0 0 0 0 0"/>')), 0)
 add("component_of_itself.3mf", package(model_3mf('<object id="1"><components><component objectid="1"/></components></object>')), 2, "components within components, more than 256 deep")
 add("components_in_a_ring.3mf", package(model_3mf('<object id="1"><components><component objectid="2"/></components></object><object id="2"><components><component objectid="1"/></components></object>')), 2, "more than 256 deep")

@@ -522,7 +522,8 @@ TEST(ReadGltf, NonFinitePositionIsAnErrorOnlyWhereAFaceUsesIt) {
 TEST(ReadGltf, TransformThatOverflowsIsAnError) {
   Asset asset;
   asset.nodes = R"([{"children":[1],"scale":[1e300,1,1]},{"mesh":0,"scale":[1e300,1,1]}])";
-  EXPECT_EQ(error_of(asset), "a.glb: mesh 0: vertex 0 is not finite once its node's transform is applied");
+  EXPECT_EQ(error_of(asset),
+            "a.glb: mesh 0: vertex 0 is not finite once its transform is applied, expected finite coordinates");
 }
 
 TEST(ReadGltf, AccessorBeyondItsViewIsAnError) {

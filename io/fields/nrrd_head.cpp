@@ -9,17 +9,11 @@
 #include <system_error>
 #include <vector>
 
+#include "io/fields/volume_error.h"
 #include "io/files/ascii.h"
-#include "io/files/file_error.h"
-#include "io/files/input_buffer.h"
-#include "io/files/unpack.h"
 
 namespace raycone {
 namespace {
-
-[[noreturn]] void fail_head(const std::string& path, const std::string& what) {
-  throw InputError(path + ": not a readable volume: " + what);
-}
 
 std::string without_escapes(std::string_view text) {
   std::string result;
@@ -38,7 +32,7 @@ class Numbers {
  public:
   Numbers(const std::string& path, const NrrdHead& head, const std::string& key) : path_(path), key_(key) {
     const auto found = head.fields.find(key);
-    if (found == head.fields.end()) fail_head(path, "it has no " + key);
+    if (found == head.fields.end()) fail_as_volume(path, "it has no " + key);
     rest_ = found->second;
   }
 
@@ -72,7 +66,7 @@ class Numbers {
     if (!rest_.empty()) fail(expected);
   }
 
-  [[noreturn]] void fail(const std::string& expected) const { fail_head(path_, key_ + ", expected " + expected); }
+  [[noreturn]] void fail(const std::string& expected) const { fail_as_volume(path_, key_ + ", expected " + expected); }
 
  private:
   void skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(", \t"), rest_.size())); }
@@ -117,7 +111,7 @@ Vec3 signs_of_space(const std::string& path, const NrrdHead& head) {
   if (name == "left-posterior-superior" || name == "lps") return {-1, -1, 1};
   static constexpr std::array kOfNoBody{"scanner-xyz", "3d-right-handed", "3drh", "3d-left-handed", "3dlh"};
   if (std::ranges::find(kOfNoBody, name) != kOfNoBody.end()) return {1, 1, 1};
-  fail_head(path, "its space, expected right-anterior-superior or another of three axes");
+  fail_as_volume(path, "its space, expected right-anterior-superior or another of three axes");
 }
 
 Vec3 times(const Vec3& a, const Vec3& b) { return Vec3{a.x * b.x, a.y * b.y, a.z * b.z} + Vec3{}; }  // no -0
@@ -181,13 +175,12 @@ Axes spaced_axes(const std::string& path, const NrrdHead& head, const std::vecto
 
 }  // namespace
 
-NrrdHead read_nrrd_head(const std::string& path) {
+NrrdHead read_nrrd_head(InputBuffer& input) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-  InputBuffer input(path, unpacked(open_source(path), path));
   const auto end = [&] { return std::min(input.pending().find("\n\n"), input.pending().find("\n\r\n")); };
   while (end() == std::string_view::npos && input.pending().size() < kMostBytes && input.fill()) continue;
   std::string_view text = input.pending().substr(0, end());
-  if (text.size() >= kMostBytes) fail_head(path, "its head has no end");
+  if (text.size() >= kMostBytes) fail_as_volume(input.name(), "its head has no end");
   NrrdHead head;
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -202,7 +195,7 @@ NrrdHead read_nrrd_head(const std::string& path) {
       head.pairs.emplace(without_escapes(key), without_escapes(rest.substr(1)));
     } else if (rest.starts_with(' ')) {
       if (!head.fields.emplace(lower_case(key), rest.substr(1)).second) {
-        fail_head(path, "its head has two fields \"" + excerpt(lower_case(key)) + '"');
+        fail_as_volume(input.name(), "its head has two fields \"" + excerpt(lower_case(key)) + '"');
       }
     }
   }

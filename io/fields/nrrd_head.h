@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/data/placed_lattice.h"
+#include "io/files/input_buffer.h"
 
 namespace raycone {
 
@@ -17,8 +18,9 @@ struct NrrdHead {
   std::map<std::string, std::string, std::less<>> pairs;   // "key:=value", unescaped
 };
 
-// Of a file that begins with kNrrdMagic. Throws InputError where the head has no end.
-[[nodiscard]] NrrdHead read_nrrd_head(const std::string& path);
+// Of a file that begins with kNrrdMagic and of which nothing has been consumed. Throws InputError where the head has no
+// end.
+[[nodiscard]] NrrdHead read_nrrd_head(InputBuffer& input);
 
 // The samples of three axes of the world, in right, anterior, superior; index 0 is the first one. Other axes, as those
 // of colours, are left out. `path`: of the file, for errors. Throws InputError where the head does not say where the

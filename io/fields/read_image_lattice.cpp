@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
-#include <utility>
 
-#include "io/fields/nifti_head.h"
-#include "io/fields/nrrd_head.h"
+#include "io/fields/volume_error.h"
 #include "io/files/file_error.h"
 #include "io/files/input_buffer.h"
 #include "io/files/unpack.h"
@@ -14,11 +13,7 @@
 namespace raycone {
 namespace {
 
-[[noreturn]] void fail_image(const std::string& path, const std::string& what) {
-  throw InputError(path + ": not a readable volume: " + what);
-}
-
-InputBuffer beginning_of(const std::string& path) {
+InputBuffer open_image(const std::string& path) {
   InputBuffer input(path, unpacked(open_source(path), path));
   while (input.pending().size() < kNiftiHead && input.fill()) continue;
   return input;
@@ -26,9 +21,9 @@ InputBuffer beginning_of(const std::string& path) {
 
 // A sample's place takes finite numbers, also on the way to it.
 PlacedLattice checked(const std::string& path, const PlacedLattice& lattice) {
-  if (*std::ranges::min_element(lattice.grid.counts) < 1) fail_image(path, "its size, expected at least one voxel");
-  if (!lattice.is_finite()) fail_image(path, "its place, expected finite numbers");
-  if (!lattice.spans_space()) fail_image(path, "its axes, expected three directions");
+  if (*std::ranges::min_element(lattice.grid.counts) < 1) fail_as_volume(path, "its size, expected at least one voxel");
+  if (!lattice.is_finite()) fail_as_volume(path, "its place, expected finite numbers");
+  if (!lattice.spans_space()) fail_as_volume(path, "its axes, expected three directions");
   return lattice;
 }
 
@@ -38,17 +33,25 @@ bool is_image(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
   try {
-    const InputBuffer input = beginning_of(path);
-    return input.pending().starts_with(kNrrdMagic) || begins_as_nifti(input.pending());
+    const InputBuffer input = open_image(path);
+    return input.pending().starts_with(kNrrdMagic) || nifti_head(input.pending());
   } catch (const InputError&) {
     return false;  // whoever reads it next says why
   }
 }
 
-bool is_nrrd(const std::string& path) { return beginning_of(path).pending().starts_with(kNrrdMagic); }
-
-PlacedLattice read_image_lattice(const std::string& path) {
-  return checked(path, is_nrrd(path) ? nrrd_lattice(path, read_nrrd_head(path)) : read_nifti_lattice(path));
+ImageHead read_image_head(const std::string& path) {
+  InputBuffer input = open_image(path);
+  if (input.pending().starts_with(kNrrdMagic)) return read_nrrd_head(input);
+  if (const std::optional<NiftiHead> head = nifti_head(input.pending())) return *head;
+  fail_as_volume(path, "its head is damaged");
 }
+
+PlacedLattice image_lattice(const std::string& path, const ImageHead& head) {
+  const auto* const nrrd = std::get_if<NrrdHead>(&head);
+  return checked(path, nrrd ? nrrd_lattice(path, *nrrd) : nifti_lattice(path, std::get<NiftiHead>(head)));
+}
+
+PlacedLattice read_image_lattice(const std::string& path) { return image_lattice(path, read_image_head(path)); }
 
 }  // namespace raycone

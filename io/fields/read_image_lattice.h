@@ -1,9 +1,12 @@
-// The lattice of an NRRD or NIfTI-1 volume, for --like.
+// The heads of NRRD and NIfTI-1 volumes, and their lattices.
 #pragma once
 
 #include <string>
+#include <variant>
 
 #include "core/data/placed_lattice.h"
+#include "io/fields/nifti_head.h"
+#include "io/fields/nrrd_head.h"
 
 namespace raycone {
 
@@ -11,11 +14,15 @@ namespace raycone {
 // read.
 [[nodiscard]] bool is_image(const std::string& path);
 
-// Which of the two such a file is. Throws InputError where it cannot be read.
-[[nodiscard]] bool is_nrrd(const std::string& path);
+using ImageHead = std::variant<NrrdHead, NiftiHead>;
+
+// Of such a file. Throws InputError where it cannot be read or its head is damaged.
+[[nodiscard]] ImageHead read_image_head(const std::string& path);
 
 // Its voxels' middles, in right, anterior, superior; index 0 is the first one. Throws InputError where the head cannot
 // be read, or does not say where the voxels lie.
 [[nodiscard]] PlacedLattice read_image_lattice(const std::string& path);
+// The same of a head that has been read from there.
+[[nodiscard]] PlacedLattice image_lattice(const std::string& path, const ImageHead& head);
 
 }  // namespace raycone

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "io/fields/nifti_head.h"
-#include "io/fields/nrrd_head.h"
 #include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"
 #include "io/files/file_error.h"
@@ -75,8 +73,7 @@ std::vector<std::uint64_t> numbers_of(std::string_view text) {
   }
 }
 
-VolumeFacts nrrd_facts(const std::string& path) {
-  const NrrdHead head = read_nrrd_head(path);
+VolumeFacts facts_of(const NrrdHead& head) {
   VolumeFacts facts;
   facts.format = "NRRD";
   facts.arrays.push_back({entry_of(head.pairs, "raycone_field", ""), entry_of(head.fields, "type", ""),
@@ -85,12 +82,12 @@ VolumeFacts nrrd_facts(const std::string& path) {
   return facts;
 }
 
-VolumeFacts nifti_facts(const std::string& path) {
-  const NiftiFacts head = read_nifti_facts(path);
+VolumeFacts facts_of(const NiftiHead& head) {
+  const NiftiFacts told = nifti_facts(head);
   VolumeFacts facts;
   facts.format = "NIfTI-1";
-  facts.arrays.push_back({"", head.type, head.shape});
-  if (!head.description.empty()) facts.made.push_back({"description", head.description});
+  facts.arrays.push_back({"", told.type, told.shape});
+  if (!told.description.empty()) facts.made.push_back({"description", told.description});
   return facts;
 }
 
@@ -98,8 +95,9 @@ VolumeFacts nifti_facts(const std::string& path) {
 
 VolumeFacts read_volume_facts(const std::string& path) {
   if (!is_image(path)) return npz_facts(path);
-  VolumeFacts facts = is_nrrd(path) ? nrrd_facts(path) : nifti_facts(path);
-  add_lattice(facts, path, [&] { return read_image_lattice(path); });
+  const ImageHead head = read_image_head(path);
+  VolumeFacts facts = std::visit([](const auto& format) { return facts_of(format); }, head);
+  add_lattice(facts, path, [&] { return image_lattice(path, head); });
   return facts;
 }
 

@@ -1,4 +1,4 @@
-// NPY, NumPy's array files, format version 1.0 (NEP 1): a text header padded to 64 bytes, then the elements.
+// NPY, NumPy's array files, format version 1.0 (NEP 1): a text head padded to 64 bytes, then the elements.
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -11,8 +11,8 @@
 #include "io/fields/array_elements.h"
 #include "io/fields/format_writers.h"
 #include "io/fields/lattice_array.h"
-#include "io/fields/npy_header.h"
 #include "io/fields/write_npy.h"
+#include "io/files/npy_head.h"
 #include "io/files/spool_file.h"
 
 namespace raycone {
@@ -24,10 +24,10 @@ class NpyLatticeWriter final : public LatticeWriter {
       : output_(output), slab_axis_(array_slab_axis(lattice, output.seekable())) {
     auto elements = make_array_elements(description.fields.front(), description.precision.value_or(Precision::kSingle),
                                         output.name());
-    const std::string header =
-        npy_header(elements->descriptor(), shape_of(lattice, description.fields.front().components()));
-    output_.write(header.data(), header.size());
-    header_size_ = next_ = header.size();
+    const std::string head =
+        npy_head(elements->descriptor(), shape_of(lattice, description.fields.front().components()));
+    output_.write(head.data(), head.size());
+    head_size_ = next_ = head.size();
     array_.emplace(lattice, std::move(elements));
   }
 
@@ -36,9 +36,9 @@ class NpyLatticeWriter final : public LatticeWriter {
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
     array_->write_slab(block, fields.front(), [this](std::uint64_t offset, const char* data, std::size_t size) {
-      if (header_size_ + offset != next_) output_.seek(header_size_ + offset);
+      if (head_size_ + offset != next_) output_.seek(head_size_ + offset);
       output_.write(data, size);
-      next_ = header_size_ + offset + size;
+      next_ = head_size_ + offset + size;
     });
   }
 
@@ -47,12 +47,12 @@ class NpyLatticeWriter final : public LatticeWriter {
  private:
   OutputFile& output_;
   int slab_axis_;
-  std::uint64_t header_size_ = 0;
+  std::uint64_t head_size_ = 0;
   std::uint64_t next_ = 0;  // where the output goes on by itself
   std::optional<LatticeArray> array_;
 };
 
-// Elements follow the header at once where the count is known or can be filled in later; else they wait in a spool.
+// Elements follow the head at once where the count is known or can be filled in later; else they wait in a spool.
 class NpyPointWriter final : public PointWriter {
  public:
   NpyPointWriter(OutputFile& output, std::optional<std::uint64_t> size, const OutputDescription& description)
@@ -68,7 +68,7 @@ class NpyPointWriter final : public PointWriter {
       columns_.push_back(make_array_elements(field, precision, output.name()));
     }
     if (announced_ || output_.seekable()) {
-      write_header(announced_.value_or(0));
+      write_head(announced_.value_or(0));
     } else {
       spool_.emplace(output_.name());
     }
@@ -90,11 +90,11 @@ class NpyPointWriter final : public PointWriter {
   void finish() override {
     if (announced_ && *announced_ != count_) throw std::logic_error("as many values as announced must be written");
     if (spool_) {
-      write_header(count_);
+      write_head(count_);
       spool_->copy_to(output_);
     } else if (!announced_) {
-      const std::string header = header_of(count_);
-      output_.overwrite(0, header.data(), header.size());
+      const std::string head = head_of(count_);
+      output_.overwrite(0, head.data(), head.size());
     }
     output_.commit();
   }
@@ -135,12 +135,12 @@ class NpyPointWriter final : public PointWriter {
       output_.write(elements.data(), elements.size());
     }
   }
-  [[nodiscard]] std::string header_of(std::uint64_t count) const {
-    return npy_header(columns_.front()->descriptor(), '(' + std::to_string(count) + shape_end_);
+  [[nodiscard]] std::string head_of(std::uint64_t count) const {
+    return npy_head(columns_.front()->descriptor(), '(' + std::to_string(count) + shape_end_);
   }
-  void write_header(std::uint64_t count) {
-    const std::string header = header_of(count);
-    output_.write(header.data(), header.size());
+  void write_head(std::uint64_t count) {
+    const std::string head = head_of(count);
+    output_.write(head.data(), head.size());
   }
 
   OutputFile& output_;
@@ -161,8 +161,8 @@ std::unique_ptr<LatticeWriter> make_npy_lattice_writer(OutputFile& output, const
 
 void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values) {
   const std::string shape = '(' + std::to_string(rows) + ", " + std::to_string(columns) + ')';
-  const std::string header = npy_header("<f8", shape);
-  output.write(header.data(), header.size());
+  const std::string head = npy_head("<f8", shape);
+  output.write(head.data(), head.size());
   output.write(values.data(), values.size_bytes());
   output.commit();
 }

@@ -14,7 +14,7 @@
 #include "io/fields/flag_bits.h"
 #include "io/fields/format_writers.h"
 #include "io/fields/lattice_array.h"
-#include "io/fields/npy_header.h"
+#include "io/files/npy_head.h"
 #include "io/files/spool_file.h"
 #include "io/files/zip_writer.h"
 
@@ -27,17 +27,17 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && std::is_standard_layout_v<Ve
 // An array in the making: where it is small, with all its bytes.
 struct NpzArray {
   std::string name;
-  std::string header;
-  std::uint64_t size;      // bytes behind the header
+  std::string head;
+  std::uint64_t size;      // bytes behind the head
   std::string bytes = {};  // empty where they come later
 
-  [[nodiscard]] ZipMember member() const { return {name + ".npy", header.size() + size}; }
+  [[nodiscard]] ZipMember member() const { return {name + ".npy", head.size() + size}; }
 };
 
 template <typename Number, std::size_t kCount>
 NpzArray small_array(const std::string& name, const char* descriptor, const std::string& shape,
                      const std::array<Number, kCount>& numbers) {
-  return {name, npy_header(descriptor, shape), sizeof numbers,
+  return {name, npy_head(descriptor, shape), sizeof numbers,
           std::string(reinterpret_cast<const char*>(numbers.data()), sizeof numbers)};
 }
 
@@ -56,7 +56,7 @@ std::string array_name(const FieldDescription& field) {
 // The flags of a field, a bit each.
 NpzArray packed_array(const FieldDescription& field, std::uint64_t samples) {
   const std::uint64_t bytes = (samples + 7) / 8;
-  return {field.column, npy_header("|u1", '(' + std::to_string(bytes) + ",)"), bytes};
+  return {field.column, npy_head("|u1", '(' + std::to_string(bytes) + ",)"), bytes};
 }
 
 // What all archives end with.
@@ -64,7 +64,7 @@ std::vector<NpzArray> arrays_about(const OutputDescription& description) {
   std::vector<NpzArray> arrays{small_array("transform", "<f8", "(4, 4)", description.transform)};
   if (!description.metadata.empty()) {
     const std::string& text = description.metadata;
-    arrays.push_back({"raycone", npy_header("|S" + std::to_string(text.size()), "()"), text.size(), text});
+    arrays.push_back({"raycone", npy_head("|S" + std::to_string(text.size()), "()"), text.size(), text});
   }
   return arrays;
 }
@@ -78,7 +78,7 @@ std::vector<ZipMember> members_of(const std::vector<NpzArray>& arrays) {
 // Headers, and the arrays that are known already.
 void start_archive(ZipWriter& zip, const std::vector<NpzArray>& arrays) {
   for (std::size_t n = 0; n < arrays.size(); ++n) {
-    zip.append(n, arrays[n].header.data(), arrays[n].header.size());
+    zip.append(n, arrays[n].head.data(), arrays[n].head.size());
     zip.append(n, arrays[n].bytes.data(), arrays[n].bytes.size());
   }
 }
@@ -116,8 +116,8 @@ class NpzLatticeWriter final : public LatticeWriter {
         continue;
       }
       auto elements = make_array_elements(field, precision, output.name());
-      const std::string header = npy_header(elements->descriptor(), shape_of(lattice.grid, field.components()));
-      arrays_.push_back({array_name(field), header, samples * elements->size()});
+      const std::string head = npy_head(elements->descriptor(), shape_of(lattice.grid, field.components()));
+      arrays_.push_back({array_name(field), head, samples * elements->size()});
       column.array.emplace(lattice.grid, std::move(elements));
     }
     append(arrays_, arrays_of(lattice, packed));
@@ -135,9 +135,9 @@ class NpzLatticeWriter final : public LatticeWriter {
         columns_[f].bits->add(block, std::get<std::span<const std::uint8_t>>(fields[f]));
         continue;
       }
-      const std::size_t header = arrays_[f].header.size();
+      const std::size_t head = arrays_[f].head.size();
       columns_[f].array->write_slab(block, fields[f], [&](std::uint64_t offset, const char* data, std::size_t size) {
-        zip_->write_at(f, header + offset, data, size);
+        zip_->write_at(f, head + offset, data, size);
       });
     }
   }
@@ -225,7 +225,7 @@ class NpzPointWriter final : public PointWriter {
     }
     if (description_.has_places) {
       arrays.push_back(array_of_vectors("normals", size));
-      arrays.push_back({"faces", npy_header("<i8", '(' + std::to_string(size) + ",)"), sizeof(std::int64_t) * size});
+      arrays.push_back({"faces", npy_head("<i8", '(' + std::to_string(size) + ",)"), sizeof(std::int64_t) * size});
     }
     append(arrays, std::move(shapes));
     append(arrays, arrays_about(description_));
@@ -235,13 +235,13 @@ class NpzPointWriter final : public PointWriter {
 
   static NpzArray array_of(const FieldDescription& field, const ArrayElements& elements, std::uint64_t size) {
     const std::string shape = '(' + std::to_string(size) + (field.components() > 1 ? ", 3)" : ",)");
-    return {array_name(field), npy_header(elements.descriptor(), shape), elements.size() * size};
+    return {array_name(field), npy_head(elements.descriptor(), shape), elements.size() * size};
   }
 
   [[nodiscard]] NpzArray array_of_vectors(const std::string& name, std::uint64_t size) const {
     const std::size_t coordinate = description_.single_points ? sizeof(float) : sizeof(double);
     const std::string shape = '(' + std::to_string(size) + ", 3)";
-    return {name, npy_header(description_.single_points ? "<f4" : "<f8", shape), 3 * coordinate * size};
+    return {name, npy_head(description_.single_points ? "<f4" : "<f8", shape), 3 * coordinate * size};
   }
 
   void append_vectors(std::size_t array, std::span<const Vec3> vectors) {

@@ -91,7 +91,7 @@ void require_bytes(InputBuffer& input, std::size_t count, const char* what) {
 NpyHead read_npy_head(InputBuffer& input) {
   constexpr std::size_t kPrefix = 12;  // magic, version, length of the header in 2 or 4 bytes; it is never shorter
   require_bytes(input, kPrefix, "the NPY header");
-  if (!input.pending().starts_with("\x93NUMPY")) throw InputError(input.name() + ": not an NPY file");
+  if (!input.pending().starts_with(kNpyMagic)) throw InputError(input.name() + ": not an NPY file");
   const int version = static_cast<unsigned char>(input.pending()[6]);
   if (version < 1 || version > 3) {
     throw InputError(input.name() + ": NPY version " + std::to_string(version) + ", expected 1 to 3");
@@ -109,6 +109,18 @@ NpyHead read_npy_head(InputBuffer& input) {
   head.data_offset = start + size;
   input.consume(start + size);
   return head;
+}
+
+std::string npy_head(const std::string& descriptor, const std::string& shape) {
+  constexpr std::size_t kAlignment = 64;
+  constexpr std::size_t kPreamble = 10;  // magic, version, length
+  std::string text = "{'descr': '" + descriptor + "', 'fortran_order': False, 'shape': " + shape + ", }";
+  const std::size_t total = (kPreamble + text.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  text.append(total - kPreamble - text.size() - 1, ' ');
+  text += '\n';
+  const auto low = static_cast<char>(text.size() & 0xFF);
+  const auto high = static_cast<char>(text.size() >> 8);
+  return std::string(kNpyMagic) + '\x01' + '\0' + low + high + text;
 }
 
 }  // namespace raycone

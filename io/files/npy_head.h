@@ -11,6 +11,8 @@
 
 namespace raycone {
 
+inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
+
 struct NpyHead {
   std::string type;  // as NumPy writes it, "<f8" for instance
   bool fortran_order = false;
@@ -21,6 +23,10 @@ struct NpyHead {
 
 // Consumes the head. Throws InputError, also about structured values.
 [[nodiscard]] NpyHead read_npy_head(InputBuffer& input);
+
+// A head of version 1.0 to write, for elements in C order: a text padded to 64 bytes. `descriptor`: of the elements,
+// "<f8" for instance; `shape`: as Python writes a tuple. For one axis it has the same length whatever the count.
+[[nodiscard]] std::string npy_head(const std::string& descriptor, const std::string& shape);
 
 // Waits until `count` bytes are pending; throws InputError where the input ends before.
 void require_bytes(InputBuffer& input, std::size_t count, const char* what);

@@ -3,14 +3,11 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "io/files/input_buffer.h"
 #include "io/points/read_points.h"
 
 namespace raycone {
-
-inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 // Each takes over an input of which nothing has been consumed. Throw InputError.
 [[nodiscard]] std::unique_ptr<PointReader> read_text_points(std::unique_ptr<InputBuffer> input,

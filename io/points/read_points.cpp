@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/files/file_error.h"
+#include "io/files/npy_head.h"
 #include "io/files/unpack.h"
 #include "io/files/zip_reader.h"
 #include "io/mesh/ply.h"

@@ -7,6 +7,7 @@
 #include "core/machine/threads.h"
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
+#include "io/files/file_identity.h"
 #include "io/files/read_file.h"
 #include "io/files/unpack.h"
 #include "io/mesh/mesh_builder.h"
@@ -34,13 +35,6 @@ MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   if (const auto format = format_from_extension(source.name)) return *format;
   throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF, GLB or 3MF" +
                    "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
-}
-
-// Where relative references of the file at `path` start.
-std::string directory_of(const std::string& path) {
-  if (path == "-") return {};
-  const std::string directory = std::filesystem::path(path).parent_path().string();
-  return directory.empty() ? "." : directory;
 }
 
 ParsedMesh parse(const NamedBytes& source, MeshFormat format, std::vector<FileRead>* companions) {
@@ -81,7 +75,7 @@ void check_finite(const TriangleMesh& mesh, const std::string& name) {
 MeshFile parse_mesh(const std::string& path, std::string_view bytes, std::string_view of_file,
                     const ReadMeshOptions& options) {
   if (bytes.empty()) throw InputError(path + ": the file is empty, expected a mesh");
-  const NamedBytes source{path, directory_of(path), bytes};
+  const NamedBytes source{path, path == "-" ? "" : directory_of(path), bytes};
   MeshFile file;
   const MeshFormat format = format_of(source, options);
   // Hashing takes longer than parsing where the format is binary; small files are not worth a second thread.

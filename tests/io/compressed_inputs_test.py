@@ -14,7 +14,9 @@ import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
 import zipfile
+import zlib
 
 RAYCONE = os.path.abspath(sys.argv.pop(1))
 PATIENCE = 120  # seconds; more hangs, however busy the machine is
@@ -69,12 +71,15 @@ def gltf(uri):
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def three_mf():
+def model_3mf():
     core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
     mesh = "<mesh><vertices>%s</vertices><triangles>%s</triangles></mesh>" % (
         rows(VERTICES, '<vertex x="%r" y="%r" z="%r"/>'), rows(FACES, '<triangle v1="%r" v2="%r" v3="%r"/>'))
     model = '<model xmlns="%s"><resources><object id="1">%s</object></resources>' % (core, mesh)
-    model += '<build><item objectid="1"/></build></model>'
+    return model + '<build><item objectid="1"/></build></model>'
+
+
+def three_mf(model=model_3mf()):
     relations = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
     relations += 'Id="r" Target="/m.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>'
     relations += "</Relationships>"
@@ -83,6 +88,15 @@ def three_mf():
         package.writestr("_rels/.rels", relations)
         package.writestr("m.model", model)
     return file.getvalue()
+
+
+def fixed_codes():
+    return zlib.compressobj(9, zlib.DEFLATED, -15, 9, zlib.Z_FIXED)
+
+
+def deflated_by_fixed_codes(data):
+    packing = fixed_codes()
+    return packing.compress(data) + packing.flush()
 
 
 def stl_text():
@@ -181,10 +195,25 @@ class Compressed(unittest.TestCase):
             self.assertEqual(self.works("points t.obj -", input=packed), self.works("points t.obj p.csv"), packed_name)
 
     def test_deflated_members_end_where_a_piece_of_them_does(self):
-        """128 KiB are unpacked at a time; the byte that ends the data holds the last match, too."""
+        """64 KiB of XML are unpacked at a time, 128 of arrays; the byte that ends the data holds the last match, too."""
         for n in range(5458, 5475):
             path = self.write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
             self.assertEqual(self.works("points t.obj " + path).count(b"\n"), n + 1)
+        expected = self.works("info %s --json" % self.write("t.3mf", three_mf()))
+        tried = 0
+        for length in range(0, 130, 13):
+            comment = "<!--%s-->" % "".join(chr(48 + 7 * n % 70) for n in range(length))
+            for size in range(1 << 16, (1 << 16) + 258, 10):
+                model = (model_3mf() + comment).ljust(size)
+                inflating = zlib.decompressobj(-15)
+                inflating.decompress(deflated_by_fixed_codes(model.encode()), 1 << 16)
+                if inflating.unconsumed_tail or inflating.eof:
+                    continue
+                tried += 1
+                with unittest.mock.patch.object(zipfile, "_get_compressor", lambda *_: fixed_codes()):
+                    self.write("t.3mf", three_mf(model))
+                self.assertEqual(self.works("info t.3mf --json"), expected, (length, size))
+        self.assertGreater(tried, 0)
 
     def test_answers_come_as_soon_as_their_points_have(self):
         """256 KiB are read at a time. They end within the last block here, behind which nothing comes before the answers."""

@@ -16,35 +16,36 @@ FieldDescription describe_field(Field field, const Rule& rule, double band_width
     case Field::kWinding:
       break;
     case Field::kInside:
-      description = {"inside", "inside", "inside", FieldKind::kFlag, holds(rule, 0.0) ? 1.0 : 0.0, name_of(rule)};
+      description = {"inside", "inside", "inside", FieldKind::kFlag, holds(rule, 0.0) ? 1.0 : 0.0, {}};
       break;
     case Field::kDensity:
-      description = {"density", "density", "density", FieldKind::kDensity, 0.0, ""};
+      description = {"density", "density", "density", FieldKind::kDensity, 0.0, {}};
       break;
     case Field::kDistance:
-      description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, name_of(rule)};
+      description = {"sdf", "sdf", "surface", FieldKind::kDistance, band_width, {}};
       break;
     case Field::kSolid:
-      description = {"solid", "solid", "solid", FieldKind::kDistance, band_width, name_of(rule)};
+      description = {"solid", "solid", "solid", FieldKind::kDistance, band_width, {}};
       break;
     case Field::kGradient:
-      description = {"gradient", "gradient_x,gradient_y,gradient_z", "gradient", FieldKind::kVector, 0.0, ""};
+      description = {"gradient", "gradient_x,gradient_y,gradient_z", "gradient", FieldKind::kVector, 0.0, {}};
       break;
     case Field::kLabel:
-      description = {"label", "label", "label", FieldKind::kLabel, 0.0, name_of(rule)};
+      description = {"label", "label", "label", FieldKind::kLabel, 0.0, {}};
       break;
   }
+  description.rule = name_of(rule);
   description.threshold = rule.threshold;
   description.threshold_of_magnitude = rule.kind == RuleKind::kAbs;
   return description;
 }
 
-std::vector<FieldDescription> describe_diagnostics() {
+std::vector<FieldDescription> describe_diagnostics(const Rule& rule) {
   std::vector<FieldDescription> descriptions;
   constexpr std::array kKinds{FieldKind::kCount, FieldKind::kCount, FieldKind::kFlag, FieldKind::kBound};
   for (std::size_t n = 0; n < kDiagnosticNames.size(); ++n) {
     const char* const name = kDiagnosticNames[n];
-    descriptions.push_back({name, name, name, kKinds[n], 0.0, ""});
+    descriptions.push_back({name, name, name, kKinds[n], 0.0, name_of(rule)});
   }
   return descriptions;
 }
@@ -78,7 +79,7 @@ std::vector<FieldDescription> describe_fields(const FieldOptions& options, doubl
   std::vector<FieldDescription> descriptions;
   for (const Field field : options.fields) descriptions.push_back(describe_field(field, options.rule, band_width));
   if (!options.diagnostics) return descriptions;
-  const std::vector<FieldDescription> diagnostics = describe_diagnostics();
+  const std::vector<FieldDescription> diagnostics = describe_diagnostics(options.rule);
   descriptions.insert(descriptions.end(), diagnostics.begin(), diagnostics.end());
   return descriptions;
 }

@@ -56,7 +56,7 @@ struct FieldDescription {
   std::string grid = "winding";  // in VDB
   FieldKind kind = FieldKind::kReal;
   double background = 0.0;  // the value far away, where grids hold nothing
-  std::string rule;         // empty where the field has none: not written then
+  std::string rule;         // of the run; not written where it is empty
   double threshold = 0.5;   // fewer digits keep numbers on its side (io/fields/narrowing.h); for kReal and kDensity
   bool threshold_of_magnitude = false;  // and so their magnitudes
 

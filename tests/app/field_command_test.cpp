@@ -107,8 +107,7 @@ TEST_F(FieldOption, VdbHoldsAGridPerField) {
   const VdbGridPtr density = read_vdb_grid(dir_ / "out.vdb", "density");
   const VdbGridPtr winding = read_vdb_grid(dir_ / "out.vdb", "winding");
   ASSERT_TRUE(inside && density && winding);
-  EXPECT_EQ(inside->text("raycone_rule"), "abs=0.3");
-  EXPECT_FALSE(winding->has_metadata("raycone_rule"));
+  for (const VdbGridPtr& grid : {inside, density, winding}) EXPECT_EQ(grid->text("raycone_rule"), "abs=0.3");
   EXPECT_EQ(density->grid_class(), VdbClass::kFogVolume);
   EXPECT_EQ(winding->grid_class(), VdbClass::kUnknown);
   for (std::size_t n = 0; n < columns.at("w").size(); ++n) {

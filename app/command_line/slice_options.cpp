@@ -148,7 +148,7 @@ CommandSpec slice_spec() {
                        {"--size", "N", "Pixels along the longer side, with axes and legend (default: 1024)"}}},
                      {"Field",
                       {{"--field", "winding|inside|sdf|label",
-                        "Winding number (default), inside, signed distance, or number of the part"},
+                        "Winding number (default), inside, signed distance, or number of the part", true},
                        parts_option(),
                        priority_option(),
                        {"--rule", "threshold=T|abs=T|nonzero|positive|odd",

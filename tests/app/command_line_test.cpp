@@ -114,6 +114,8 @@ TEST_F(CommandLine, OfAnOptionGivenTwiceTheLastCounts) {
 TEST_F(CommandLine, FieldsAndOutputsAreGivenOnce) {
   expect_error(lattice({"-o", "-"}), 1, "--output: given twice, expected once");
   expect_error(lattice({"--field", "inside", "--field=inside"}), 1, "--field: given twice, expected once");
+  expect_error(run_raycone({"slice", mesh_, "-o", csv_, "--field", "sdf", "--field", "sdf"}), 1,
+               "--field: given twice, expected once");
   EXPECT_FALSE(std::filesystem::exists(csv_));
 }
 

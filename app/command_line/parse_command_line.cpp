@@ -74,7 +74,8 @@ std::string formatted_help(const CLI::App& app, const std::string& program) {
   return text.insert(text.find("\nUsage:"), 1, '\n');
 }
 
-// `arguments` in a form that CLI11 cannot take for anything else.
+// `arguments` in a form that CLI11 cannot take for anything else. It only counts the operands: "[a,b]" would be a list
+// to it.
 std::vector<std::string> unmistakable(const Arguments& arguments) {
   std::vector<std::string> result{arguments.command};
   for (const OptionArgument& option : arguments.options) {
@@ -82,7 +83,7 @@ std::vector<std::string> unmistakable(const Arguments& arguments) {
     result.push_back(option.name + (joined_by_equals ? "=" : "") + option.value);
   }
   result.push_back("--");
-  result.insert(result.end(), arguments.operands.begin(), arguments.operands.end());
+  result.insert(result.end(), arguments.operands.size(), "operand");
   return result;
 }
 
@@ -91,7 +92,19 @@ std::string long_name(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
 }
 
-Values parse_with_cli11(const Arguments& arguments) {
+using Given = std::map<std::string, std::vector<std::string>>;
+
+void take_operands(const CommandSpec& spec, const std::vector<std::string>& operands, Given& given) {
+  auto next = operands.begin();
+  for (const OperandSpec& operand : spec.operands) {
+    if (next == operands.end()) return;
+    const auto end = operand.count == OperandCount::kMany ? operands.end() : next + 1;
+    given[operand.name].assign(next, end);
+    next = end;
+  }
+}
+
+Values parse_with_cli11(const CommandSpec& spec, const Arguments& arguments) {
   CLI::App root(program_spec().description, program_spec().name);
   declare_all(root);
   std::vector<std::string> reversed = unmistakable(arguments);
@@ -101,10 +114,11 @@ Values parse_with_cli11(const Arguments& arguments) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(std::string(error.what()) + help_hint(arguments.command));
   }
-  std::map<std::string, std::vector<std::string>> given;
+  Given given;
   for (const CLI::Option* const option : root.get_subcommand(arguments.command)->get_options()) {
     if (option->count() > 0) given[long_name(*option)] = option->results();
   }
+  take_operands(spec, arguments.operands, given);
   return Values(std::move(given));
 }
 
@@ -259,7 +273,7 @@ Command parse_command_line(const std::vector<std::string>& words) {
   if (help) return PrintCommand{help_text(arguments.command)};
   check_options(entry.spec, arguments);
   check_operand_count(entry.spec, arguments);
-  Command command = parse_values(entry, parse_with_cli11(arguments));
+  Command command = parse_values(entry, parse_with_cli11(entry.spec, arguments));
   std::visit([&words](auto& one) { keep_words(one, words); }, command);
   return command;
 }

@@ -76,6 +76,15 @@ TEST_F(CommandLine, MissingAndSurplusOperandsAreUsageErrors) {
   expect_error(run_raycone({"info", ""}), 1, "MESH");
 }
 
+// CLI11 would take the brackets for those of a list.
+TEST_F(CommandLine, OperandsInBracketsAreNames) {
+  expect_error(run_raycone({"info", "[a,b]"}), 2, "[a,b]: ");
+  expect_error(run_raycone({"info", "[]"}), 2, "[]: ");
+  expect_error(run_raycone({"lattice", "[v1]", "-o", csv_}), 2, "[v1]: ");
+  expect_error(run_raycone({"points", mesh_, "[p]"}), 2, "[p]: ");
+  expect_error(run_raycone({"batch", "[v1]", "--out-dir", dir_ / "out"}), 2, "[v1]: ");
+}
+
 TEST_F(CommandLine, LatticeNeedsAnOutput) { expect_error(run_raycone({"lattice", mesh_}), 1, "no output given"); }
 
 TEST_F(CommandLine, OptionsStandBeforeAndAfterOperands) {

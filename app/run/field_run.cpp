@@ -40,7 +40,6 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
       draw_(field.verify) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
   if (field.labels_only()) return;
-  run.report.exterior_edges = evaluator_.winding_number().exterior_edges();
   if (const auto warning = tolerance_not_kept(field.tolerance, evaluator_.accuracy())) run.warn(*warning);
 }
 
@@ -121,7 +120,6 @@ OutputDescription description_of(const RunReport& report, const FieldOptions& fi
   description.mesh_sha256 = report.sha256;
   description.transform = report.transform;
   description.faces = report.faces;
-  description.exterior_edges = report.exterior_edges;
   description.precision = encoding.precision;
   description.packs_flags = encoding.pack_bits;
   description.compress = encoding.compress;

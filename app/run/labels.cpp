@@ -90,7 +90,6 @@ class PointsByX {
 
 LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run) {
   RunReport& report = run.report;
-  check_memory(report.mesh, LabelVolume::bytes(lattice.grid, parts.size()), run.limits().memory());
   LabelVolume volume(lattice.grid, parts.size());
   SampleDraw draw(field.verify);
   draw.offer(lattice, whole(lattice.grid), {});

@@ -20,7 +20,7 @@
 namespace raycone {
 
 // The labels of all samples of `lattice`. Reports what they took, and verifies them where that is asked for. Throws
-// LimitError, VerificationError, and what reading throws.
+// VerificationError, and what reading throws. Precondition: there is memory for a LabelVolume.
 [[nodiscard]] LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field,
                                         MeshRun& run);
 

@@ -51,6 +51,7 @@ TriangleMesh MeshRun::prepare(TriangleMesh as_read) {
       timed(report.seconds.prepare, [&] { return mesh_to_evaluate(std::move(as_read), mesh_, report.warnings); });
   report.orientation = input.orientation;
   edges_ = std::move(input.edges);
+  report.exterior_edges = edges_.size();
   places_ = std::move(input.places);
   return std::move(input.mesh);
 }

@@ -113,6 +113,11 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
   return writer;
 }
 
+// A wider band is everywhere.
+bool cuts_off(const LatticeCommand& command, const Lattice& lattice) {
+  return command.field.band < static_cast<double>(std::ranges::max(lattice.counts));
+}
+
 // Of distances, in formats that store fewer digits than CSV.
 void check_range(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -127,53 +132,46 @@ void check_range(const LatticeCommand& command, const RunReport& report, const O
   throw OutputError(report.output + message);
 }
 
-SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
-
-// A wider band is everywhere.
 bool takes_blocks(const LatticeCommand& command, const LatticeWriter& writer, const PlacedLattice& lattice) {
-  const auto longest = static_cast<double>(std::ranges::max(lattice.grid.counts));
-  return writer.takes_blocks() && may_use_blocks(command.field) && lattice.along_axes() && command.field.band < longest;
+  return writer.takes_blocks() && may_use_blocks(command.field) && lattice.along_axes() &&
+         cuts_off(command, lattice.grid);
 }
 
-// Refuses lattices that cannot fit, before any work on them.
+SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
+
+double writer_memory(const LatticeCommand& command, const RunReport& report) {
+  const OutputDescription description = description_of(report, command.field, command.encoding);
+  return writer_memory(report.lattice->grid, command.encoding.format, description, slab_kind(report));
+}
+
+// Refuses lattices of which not even the smallest slab fits beside what is in memory.
+void check_slab_memory(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
+                       const RunLimits& limits) {
+  const LatticeBlock smallest = Slabs(report.lattice->grid, writer, 1).first();
+  SlabKind kind = slab_kind(report);
+  kind.blocks = takes_blocks(command, writer, *report.lattice);
+  const double bytes = writer_memory(command, report) + slab_memory(smallest, command.field, kind);
+  check_memory(report.mesh, bytes, limits.memory());
+}
+
+// Refuses what the format cannot hold and what cannot fit, before any work on it.
 std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRun& run) {
   const RunReport& report = run.report;
-  const RunLimits& limits = run.limits();
-  const PlacedLattice& lattice = *report.lattice;
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
-  const double of_writer = writer_memory(lattice.grid, format, description);
   check_range(command, report, description);
-  check_memory(report.mesh, of_writer, limits.memory());
+  check_memory(report.mesh, writer_memory(command, report), run.limits().memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
-  std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, lattice, description, limits);
-  const LatticeBlock smallest = Slabs(lattice.grid, *writer, 1).first();
-  SlabKind kind = slab_kind(report);
-  kind.blocks = takes_blocks(command, *writer, lattice);
-  check_memory(report.mesh, of_writer + slab_memory(smallest, command.field, kind), limits.memory());
+  std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, *report.lattice, description, run.limits());
+  check_slab_memory(command, *writer, report, run.limits());
   return writer;
 }
 
 // Slabs as memory allows.
 Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                const RunLimits& limits) {
-  const OutputDescription description = description_of(report, command.field, command.encoding);
-  const double of_writer = writer_memory(report.lattice->grid, command.encoding.format, description);
-  const double left = static_cast<double>(limits.memory()) - memory_in_use() - of_writer;
+  const double left = static_cast<double>(limits.memory()) - memory_in_use() - writer_memory(command, report);
   return {report.lattice->grid, writer, slab_samples(command.field, slab_kind(report), left)};
-}
-
-void evaluate_lattice(FieldRun& fields, const Slabs& slabs, const LabelVolume* labels, LatticeWriter& writer,
-                      const SlabObserver& observe, MeshRun& run) {
-  const PlacedLattice& lattice = *run.report.lattice;
-  std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
-  for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
-    fields.evaluate(lattice, slab, done);
-    if (labels) fields.take_labels(*labels, slab);
-    if (observe) observe(lattice, slab, fields.shown());
-    timed(run.report.seconds.write,
-          [&] { fields.uses_blocks() ? writer.write_blocks(fields.blocks()) : writer.write(slab, fields.values()); });
-  }
 }
 
 // The mesh as a whole; where nothing is asked about it, one without triangles.
@@ -220,6 +218,62 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
   });
 }
 
+// The lattice, and where distances end that nothing cuts off.
+void choose(LatticeCommand& command, const Box& mesh_box, MeshRun& run) {
+  RunReport& report = run.report;
+  report.lattice = lattice_for(command, mesh_box, report.warnings);
+  const auto* const grid = std::get_if<GridReference>(&command.lattice);
+  if (grid) report.files_read.push_back(grid->path);
+  report.samples =
+      choose_for(grid ? grid->path : command.mesh.path, [&] { return sample_count(report.lattice->grid); });
+  if (!std::isinf(command.field.band)) return;
+  const bool solid = command.field.has(Field::kSolid);
+  command.field.band =
+      band_of_all(mesh_box, solid ? PlacedLattice(solid_lattice(command, *report.lattice)) : *report.lattice);
+}
+
+// A lattice that is ready to be evaluated and written, slab by slab.
+struct LatticeWork {
+  std::unique_ptr<LatticeWriter> writer;
+  std::optional<LabelVolume> labels;  // where they are asked for
+  std::optional<FieldRun> fields;
+};
+
+// `command` must outlive the work.
+void prepare(LatticeCommand& command, LoadedMesh& loaded, MeshRun& run, LatticeWork& work) {
+  const PlacedLattice& lattice = *run.report.lattice;
+  const bool as_points = !world_order(lattice).has_value();
+  if (as_points) check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  if (loaded.parts) {
+    check_memory(run.report.mesh, LabelVolume::bytes(lattice.grid, loaded.parts->size()), run.limits().memory());
+  }
+  work.writer = open_writer(command, run);
+  if (loaded.parts) work.labels = label_lattice(*loaded.parts, lattice, command.field, run);
+  if (command.field.labels_only()) command.field.verify = 0;  // done
+  const bool solid = command.field.has(Field::kSolid);
+  const TriangleMesh original = solid ? loaded.mesh : TriangleMesh{};
+  work.fields.emplace(run, std::move(loaded.mesh), command.field, static_cast<double>(run.report.samples));
+  if (as_points) work.fields->prepare_points();
+  check_slab_memory(command, *work.writer, run.report, run.limits());  // beside what is prepared now
+  if (solid) work.fields->set_solid(solid_of(command, run, original));
+  if (takes_blocks(command, *work.writer, lattice)) work.fields->use_blocks();
+}
+
+void evaluate_lattice(const LatticeCommand& command, LatticeWork& work, const SlabObserver& observe, MeshRun& run) {
+  const PlacedLattice& lattice = *run.report.lattice;
+  FieldRun& fields = *work.fields;
+  LatticeWriter& writer = *work.writer;
+  const Slabs slabs = slabs_of(command, writer, run.report, run.limits());
+  std::atomic<std::uint64_t>* const done = run.start_progress(run.report.samples);
+  for (LatticeBlock slab = slabs.first(); slab.size() > 0; slab = slabs.behind(slab)) {
+    fields.evaluate(lattice, slab, done);
+    if (work.labels) fields.take_labels(*work.labels, slab);
+    if (observe) observe(lattice, slab, fields.shown());
+    timed(run.report.seconds.write,
+          [&] { fields.uses_blocks() ? writer.write_blocks(fields.blocks()) : writer.write(slab, fields.values()); });
+  }
+}
+
 }  // namespace
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
@@ -229,35 +283,18 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   RunReport& report = run.report;
   LoadedMesh loaded;
   load(command, run, loaded);
-  report.lattice = lattice_for(command, loaded.box, report.warnings);
-  const auto* const grid = std::get_if<GridReference>(&command.lattice);
-  if (grid) report.files_read.push_back(grid->path);
-  report.samples =
-      choose_for(grid ? grid->path : command.mesh.path, [&] { return sample_count(report.lattice->grid); });
-  const bool solid = command.field.has(Field::kSolid);
-  if (std::isinf(command.field.band)) {
-    command.field.band =
-        band_of_all(loaded.box, solid ? PlacedLattice(solid_lattice(command, *report.lattice)) : *report.lattice);
-  }
+  choose(command, loaded.box, run);
   run.print_warnings();
 
-  const bool as_points = !world_order(*report.lattice).has_value();
-  if (as_points) check_points_memory(command.mesh, report.faces, command.field, limits);
-  std::optional<LabelVolume> labels;
-  if (loaded.parts) labels = label_lattice(*loaded.parts, *report.lattice, command.field, run);
-  if (command.field.labels_only()) command.field.verify = 0;  // done
-  const TriangleMesh original = solid ? loaded.mesh : TriangleMesh{};
+  LatticeWork work;
+  prepare(command, loaded, run, work);
+  evaluate_lattice(command, work, observe, run);
   const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
-  FieldRun fields(run, std::move(loaded.mesh), command.field, static_cast<double>(report.samples));
-  if (as_points) fields.prepare_points();
-  const std::unique_ptr<LatticeWriter> writer = open_writer(command, run);
-  if (solid) fields.set_solid(solid_of(command, run, original));
-  if (takes_blocks(command, *writer, *report.lattice)) fields.use_blocks();
-  evaluate_lattice(fields, slabs_of(command, *writer, report, limits), labels ? &*labels : nullptr, *writer, observe,
-                   run);
-  if (fields.found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
-  fields.finish(command.field.band * report.lattice->grid.spacing.x);
-  timed(report.seconds.write, [&] { writer->finish({report.tally.degenerate, report.tally.on_surface}); });
+  if (work.fields->found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
+  work.fields->finish(command.field.band * report.lattice->grid.spacing.x);
+  timed(report.seconds.write, [&] {
+    work.writer->finish({report.tally.degenerate, report.tally.on_surface, report.exterior_edges});
+  });
   if (names) write_all(*names, label_table_json(report));
   return run.finish();
 }

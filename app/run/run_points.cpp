@@ -33,8 +33,8 @@ struct PointBatch {
   bool gathered = false;  // of several that the reader gives, as long as none has to be waited for
 };
 
-// Where a boundary is summed over or a triangle is searched for, many points that are known to come share much: the more
-// at a time, the less time each takes. That needs memory.
+// Where a boundary is summed over or a triangle is searched for, many points that are known to come share much: the
+// more at a time, the less time each takes. That needs memory.
 PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool has_boundary,
                      const RunLimits& limits) {
   constexpr std::size_t kMany = std::size_t{1} << 18;

@@ -56,7 +56,6 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   run.print_warnings();
 
   const std::vector<ExteriorEdge> edges = run.take_edges();
-  report.exterior_edges = edges.size();
   SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
                          is_single_precision(command.format)};
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };

@@ -18,13 +18,13 @@ std::int64_t floor_to_multiple(std::int64_t value, std::int64_t of) {
   return value - (remainder < 0 ? remainder + of : remainder);
 }
 
-double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description) {
+double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description,
+                   bool open) {
   const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
   const double samples = layer * static_cast<double>(lattice.counts[2]);
   // Those of leaves that a surface through the whole lattice meets at least.
   const double at_surface = kLeafVoxels * std::pow(samples / kLeafVoxels, 2.0 / 3.0);
   const double blocks_in_the_making = kLeafSide * layer;
-  const bool open = description.exterior_edges > 0;
   const double real_bytes = description.is(Precision::kDouble) ? sizeof(double) : sizeof(float);
   switch (field.kind) {
     case FieldKind::kReal:
@@ -81,12 +81,12 @@ double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKi
   return bytes_per_sample(options, kind) * static_cast<double>(slab.size());
 }
 
-double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description) {
+double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description, SlabKind kind) {
   const auto samples = static_cast<double>(whole(lattice).size());
   if (format == FieldFormat::kNpz && description.packs_flags) return samples / 8;
   if (format != FieldFormat::kVdb) return 0.0;
   double bytes = 0.0;
-  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description);
+  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description, kind.open);
   return bytes;
 }
 

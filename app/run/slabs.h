@@ -17,9 +17,9 @@ inline constexpr std::int64_t kSlabSamples = std::int64_t{1} << 22;
 [[nodiscard]] LatticeBlock slab_from(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t first,
                                      std::int64_t samples = kSlabSamples);
 
-// What the memory of a slab depends on, beside its samples and their fields.
+// What the memory of a slab and of its writer depends on, beside samples and their fields.
 struct SlabKind {
-  bool open = false;    // the mesh has boundary edges
+  bool open = false;    // the mesh has exterior edges
   bool turned = false;  // the lattice is not along the axes: its numbers are sorted, or its samples' places kept
   bool blocks = false;  // distances take room in the band alone, how much is not known
 };
@@ -32,6 +32,7 @@ struct SlabKind {
 
 // Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding
 // numbers of an open mesh and their error bounds differ everywhere; all else only at a surface.
-[[nodiscard]] double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description);
+[[nodiscard]] double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description,
+                                   SlabKind kind);
 
 }  // namespace raycone

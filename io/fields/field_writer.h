@@ -74,7 +74,6 @@ struct OutputDescription {
   std::string mesh;                          // file name without directory
   std::string mesh_sha256;
   std::uint64_t faces = 0;
-  std::uint64_t exterior_edges = 0;
   std::optional<Precision> precision;             // of real numbers: by default 32 bits on lattices, 64 at points
   bool compress = false;                          // NRRD, NIfTI: by gzip
   bool packs_flags = false;                       // NPZ: the field inside as bits
@@ -105,6 +104,7 @@ using FieldValues = std::variant<std::span<const double>, std::span<const std::i
 struct FieldTotals {
   std::uint64_t degenerate = 0;
   std::uint64_t on_surface = 0;
+  std::uint64_t exterior_edges = 0;  // of all parts where there are labels: they are prepared one after the other
 };
 
 // Takes the values of a lattice block by block. Blocks are slabs that span the lattice across `slab_axis()`, in

@@ -112,7 +112,6 @@ void describe(openvdb::GridBase& grid, const PlacedLattice& placed, const FieldD
   if (field.kind == FieldKind::kLabel) insert(grid, "raycone_labels", description.label_names);
   insert(grid, "raycone_transform", description.transform);
   insert(grid, "raycone_faces", description.faces);
-  insert(grid, "raycone_exterior_edges", description.exterior_edges);
   if (description.is(Precision::kHalf) && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
 }
 
@@ -299,6 +298,7 @@ class TypedGridBuilder final : public GridBuilder {
   }
 
   openvdb::GridBase::ConstPtr finish(const FieldTotals& totals) override {
+    insert(*grid_, "raycone_exterior_edges", totals.exterior_edges);
     insert(*grid_, "raycone_degenerate", totals.degenerate);
     insert(*grid_, "raycone_on_surface", totals.on_surface);
     openvdb::tools::pruneTiles(tree());

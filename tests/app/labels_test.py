@@ -443,6 +443,12 @@ class Refusals(Labels):
         self.refused("lattice %s -o l.npy --field label --resolution 100000 --memory-limit 1G" % self.files, 4, "needs")
         self.assertFalse(os.path.exists("l.npy"))
 
+    def test_what_the_format_cannot_hold_is_refused_before_the_work(self):
+        """Which would warn about the reversed part."""
+        words = "lattice left_lobe.obj turned.obj --field label -o l."
+        self.refused(words + "nii.gz --resolution 40000,2,2", 3, "40000 samples along an axis do not fit")
+        self.refused(words + "vdb --resolution 5 --scale 1e-7", 3, "voxel volume")
+
     def test_warnings_name_their_mesh(self):
         text = self.reported("lattice left_lobe.obj turned.obj right.obj -o l.npy --field label --report r.json" + BOX)
         warnings = [line for line in text.split("\n") if "warning" in line]

@@ -8,6 +8,9 @@
 namespace raycone::test {
 namespace {
 
+constexpr SlabKind kClosed{};
+constexpr SlabKind kOpen{.open = true};
+
 // Slabs of `lattice` along `axis`: each where its predecessor ended, each ending at a multiple of `alignment` but for
 // the last, none empty or above `most` samples; together all samples.
 void expect_partition(const Lattice& lattice, int axis, std::int64_t alignment, std::int64_t most) {
@@ -71,30 +74,27 @@ TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};
   OutputDescription description;
-  description.exterior_edges = 1;
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, description), 0.0);
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 4e9 + 4 * 8e6);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kNpy, description, kOpen), 0.0);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 4e9 + 4 * 8e6);
   description.precision = Precision::kDouble;
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 8e9 + 8 * 8e6);
-  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}), 1e8);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 8e9 + 8 * 8e6);
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}, kClosed), 1e8);
 }
 
 TEST(WriterMemory, CountsFlagsAtTheSurfaceOnly) {
   Lattice lattice;
   lattice.counts = {2048, 2048, 2048};
   OutputDescription description;
-  description.exterior_edges = 1;
   description.fields = {{"inside", "inside", "inside", FieldKind::kFlag, 0.0, ""}};
-  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description), 1e8);
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 1e8);
 }
 
 TEST(WriterMemory, CountsTheErrorBoundsOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};
   OutputDescription description = described_with_diagnostics();
-  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description), 3e8) << "closed: no bound differs from 0";
-  description.exterior_edges = 1;
-  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description), 2 * 4e9 + (4 + 3 * 4 + 1) * 8e6);
+  EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description, kClosed), 3e8) << "closed: no bound differs from 0";
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 2 * 4e9 + (4 + 3 * 4 + 1) * 8e6);
 }
 
 }  // namespace

@@ -68,14 +68,13 @@ OutputDescription described_mesh() {
   description.mesh = "bunny.obj";
   description.mesh_sha256 = "0123456789abcdef";
   description.faces = 5'000'000'000;  // beyond 32 bits
-  description.exterior_edges = 42;
   return description;
 }
 
 void write_vdb(const std::string& path, const Field& field, const OutputDescription& description = described_mesh(),
                std::int64_t thickness = 8) {
   OutputFile output(path);
-  test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9});
+  test::write_in_slabs(FieldFormat::kVdb, output, field.lattice, description, field.values, thickness, {7, 9, 42});
 }
 
 VdbGridPtr written_grid(const Field& field, const OutputDescription& description = described_mesh(),

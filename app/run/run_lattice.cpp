@@ -28,6 +28,7 @@
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
+#include "io/files/half.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -118,17 +119,25 @@ bool cuts_off(const LatticeCommand& command, const Lattice& lattice) {
   return command.field.band < static_cast<double>(std::ranges::max(lattice.counts));
 }
 
-// Of distances, in formats that store fewer digits than CSV.
+// The largest number that `format` holds.
+double largest_stored(FieldFormat format, const OutputDescription& description) {
+  const bool any = format == FieldFormat::kCsv || format == FieldFormat::kNone;
+  if (any || description.is(Precision::kDouble)) return std::numeric_limits<double>::infinity();
+  return description.is(Precision::kHalf) ? kLargestHalf : std::numeric_limits<float>::max();
+}
+
+// Of distances. Those that nothing cuts off may be halves after all, as writers find.
 void check_range(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
-  constexpr double kLargest = std::numeric_limits<float>::max();
+  const double largest = largest_stored(command.encoding.format, description);
   const double most = command.field.band * report.lattice->grid.spacing.x;
-  const bool single = command.encoding.format != FieldFormat::kCsv && !description.is(Precision::kDouble);
-  if (!command.field.has_distance() || !single || most <= kLargest) return;
+  if (!command.field.has_distance() || most <= largest) return;
+  const bool half = largest == kLargestHalf;
+  if (half && !cuts_off(command, report.lattice->grid)) return;
   char message[160];
   std::snprintf(
       message, sizeof message,
-      ": distances of up to %.6g are beyond %.6g, the range of 32 bits; expected --dtype f64, or another --scale", most,
-      kLargest);
+      ": distances of up to %.6g are beyond %.6g, the range of %d bits; expected --dtype f%d, or another --scale", most,
+      largest, half ? 16 : 32, half ? 32 : 64);
   throw OutputError(report.output + message);
 }
 

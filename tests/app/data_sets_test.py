@@ -82,7 +82,12 @@ class Lattices(DataSets):
         for dtype in ("f16", "f32", "f64"):
             self.works("lattice %s --resolution 33 --padding 2v -o w.npy --dtype %s" % (OPEN_BOX, dtype))
             self.assertTrue((numpy.load("w.npy") == loaded[dtype]["w"]).all())
-        self.refused("lattice %s -o a.npz --field sdf --dtype f16 --scale 1e7" % CUBE, 3, "beyond 65504")
+        for end in ("npy", "npz", "vdb"):  # before anything is evaluated
+            self.refused("lattice %s -o a.%s --field sdf --dtype f16 --scale 1e7" % (CUBE, end), 3,
+                         "distances of up to 476190 are beyond 65504, the range of 16 bits; expected --dtype f32")
+        self.works("lattice %s -o all.npy --field sdf --dtype f16 --scale 3e4 --band all --resolution 5" % CUBE)
+        self.refused("lattice %s -o a.npy --field sdf --dtype f16 --scale 1e7 --band all" % CUBE, 3, "beyond 65504")
+        self.works("batch %s --out-dir measured --format none --field sdf --scale 1e40" % CUBE)
         for end in ("npy", "npz", "vdb", "vti", "nrrd"):
             self.refused("lattice %s -o a.%s --field sdf --scale 1e40" % (CUBE, end), 3, "the range of 32 bits")
             self.assertFalse(os.path.exists("a." + end))

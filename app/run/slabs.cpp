@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/crossings/lattice_sums.h"
 
@@ -84,6 +85,10 @@ double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKi
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description, SlabKind kind) {
   const auto samples = static_cast<double>(whole(lattice).size());
   if (format == FieldFormat::kNpz && description.packs_flags) return samples / 8;
+  if (format == FieldFormat::kCsv) {
+    const double texts = kind.turned ? 1.0 : 2.0;  // the index, and the coordinate where it depends on that alone
+    return texts * sizeof(std::string) * static_cast<double>(lattice.counts[0]);
+  }
   if (format != FieldFormat::kVdb) return 0.0;
   double bytes = 0.0;
   for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description, kind.open);

@@ -31,7 +31,8 @@ struct SlabKind {
 [[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKind kind);
 
 // Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding
-// numbers of an open mesh and their error bounds differ everywhere; all else only at a surface.
+// numbers of an open mesh and their error bounds differ everywhere; all else only at a surface. For CSV texts of each
+// index along x.
 [[nodiscard]] double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description,
                                    SlabKind kind);
 

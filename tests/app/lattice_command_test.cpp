@@ -278,6 +278,10 @@ TEST_F(LatticeCommand, RefusesWhatCannotFitBeforeWorkWithTheNumbers) {
   EXPECT_EQ(memory.status, 4) << memory.err;
   EXPECT_NE(memory.err.find("needs about "), std::string::npos) << memory.err;
   EXPECT_NE(memory.err.find("the limit is 2 GB"), std::string::npos) << memory.err;
+  const CommandResult texts =
+      run_raycone({"lattice", mesh_, "-o", dir_ / "out.csv", "--resolution", "2000000000,1,1", "--memory-limit", "1G"});
+  EXPECT_EQ(texts.status, 4) << texts.err;
+  EXPECT_NE(texts.err.find("needs about 119 GB"), std::string::npos) << texts.err;
   const CommandResult count = run_raycone({"lattice", mesh_, "-o", out, "--resolution", "10000000000"});
   EXPECT_EQ(count.status, 4) << count.err;
   EXPECT_NE(count.err.find("1e+30 samples"), std::string::npos) << count.err;

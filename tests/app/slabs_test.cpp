@@ -89,6 +89,14 @@ TEST(WriterMemory, CountsFlagsAtTheSurfaceOnly) {
   EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 1e8);
 }
 
+// Which its writer keeps.
+TEST(WriterMemory, CountsTheTextsOfARowOfCsv) {
+  Lattice lattice;
+  lattice.counts = {2'000'000'000, 1, 1};
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kCsv, {}, kClosed), 2 * sizeof(std::string) * 2e9);
+  EXPECT_EQ(writer_memory(lattice, FieldFormat::kCsv, {}, {.turned = true}), sizeof(std::string) * 2e9);
+}
+
 TEST(WriterMemory, CountsTheErrorBoundsOfAnOpenMeshInFull) {
   Lattice lattice;
   lattice.counts = {1000, 1000, 1000};

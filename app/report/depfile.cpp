@@ -7,13 +7,17 @@
 namespace raycone {
 namespace {
 
+void refuse(const std::string& name, const char* characters, const std::string& names) {
+  const std::size_t found = name.find_first_of(characters);
+  if (found == std::string::npos) return;
+  const std::string what = name[found] == '\n' ? "line feeds" : std::string("'") + name[found] + "'";
+  throw OutputError(name + ": Make cannot read " + names + " with " + what + ", expected none with --depfile");
+}
+
 // As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled. Colons, too,
 // which GCC leaves as they are: Make would take the line for another rule.
 std::string escaped(const std::string& name) {
-  if (const std::size_t found = name.find_first_of("\n;|="); found != std::string::npos) {
-    const std::string what = name[found] == '\n' ? "line feeds" : std::string("'") + name[found] + "'";
-    throw OutputError(name + ": Make cannot read names with " + what + ", expected none with --depfile");
-  }
+  refuse(name, "\n;|=", "names");
   std::string text;
   std::string backslashes;
   for (const char c : name) {
@@ -29,6 +33,7 @@ std::string escaped(const std::string& name) {
 
 std::string depfile_text(const std::string& output, const std::vector<std::string>& inputs) {
   if (output == "-") return "";
+  refuse(output, "%", "names of outputs");  // of a rule for patterns; Ninja does not know how Make escapes it
   std::string text = escaped(output) + ":";
   std::set<std::string> listed{"-"};
   for (const std::string& input : inputs) {

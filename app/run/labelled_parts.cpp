@@ -38,7 +38,7 @@ LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldO
   report.files_read.insert(report.files_read.end(), mesh.lists.begin(), mesh.lists.end());
   report.sha256 = report.meshes.front().sha256;
   report.unit = parts_.files().front().unit;
-  refuse_to_replace_input(written, report.files_read);
+  run.check_files_read(written);
   for (const MeshParts::File& file : parts_.files()) run.warn_about(file.read.path, file.warnings);
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     report.parts.push_back({parts_.name(n), parts_.files()[parts_.file_of(n)].read.path});

@@ -11,7 +11,7 @@
 namespace raycone {
 
 MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunOptions& options,
-                 const RunLimits& limits)
+                 const std::vector<std::string>& inputs, const RunLimits& limits)
     : output(written.path, written.no_clobber, &files),
       mesh_(mesh),
       written_(written),
@@ -25,7 +25,7 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunO
   report.threads = limits.threads();
   if (written.report) report_file_ = std::make_unique<OutputFile>(*written.report, written.no_clobber, &files);
   if (written.depfile) {
-    (void)depfile_text(written.path, {mesh.path});  // throws before the work
+    (void)depfile_text(written.path, inputs);  // throws before the work
     depfile_ = std::make_unique<OutputFile>(*written.depfile, written.no_clobber, &files);
   }
 }
@@ -42,8 +42,13 @@ TriangleMesh MeshRun::load_mesh(const std::vector<WrittenFile>& written) {
   report.vertices = file.parsed.mesh.vertices.size();
   report.faces = file.parsed.mesh.triangles.size();
   report.warnings = std::move(file.parsed.warnings);
-  refuse_to_replace_input(written, report.files_read);
+  check_files_read(written);
   return prepare(std::move(file.parsed.mesh));
+}
+
+void MeshRun::check_files_read(const std::vector<WrittenFile>& written) const {
+  refuse_to_replace_input(written, report.files_read);
+  if (depfile_) (void)depfile_text(written_.path, report.files_read);
 }
 
 TriangleMesh MeshRun::prepare(TriangleMesh as_read) {

@@ -1,10 +1,10 @@
 // What every run over a mesh goes through, whatever is made of it.
 //
-//   MeshRun run(command.mesh, command.output, command.run, limits);  // the output is open
-//   TriangleMesh mesh = run.load_mesh(files_written(command));       // read, and made ready to be evaluated
-//   ...                                                              // what is evaluated is chosen: run.report
+//   MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);  // the output is open
+//   TriangleMesh mesh = run.load_mesh(files_written(command));  // read, and made ready to be evaluated
+//   ...                                                         // what is evaluated is chosen: run.report
 //   run.print_warnings();
-//   ...                                                              // evaluated and written to run.output
+//   ...                                                         // evaluated and written to run.output
 //   return run.finish();
 #pragma once
 
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,18 +32,23 @@ namespace raycone {
 
 class MeshRun {
  public:
-  // Opens the output, and the report and the list of files read, where wanted. What is given here must outlive this.
-  // Throws OutputError.
-  MeshRun(const MeshOptions& mesh, const OutputFiles& output, const RunOptions& options, const RunLimits& limits);
+  // Opens the output, and the report and the list of files read, where wanted. `inputs`: the files that the command
+  // names to be read. What else is given here must outlive this. Throws OutputError.
+  MeshRun(const MeshOptions& mesh, const OutputFiles& output, const RunOptions& options,
+          const std::vector<std::string>& inputs, const RunLimits& limits);
   MeshRun(const MeshRun&) = delete;  // total_ refers to the report
   MeshRun& operator=(const MeshRun&) = delete;
 
   // The mesh to evaluate; the report says where it is from, and has the warnings about it. Throws InputError,
-  // LimitError, and UsageError where one of `written` would replace a file that the mesh refers to.
+  // LimitError, and what check_files_read() throws.
   [[nodiscard]] TriangleMesh load_mesh(const std::vector<WrittenFile>& written);
 
   // The same of a mesh that has been read already.
   [[nodiscard]] TriangleMesh prepare(TriangleMesh as_read);
+
+  // To be called when the report knows which files meshes refer to. Throws UsageError where one of `written` would
+  // replace one of them, OutputError where the list of files read cannot name one.
+  void check_files_read(const std::vector<WrittenFile>& written) const;
 
   // exterior_edges() of that mesh, once.
   [[nodiscard]] std::vector<ExteriorEdge> take_edges() { return std::move(edges_); }

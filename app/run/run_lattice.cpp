@@ -287,7 +287,7 @@ void evaluate_lattice(const LatticeCommand& command, LatticeWork& work, const Sl
 
 RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, const SlabObserver& observe) {
   LatticeCommand command = asked;
-  MeshRun run(command.mesh, command.output, command.run, limits);
+  MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   const std::unique_ptr<OutputFile> names = open_label_names(command, run.files);
   RunReport& report = run.report;
   LoadedMesh loaded;

@@ -117,7 +117,7 @@ TriangleMesh load(const PointsCommand& command, MeshRun& run, std::optional<Labe
 
 RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
   PointsCommand command = asked;
-  MeshRun run(command.mesh, command.output, command.run, limits);
+  MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
   std::unique_ptr<PointReader> reader = timed(report.seconds.read, [&] { return open_given_points(command); });
   std::optional<LabelledParts> parts;

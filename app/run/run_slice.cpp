@@ -169,7 +169,7 @@ void load(const SliceCommand& command, MeshRun& run, CutMesh& cut) {
 }  // namespace
 
 RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
-  MeshRun run(command.mesh, command.output, command.run, limits);
+  MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
   std::unique_ptr<OutputFile> values_file;
   if (command.values)

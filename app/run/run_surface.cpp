@@ -45,7 +45,7 @@ Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh,
 }  // namespace
 
 RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
-  MeshRun run(command.mesh, command.output, command.run, limits);
+  MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
   TriangleMesh mesh = run.load_mesh(files_written(command));
   const Lattice lattice = surface_lattice(command, mesh, report.warnings);

@@ -132,6 +132,27 @@ TEST_F(Depfile, FailsWithoutATrace) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.d"));
 }
 
+// A file that is not there is told of when it is read.
+TEST_F(Depfile, RefusesNamesBeforeAnyFileIsRead) {
+  const std::string bad = dir_ / "lr=0.1";
+  const std::string absent = dir_ / "absent";
+  const std::string list = dir_ / "list";
+  write_text(list, bad + "\n");
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"points", absent, bad},
+                                             {"lattice", absent, "--like", bad},
+                                             {"lattice", absent, bad, "--field", "label"},
+                                             {"lattice", absent, "@" + list, "--field", "label"},
+                                             {"surface", absent, "--like", bad, "--format", "ply"}}) {
+    std::vector<std::string> more = words;
+    more.insert(more.end(), {"-o", dir_ / "out.csv", "--depfile", dir_ / "out.d"});
+    const CommandResult result = run_raycone(more);
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_NE(result.err.find("lr=0.1: Make cannot read names with '='"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(lattice(dir_ / "50%.csv", {"--depfile", dir_ / "out.d"}).status, 3);
+}
+
 // Whatever a run writes beside its output appears with it, or neither does.
 TEST_F(SideFiles, NothingAppearsWhereOneCannotBeWritten) {
   const std::vector<std::vector<std::string>> runs{
@@ -176,6 +197,8 @@ TEST(DepfileText, ReadsBackInMakeOrIsRefused) {
     EXPECT_THROW((void)depfile_text(name, {"mesh"}), OutputError) << name;
     EXPECT_THROW((void)depfile_text("out", {name}), OutputError) << name;
   }
+  EXPECT_THROW((void)depfile_text("50%.csv", {"mesh"}), OutputError) << "a rule for patterns";
+  EXPECT_EQ(depfile_text("out", {"50%.obj"}), "out: \\\n  50%.obj\n");
 }
 
 TEST(DepfileText, LeavesOutStandardInputAndRepetitions) {

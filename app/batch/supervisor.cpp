@@ -14,6 +14,7 @@
 #include <utility>
 #include <variant>
 
+#include "app/batch/command_message.h"
 #include "app/batch/worker_process.h"
 #include "app/process/exit_code.h"
 #include "app/process/limits.h"
@@ -94,11 +95,17 @@ class Supervisor {
   void begin(const Schedule::Start& start) {
     const SupervisedJob& job = jobs_[start.mesh];
     Slot& slot = idle_slot();
-    if (!slot.worker) slot.worker = std::make_unique<WorkerProcess>();
     slot.running = start;
     slot.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                        std::chrono::duration<double>(std::min(options_.timeout, kMaxTimeout)));
-    slot.worker->send(command_for(job, start.threads, options_));
+    ask(slot, to_message(command_for(job, start.threads, options_)));
+  }
+
+  // A worker may have ended since it answered. Throws LimitError.
+  static void ask(Slot& slot, const Message& message) {
+    if (slot.worker && slot.worker->send(message)) return;
+    slot.worker = std::make_unique<WorkerProcess>();
+    static_cast<void>(slot.worker->send(message));  // of one that has ended again the end is seen
   }
 
   // Until a worker or a signal has something to say, the next deadline, or the next tick.

@@ -13,7 +13,6 @@
 #include <system_error>
 #include <utility>
 
-#include "app/batch/command_message.h"
 #include "app/batch/worker.h"
 #include "app/process/exit_code.h"
 #include "io/files/file_error.h"
@@ -59,9 +58,12 @@ WorkerProcess::~WorkerProcess() {
   close(socket_);
 }
 
-void WorkerProcess::send(const MeshCommand& command) {
-  const std::string frame = to_frame(to_message(command));  // an idle worker's socket has room for it
-  ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL);
+bool WorkerProcess::send(const Message& message) const {
+  char answer = 0;  // none is due: what can be read is the end
+  const ssize_t count = recv(socket_, &answer, sizeof answer, MSG_PEEK | MSG_DONTWAIT);
+  if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
+  const std::string frame = to_frame(message);  // an idle worker's socket has room for it
+  return ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(frame.size());
 }
 
 std::optional<JobResult> WorkerProcess::receive() {

@@ -7,7 +7,6 @@
 
 #include "app/batch/job_result.h"
 #include "app/batch/message.h"
-#include "app/options/batch_command.h"
 
 namespace raycone {
 
@@ -24,8 +23,8 @@ class WorkerProcess {
   // Readable when an answer arrives, or at the worker's end.
   [[nodiscard]] int descriptor() const { return socket_; }
 
-  // Of a worker that has ended nothing is heard: see ended().
-  void send(const MeshCommand& command);
+  // To an idle worker. False where it has ended.
+  [[nodiscard]] bool send(const Message& message) const;
   // Takes what has arrived: the answer, once it is complete. Nothing to be understood ends the worker.
   [[nodiscard]] std::optional<JobResult> receive();
   [[nodiscard]] bool ended() const { return ended_; }

@@ -160,6 +160,33 @@ TEST_F(BatchInterruption, AWorkerThatCrashesCostsItsRowAndIsReplaced) {
   EXPECT_NE(run({"--resolution", "300", "--dry-run"}).out.find("a.obj\tcrashed before"), std::string::npos);
 }
 
+// The worker answers and dies while the supervisor looks elsewhere.
+TEST_F(BatchInterruption, AWorkerThatDiesBetweenMeshesCostsNone) {
+  fs::create_directories(meshes_);
+  const std::string pipe = meshes_ + "/a.obj";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  put("b.obj");
+  Command command(
+      raycone_command({"batch", pipe, meshes_ + "/b.obj", "--out-dir", out_, "--resolution", "8", "--jobs", "1"}));
+  {
+    std::ofstream mesh(pipe);  // opens when the worker does
+    command.send_signal(SIGSTOP);
+    mesh << kCube;
+  }
+  const std::vector<pid_t> workers = children_of(command.process());
+  ASSERT_EQ(workers.size(), 1U);
+  EXPECT_TRUE(becomes_true([this] { return fs::exists(out_ + "/a.vdb"); }));
+  std::this_thread::sleep_for(milliseconds(500));  // it answers meanwhile
+  kill(workers[0], SIGKILL);
+  expect_all_to_end(workers);
+  // Its socket is open as long as one of its threads is.
+  const fs::path threads = "/proc/" + std::to_string(workers[0]) + "/task";
+  EXPECT_TRUE(becomes_true([&] { return std::distance(fs::directory_iterator(threads), {}) == 1; }));
+  command.send_signal(SIGCONT);
+  EXPECT_EQ(command.wait().status, 0);
+  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"}, {"b.obj", "ok"}}));
+}
+
 TEST_F(BatchInterruption, FourBatchesInOneDirectoryDisturbNoOther) {
   put_many();
   const std::vector<std::string> options{"--resolution", "16", "--threads", "1"};

@@ -199,4 +199,17 @@ MeshCommand mesh_command_from(const Message& message) {
   return command;
 }
 
+// A command is one string.
+Message to_message(const HashRequest& request) {
+  const FileStamp& stamp = request.stamp;
+  return {request.path, std::to_string(stamp.size), std::to_string(stamp.modified), std::to_string(stamp.changed)};
+}
+
+std::optional<HashRequest> hash_request_from(const Message& message) {
+  if (message.size() != 4) return std::nullopt;
+  const auto size = integer_from(message[1]), modified = integer_from(message[2]), changed = integer_from(message[3]);
+  if (!size || !modified || !changed) return std::nullopt;
+  return HashRequest{message[0], {static_cast<std::uint64_t>(*size), *modified, *changed}};
+}
+
 }  // namespace raycone

@@ -258,7 +258,7 @@ class BatchRun {
       const std::string output = path_of_output(planned.mesh);
       std::error_code error;  // where it matters, the worker will notice and say so
       if (options_.writes) fs::create_directories(fs::path(output).parent_path(), error);
-      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp.size});
+      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp});
     }
     return jobs_;
   }
@@ -283,7 +283,6 @@ class BatchRun {
     row.mesh = mesh.name;
     row.message = plain_text(row.message, "?");  // a mesh's name in it may have line feeds
     if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
-    if (row.sha256.empty()) row.sha256 = hash_of(mesh);
     RowOrigin origin{.stamp = mesh.stamp,
                      .companions = std::move(result.companions),
                      .version = options_.version,
@@ -295,19 +294,6 @@ class BatchRun {
                      .thumbnail = std::move(result.thumbnail),
                      .path = path_from_root(mesh)};
     return {std::move(row), std::move(origin)};
-  }
-
-  // Of a mesh that failed: what tells later whether it is still the same. A pipe would have to be waited for. Empty
-  // where the mesh has changed since it was found: what was read then is not known.
-  static std::string hash_of(const BatchMesh& mesh) {
-    std::error_code error;
-    if (!fs::is_regular_file(mesh.path, error)) return "";
-    try {
-      const std::string hash = sha256_of_file(mesh.path);
-      return stamp_of(mesh.path) == mesh.stamp ? hash : "";
-    } catch (const InputError&) {
-      return "";
-    }
   }
 
   // Now, or where clocks differ or are set back at least later than `earlier`: nanoseconds since 1970.

@@ -19,6 +19,7 @@
 #include "app/process/exit_code.h"
 #include "app/process/limits.h"
 #include "app/process/signals.h"
+#include "io/files/file_error.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {
@@ -48,10 +49,16 @@ MeshCommand command_for(const SupervisedJob& job, int threads, const SupervisorO
   return command;
 }
 
+Clock::duration seconds(double count) {
+  constexpr double kMost = 1e9;  // 30 years: what clocks can add
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(count, kMost)));
+}
+
 // A worker and what it is doing.
 struct Slot {
   std::unique_ptr<WorkerProcess> worker;
   std::optional<Schedule::Start> running;
+  std::optional<JobResult> unhashed;  // all is done but for the mesh's hash
   Clock::time_point deadline;
 };
 
@@ -66,7 +73,10 @@ class Supervisor {
       while (const std::optional<Schedule::Start> start = schedule_.next()) begin(*start);
       if (std::ranges::none_of(slots_, [](const Slot& slot) { return slot.running.has_value(); })) return 0;
       wait(signals);
-      if (const int signal = signals.take()) return signal;
+      if (const int signal = signals.take()) {
+        for (Slot& slot : slots_) finish_unhashed(slot);
+        return signal;
+      }
       for (Slot& slot : slots_) attend_to(slot);
       tick();
     }
@@ -83,7 +93,7 @@ class Supervisor {
  private:
   static std::vector<std::uint64_t> sizes_of(const std::vector<SupervisedJob>& jobs) {
     std::vector<std::uint64_t> sizes;
-    for (const SupervisedJob& job : jobs) sizes.push_back(job.size);
+    for (const SupervisedJob& job : jobs) sizes.push_back(job.stamp.size);
     return sizes;
   }
 
@@ -93,12 +103,10 @@ class Supervisor {
   }
 
   void begin(const Schedule::Start& start) {
-    const SupervisedJob& job = jobs_[start.mesh];
     Slot& slot = idle_slot();
     slot.running = start;
-    slot.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                       std::chrono::duration<double>(std::min(options_.timeout, kMaxTimeout)));
-    ask(slot, to_message(command_for(job, start.threads, options_)));
+    slot.deadline = Clock::now() + seconds(options_.timeout);
+    ask(slot, to_message(command_for(jobs_[start.mesh], start.threads, options_)));
   }
 
   // A worker may have ended since it answered. Throws LimitError.
@@ -123,23 +131,54 @@ class Supervisor {
 
   void attend_to(Slot& slot) {
     if (!slot.running || stopped_) return;
+    if (slot.unhashed) return attend_to_hash(slot);
     if (std::optional<JobResult> result = slot.worker->receive()) {
       const MeshStatus status = result->row.status;
       const bool reusable =
           status == MeshStatus::kOk || status == MeshStatus::kInvalid || status == MeshStatus::kUnwritable;
       if (!reusable) replace(slot);
-      finish(slot, std::move(*result));
+      hash(slot, std::move(*result));
     } else if (slot.worker->ended()) {
       const int wait_status = replace(slot);
-      finish(slot, crash(jobs_[slot.running->mesh].mesh, wait_status));
+      hash(slot, crash(jobs_[slot.running->mesh].mesh, wait_status));
     } else if (Clock::now() >= slot.deadline) {
       replace(slot);
       char limit[32];
       std::snprintf(limit, sizeof limit, "%g", options_.timeout);
-      finish(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
-                          jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
-                              (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)"));
+      hash(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
+                        jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
+                            (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)"));
     }
+  }
+
+  // Has the mesh of a result hashed that does not tell its hash: by a worker, as reading it may take long or hang.
+  void hash(Slot& slot, JobResult result) {
+    constexpr double kPatience = 60.0;  // seconds
+    if (!result.row.sha256.empty()) return finish(slot, std::move(result));
+    const SupervisedJob& job = jobs_[slot.running->mesh];
+    slot.unhashed = std::move(result);
+    slot.deadline = Clock::now() + seconds(std::min(options_.timeout, kPatience));
+    try {
+      ask(slot, to_message(HashRequest{job.mesh, job.stamp}));
+    } catch (const LimitError&) {
+      finish_unhashed(slot);
+    }
+  }
+
+  void attend_to_hash(Slot& slot) {
+    if (const std::optional<JobResult> hashed = slot.worker->receive()) {
+      slot.unhashed->row.sha256 = hashed->row.sha256;
+    } else if (slot.worker->ended() || Clock::now() >= slot.deadline) {
+      replace(slot);
+    } else {
+      return;
+    }
+    finish_unhashed(slot);
+  }
+
+  // Without a hash a mesh is the same only as long as its stamp is.
+  void finish_unhashed(Slot& slot) {
+    if (slot.unhashed) finish(slot, *std::exchange(slot.unhashed, std::nullopt));
   }
 
   // Ends the worker and removes what it was writing. Returns how it ended.
@@ -177,9 +216,6 @@ class Supervisor {
     schedule_.finished(start);
     stopped_ = !handle_(start.mesh, std::move(result), schedule_.progress());
   }
-
-  // 30 years: what clocks can add.
-  static constexpr double kMaxTimeout = 1e9;
 
   const std::vector<SupervisedJob>& jobs_;
   const SupervisorOptions& options_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/file_stamp.h"
 #include "app/batch/job_result.h"
 #include "app/batch/schedule.h"
 #include "app/options/batch_command.h"
@@ -14,9 +15,9 @@
 namespace raycone {
 
 struct SupervisedJob {
-  std::string mesh;        // file to read
-  std::string output;      // file to write
-  std::uint64_t size = 0;  // of the mesh, bytes
+  std::string mesh;    // file to read
+  std::string output;  // file to write
+  FileStamp stamp;     // of the mesh
 };
 
 struct SupervisorOptions {
@@ -32,7 +33,8 @@ struct SupervisorOptions {
 using ResultHandler = std::function<bool(std::size_t job, JobResult result, double progress)>;
 
 // Does all jobs, each in a worker process. A worker is used again after it evaluated or rejected a mesh, and replaced
-// where it ran out of time or memory or crashed. `tick` is called at least four times a second. Returns the one of
+// where it ran out of time or memory or crashed. Results of meshes that were not read to the end have their hash, too,
+// where a worker can tell it in time. `tick` is called at least four times a second. Returns the one of
 // `signals` that interrupted it, or 0; either way no worker is left, nor any file that one was writing. Call in a
 // process of one thread.
 [[nodiscard]] int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options,

@@ -8,9 +8,13 @@
 
 #include <cerrno>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <span>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -28,6 +32,7 @@
 #include "app/run/written_files.h"
 #include "core/machine/threads.h"
 #include "io/files/base64.h"
+#include "io/files/file_error.h"
 #include "io/files/read_file.h"
 
 namespace raycone {
@@ -184,6 +189,19 @@ JobResult evaluate(const PointsCommand& command, const RunLimits& limits) {
   return result_of(run_points(command, limits), "");
 }
 
+// Of a file that could not be evaluated: what tells later whether it is still the same. A pipe would have to be waited
+// for. Empty where the file is no longer the one that was asked about.
+std::string hash_of(const HashRequest& request) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(request.path, error)) return "";
+  try {
+    const std::string hash = sha256_of_file(request.path);
+    return stamp_of(request.path) == request.stamp ? hash : "";
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 template <typename OneCommand>
 JobResult perform(const OneCommand& command) {
   reset_peak_memory();
@@ -197,6 +215,16 @@ JobResult perform(const OneCommand& command) {
   }
 }
 
+JobResult answer_to(const Message& message) {
+  if (const std::optional<HashRequest> request = hash_request_from(message)) {
+    JobResult result;
+    result.row.status = MeshStatus::kInvalid;  // it has no figures
+    result.row.sha256 = hash_of(*request);
+    return result;
+  }
+  return std::visit([](const auto& one) { return perform(one); }, mesh_command_from(message));
+}
+
 }  // namespace
 
 ExitCode run_worker() {
@@ -204,9 +232,7 @@ ExitCode run_worker() {
   std::set_terminate(end_without_memory);
   Connection supervisor(take_socket());
   while (const std::optional<Message> message = supervisor.receive()) {
-    const MeshCommand command = mesh_command_from(*message);
-    const JobResult result = std::visit([](const auto& one) { return perform(one); }, command);
-    if (!supervisor.send(to_message(result))) break;
+    if (!supervisor.send(to_message(answer_to(*message)))) break;
     return_unused_memory(peak_memory());
   }
   return ExitCode::kDone;

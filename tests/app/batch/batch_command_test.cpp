@@ -82,6 +82,7 @@ TEST_F(Batch, PoisonIsContained) {
       (Statuses{
           {"a.obj", "ok"}, {"big.obj", "memory"}, {"far.obj", "memory"}, {"pipe.obj", "timeout"}, {"z.obj", "ok"}}));
   for (const char* const mesh : {"big.obj", "far.obj", "pipe.obj"}) EXPECT_EQ(rows().at(mesh).exit, 4) << mesh;
+  for (const auto& [mesh, row] : rows()) EXPECT_EQ(row.sha256.size(), mesh == "pipe.obj" ? 0U : 64U) << mesh;
   EXPECT_NE(result.err.find(pipe + ": not finished within 10 seconds"), std::string::npos) << result.err;
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
 }

@@ -167,6 +167,17 @@ TEST(CommandMessage, GivesWhatWasSent) {
   EXPECT_EQ(std::get<GridReference>(received.lattice).name, "name");
 }
 
+TEST(CommandMessage, ARequestForAHashIsNoCommand) {
+  const Message message = to_message(HashRequest{"a.stl", {1, -2, 3}});
+  const std::optional<HashRequest> received = hash_request_from(message);
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->path, "a.stl");
+  EXPECT_EQ(received->stamp, (FileStamp{1, -2, 3}));
+  EXPECT_THROW((void)mesh_command_from(message), std::runtime_error);
+  EXPECT_FALSE(hash_request_from(to_message(LatticeCommand())));
+  EXPECT_FALSE(hash_request_from({"a.stl", "1", "x", "3"}));
+}
+
 TEST(CommandMessage, OfADamagedSupervisorIsRefused) {
   const Message message = to_message(LatticeCommand());
   EXPECT_THROW((void)mesh_command_from({}), std::runtime_error);

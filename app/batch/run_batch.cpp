@@ -148,7 +148,7 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
   SupervisorOptions options;
   options.for_each = command.for_each;
   options.threads = command.run.threads ? *command.run.threads : default_threads();
-  options.jobs = std::min(command.jobs.value_or(options.threads), options.threads);
+  options.jobs = std::min({command.jobs.value_or(options.threads), options.threads, kMaxJobs});
   options.memory_limit = command.run.memory_limit ? *command.run.memory_limit
                                                   : available_memory() / static_cast<std::uint64_t>(options.jobs);
   options.timeout = command.run.timeout.value_or(kDefaultTimeout);

@@ -46,6 +46,13 @@ void Schedule::finished(const Start& start) {
   ++free_jobs_;
 }
 
+void Schedule::put_off(const Start& start) {
+  waiting_.push_front(start.mesh);
+  waiting_weight_ += weight(start.mesh);
+  free_threads_ += start.threads;
+  free_jobs_ = 0;
+}
+
 double Schedule::progress() const { return all_weight_ > 0.0 ? done_weight_ / all_weight_ : 1.0; }
 
 }  // namespace raycone

@@ -26,6 +26,8 @@ class Schedule {
   // What shall start now, if anything.
   [[nodiscard]] std::optional<Start> next();
   void finished(const Start& start);
+  // It could not start: it is next again, and from now on no more meshes run at a time than do now.
+  void put_off(const Start& start);
 
   // The part of the work that has been done, 0 to 1.
   [[nodiscard]] double progress() const;

@@ -1,8 +1,11 @@
 #include "app/batch/supervisor.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -54,6 +57,16 @@ Clock::duration seconds(double count) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(count, kMost)));
 }
 
+// Throws LimitError where so few are left that another worker would take those of the tables of results.
+void require_descriptors() {
+  constexpr int kSpare = 12;
+  const int lowest = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (lowest >= 0) close(lowest);
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  if (lowest < 0 || limit.rlim_cur < static_cast<rlim_t>(lowest) + kSpare) throw LimitError("too few open files");
+}
+
 // A worker and what it is doing.
 struct Slot {
   std::unique_ptr<WorkerProcess> worker;
@@ -71,7 +84,7 @@ class Supervisor {
     for (;;) {
       if (stopped_) return 0;
       while (const std::optional<Schedule::Start> start = schedule_.next()) begin(*start);
-      if (std::ranges::none_of(slots_, [](const Slot& slot) { return slot.running.has_value(); })) return 0;
+      if (none_runs()) return 0;
       wait(signals);
       if (const int signal = signals.take()) {
         for (Slot& slot : slots_) finish_unhashed(slot);
@@ -104,9 +117,20 @@ class Supervisor {
 
   void begin(const Schedule::Start& start) {
     Slot& slot = idle_slot();
-    slot.running = start;
-    slot.deadline = Clock::now() + seconds(options_.timeout);
-    ask(slot, to_message(command_for(jobs_[start.mesh], start.threads, options_)));
+    try {
+      if (!slot.worker && !none_runs()) require_descriptors();
+      ask(slot, to_message(command_for(jobs_[start.mesh], start.threads, options_)));
+      slot.running = start;
+      slot.deadline = Clock::now() + seconds(options_.timeout);
+    } catch (const LimitError&) {
+      if (none_runs()) throw;
+      schedule_.put_off(start);  // those that run will do it
+      std::erase_if(slots_, [](const Slot& one) { return !one.worker; });
+    }
+  }
+
+  [[nodiscard]] bool none_runs() const {
+    return std::ranges::none_of(slots_, [](const Slot& slot) { return slot.running.has_value(); });
   }
 
   // A worker may have ended since it answered. Throws LimitError.

@@ -184,7 +184,6 @@ Command parse_batch(const Values& values) {
   command.search = {operands, values.given("--null"), full_names, format};
   if (values.given("--shard")) command.shard = parse_shard(values.text("--shard"));
   command.run = parse_run(values);
-  constexpr std::int64_t kMaxJobs = 1024;  // each has open files
   if (values.given("--jobs")) command.jobs = static_cast<int>(values.integer("--jobs", 1, kMaxJobs));
   command.retry_failed = values.given("--retry-failed");
   command.fail_fast = values.given("--fail-fast");

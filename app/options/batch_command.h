@@ -30,6 +30,9 @@ struct Shard {
   std::uint64_t count = 1;
 };
 
+// Largest number of meshes at a time: each takes an open file.
+inline constexpr int kMaxJobs = 1024;
+
 // What is done to each mesh of a batch, how, and where results go.
 struct BatchCommand {
   MeshSearch search;
@@ -39,7 +42,7 @@ struct BatchCommand {
   MeshCommand for_each;        // its files, threads and memory are those of each mesh in turn
   std::string result_options;  // those that results depend on, as text: kept beside them
   RunOptions run;
-  std::optional<int> jobs;  // meshes at a time; else as many as threads
+  std::optional<int> jobs;  // meshes at a time; else as many as threads, at most kMaxJobs
   bool retry_failed = false;
   bool fail_fast = false;
   bool exit_zero = false;  // also where meshes failed

@@ -87,6 +87,16 @@ TEST_F(Batch, PoisonIsContained) {
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
 }
 
+TEST_F(Batch, GoesOnWithTheWorkersThatThereAre) {
+  for (int i = 0; i < 30; ++i) put(std::to_string(i) + ".obj");
+  std::string words = "ulimit -n 20; exec";
+  for (const std::string& word : raycone_command(arguments({"--threads", "30", "--format", "csv"})))
+    words += " " + word;
+  const CommandResult result = Command({"/bin/sh", "-c", words}).wait();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(rows().size(), 30U);
+}
+
 TEST_F(Batch, AgainDoesNothingButWhatIsMissingOrOutOfDate) {
   for (const char* const name : {"a.obj", "b.obj", "c.obj", "d.obj"}) put(name);
   ASSERT_EQ(run().status, 0);

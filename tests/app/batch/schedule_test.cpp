@@ -36,6 +36,18 @@ TEST(Schedule, RunsSmallMeshesSideBySide) {
   EXPECT_EQ(meshes_of(starts(schedule)), (std::vector<std::size_t>{8}));
 }
 
+TEST(Schedule, PutsOffWhatCannotStartAndThenRunsNoMoreThanDo) {
+  Schedule schedule(std::vector<std::uint64_t>(10, 1000), 8, 8);
+  std::vector<Schedule::Start> running;
+  for (int i = 0; i < 3; ++i) running.push_back(*schedule.next());
+  schedule.put_off(*schedule.next());
+  EXPECT_FALSE(schedule.next());
+  schedule.finished(running[0]);
+  EXPECT_EQ(meshes_of(starts(schedule)), (std::vector<std::size_t>{3})) << "the one that was put off";
+  schedule.finished(running[1]);
+  EXPECT_EQ(meshes_of(starts(schedule)), (std::vector<std::size_t>{4}));
+}
+
 TEST(Schedule, GivesAMeshThatOutweighsTheOthersMostThreads) {
   std::vector<std::uint64_t> sizes(20, 1000);
   sizes[13] = 300 * kMega;

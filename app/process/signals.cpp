@@ -118,6 +118,7 @@ void set_up_process() {
   handle(SIGXCPU, clean_up_and_die);
   handle(SIGPIPE, clean_up_and_die);
   signal(SIGXFSZ, SIG_IGN);
+  signal(SIGCHLD, SIG_DFL);  // where it is ignored, the system does not tell how children ended
   sigset_t ours;
   sigemptyset(&ours);
   for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGPIPE, SIGALRM}) sigaddset(&ours, signal);

@@ -8,7 +8,7 @@ namespace raycone {
 
 // Call once, first thing. Every signal that ends a process (but SIGKILL and those of real time) removes temporary files
 // first; those of faults say in a line that they are internal errors. Signals that were ignored stay so, as under
-// nohup, but for SIGPIPE and SIGXCPU. A file-size limit becomes a write error; closed standard descriptors are
+// nohup, but for SIGPIPE, SIGXCPU and SIGCHLD. A file-size limit becomes a write error; closed standard descriptors are
 // occupied, so that no file is opened in their place.
 void set_up_process();
 

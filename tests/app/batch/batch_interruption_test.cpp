@@ -160,6 +160,15 @@ TEST_F(BatchInterruption, AWorkerThatCrashesCostsItsRowAndIsReplaced) {
   EXPECT_NE(run({"--resolution", "300", "--dry-run"}).out.find("a.obj\tcrashed before"), std::string::npos);
 }
 
+// Some launchers leave that to their children, and the system then does not tell how those of raycone ended.
+TEST_F(BatchInterruption, TellsHowAWorkerEndedWhereSigchldWasIgnored) {
+  put_long();
+  Command command(long_run(), {.ignored_signals = {SIGCHLD}});
+  for (const pid_t worker : wait_for_workers(command)) kill(worker, SIGKILL);
+  EXPECT_EQ(command.wait().status, 5);
+  for (const auto& [mesh, row] : rows()) EXPECT_EQ(row.exit, 128 + SIGKILL) << mesh << ": " << row.message;
+}
+
 // The worker answers and dies while the supervisor looks elsewhere.
 TEST_F(BatchInterruption, AWorkerThatDiesBetweenMeshesCostsNone) {
   fs::create_directories(meshes_);

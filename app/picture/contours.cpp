@@ -46,7 +46,9 @@ void trace(const Square& square, double level, const std::function<void(const Pi
 
 void trace_all_levels(const Square& square, const Levels& levels,
                       const std::function<void(const PictureSegment&)>& line) {
+  constexpr double kMost = 16;  // lines in a square of a pixel; more are none, and may be millions
   const auto [least, most] = std::ranges::minmax(square, {}, &Corner::value);
+  if (most.value - least.value > kMost * levels.step) return;
   for (double n = std::floor((least.value - levels.offset) / levels.step) + 1.0;; n += 1.0) {
     const double level = levels.offset + n * levels.step;
     if (!(level <= most.value)) return;

@@ -22,7 +22,8 @@ struct Levels {
 };
 
 // The lines where the values (row by row from the top, at pixel centres) have one of the levels. Values jump at the
-// surface: the squares `cut` by it have no contour. `line` is called with each piece.
+// surface: the squares `cut` by it have no contour; nor have those that more than sixteen levels would fill. `line` is
+// called with each piece.
 void trace_contours(std::span<const double> values, std::int64_t width, std::int64_t height,
                     const Raster<std::uint8_t>& cut, const Levels& levels,
                     const std::function<void(const PictureSegment& piece)>& line);

@@ -51,27 +51,30 @@ struct Appearance {
   Legend legend;
 };
 
-LegendBar bar_of(const ColourMap& colours, const Levels& levels) {
+// A bar with the levels that are within the range; none has contours, nor has the picture, where they would hide the
+// colours.
+Appearance with_contours(const std::string& title, const ColourMap& colours, const Levels& levels) {
   const ColourRange& range = colours.range();
-  LegendBar bar{colours, numbers_in(range), {}};
+  Appearance appearance{colours, levels, {title, LegendBar{colours, numbers_in(range), {}}, {}}};
   const double first = std::ceil((range.least() - levels.offset) / levels.step);
   const double last = std::floor((range.most() - levels.offset) / levels.step);
-  if (last - first >= kMostContours) return bar;
-  for (double n = first; n <= last; n += 1.0) bar.lines.push_back(levels.offset + n * levels.step);
-  return bar;
+  if (last - first >= kMostContours) {
+    appearance.contours.reset();
+    return appearance;
+  }
+  for (double n = first; n <= last; n += 1.0) appearance.legend.bar->lines.push_back(levels.offset + n * levels.step);
+  return appearance;
 }
 
 Appearance of_winding_numbers(std::span<const double> values) {
-  const ColourMap colours(colour_range(values));
-  return {colours, Levels{}, {"w", bar_of(colours, {}), {}}};
+  return with_contours("w", ColourMap(colour_range(values)), Levels{});
 }
 
 Appearance of_distances(std::span<const double> values) {
   const ColourMap colours(distance_colour_range(values));
   const std::vector<Tick> numbers = numbers_in(colours.range());
   const double step = numbers.size() < 2 ? colours.range().half_width : numbers[1].value - numbers[0].value;
-  const Levels levels{0.0, step};
-  return {colours, levels, {"sdf", bar_of(colours, levels), {}}};
+  return with_contours("sdf", colours, {0.0, step});
 }
 
 Appearance of_inside() {

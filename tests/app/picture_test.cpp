@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/picture/colour_map.h"
+#include "app/picture/contours.h"
 #include "app/picture/framed_picture.h"
 #include "app/picture/slice_picture.h"
 #include "app/picture/ticks.h"
@@ -147,6 +148,36 @@ TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
 
 // Hundreds of parts with long names, in pictures of all sizes: what does not fit is left out. (Pixels outside of an
 // image are memory of something else, which sanitizers notice.)
+// Of the pixels of a picture of values that rise evenly from one end to the other, whether any is darker than its
+// colour.
+bool has_contours(double least, double most) {
+  const PlaneView view = view_of(200, 4);
+  std::vector<double> values(static_cast<std::size_t>(view.width * view.height));
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    values[n] = least + (most - least) * static_cast<double>(n % 200) / 199.0;
+  }
+  const Image image = slice_picture(view, {PictureField::kWinding, values}, {}, false);
+  const ColourMap colours(colour_range(values));
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (image.pixels()[n] != colours(values[n])) return true;
+  }
+  return false;
+}
+
+TEST(SlicePicture, HasNoContoursWhereTheyWouldHideTheColours) {
+  EXPECT_TRUE(has_contours(-5.9, 6.9));
+  EXPECT_FALSE(has_contours(-8.9, 9.9));
+  EXPECT_FALSE(has_contours(-1e12, 1e12)) << "and ends";
+}
+
+// Where nearly all values are within a range of few levels.
+TEST(TraceContours, LeaveOutSquaresThatTheyWouldFill) {
+  const std::vector<double> values{0.0, 1.0, 1.0, 1e12, 0.0, 1.0, 1.0, 1e12};
+  int lines = 0;
+  trace_contours(values, 4, 2, Raster<std::uint8_t>(3, 1), Levels{}, [&](const PictureSegment&) { ++lines; });
+  EXPECT_EQ(lines, 1);
+}
+
 TEST(SlicePicture, OfLabelsHasALegendThatFits) {
   const std::vector<std::string> names(500, "WWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWW \xc3\xa9 mmmmmm");
   for (const auto& [width, height] : std::vector<std::pair<std::int64_t, std::int64_t>>{

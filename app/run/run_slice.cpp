@@ -20,9 +20,11 @@
 #include "app/process/version.h"
 #include "app/run/field_run.h"
 #include "app/run/fields.h"
+#include "app/run/label_volume.h"
 #include "app/run/labels.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/mesh_run.h"
+#include "app/run/slabs.h"
 #include "app/run/slice_choice.h"
 #include "app/run/written_files.h"
 #include "app/text/plain_text.h"
@@ -41,14 +43,23 @@ bool is_on_lattice(const Slice& slice, const FieldOptions& field) {
 // Points evaluated at a time.
 constexpr std::int64_t kPixelBatch = std::int64_t{1} << 18;
 
+// Bytes that values of all pixels take while they are evaluated, beside themselves. Those of points come in batches.
+double evaluation_memory(const Slice& slice, const FieldOptions& field, const RunReport& report) {
+  if (field.has(Field::kLabel)) {
+    const double volume = slice.lattice ? LabelVolume::bytes(*slice.lattice, report.parts.size()) : 0.0;
+    return static_cast<double>(report.samples) * sizeof(std::int32_t) + volume;
+  }
+  if (!is_on_lattice(slice, field)) return 0.0;
+  return slab_memory(whole(*slice.lattice), field, {.open = report.exterior_edges > 0});
+}
+
 // Refuses pictures that cannot fit, before any work on them. Samples are gone when the picture is made.
-void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunLimits& limits) {
-  const double pixels = static_cast<double>(slice.view.width) * static_cast<double>(slice.view.height);
-  const bool on_lattice = is_on_lattice(slice, command.field);
-  double samples = on_lattice ? static_cast<double>(FieldSamples::bytes_per_sample(command.field)) : 0.0;
-  if (command.field.has(Field::kLabel)) samples = sizeof(std::int32_t) + sizeof(std::uint8_t);
+void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
+                        const RunLimits& limits) {
+  if (!is_on_lattice(slice, command.field)) check_points_memory(command.mesh, report.faces, command.field, limits);
+  const double values = static_cast<double>(report.samples) * sizeof(double);
   const double picture = slice_picture_bytes(slice.view, command.framed);
-  const double bytes = pixels * sizeof(double) + std::max(pixels * samples, picture);
+  const double bytes = values + std::max(evaluation_memory(slice, command.field, report), picture);
   check_memory(command.mesh.path, bytes, limits.memory());
 }
 
@@ -82,6 +93,7 @@ void for_pixels(const PlaneView& view, const Visit& visit) {
 void evaluate_field(TriangleMesh mesh, const Slice& slice, const FieldOptions& field, std::span<double> values,
                     MeshRun& run) {
   FieldRun fields(run, std::move(mesh), field, static_cast<double>(values.size()));
+  if (!is_on_lattice(slice, field)) fields.prepare_points();
   std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
   if (is_on_lattice(slice, field)) {
     fields.evaluate(*slice.lattice, whole(*slice.lattice), done);
@@ -182,7 +194,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
   run.print_warnings();
 
-  check_slice_memory(slice, command, limits);
+  check_slice_memory(slice, command, report, limits);
   if (values_file) values_file->reserve(report.samples * sizeof(double));
   std::vector<double> values(report.samples);
   if (cut.parts) {

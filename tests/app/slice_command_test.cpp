@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -237,6 +238,44 @@ TEST_F(Slice, ReportsBothOptionsUp) {
   EXPECT_NE(text.find("\"--up=1,0,0\""), std::string::npos) << text;
   EXPECT_NE(text.find("\"--up=y-to-z\""), std::string::npos) << text;
   EXPECT_EQ(text.find("\"--up=0,1,0\""), std::string::npos) << text;
+}
+
+// A pixel takes 8 bytes as a number and, until it is one, 11 as a sample, and 8 where the mesh is open.
+TEST_F(Slice, RefusesPicturesThatCannotFitWithTheNumber) {
+  const std::string soup = dir_ / "soup.obj";
+  write_text(soup, triangle_soup(200));
+  const auto limited = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"slice", soup, "-o", picture_, "--no-legend", "--threads", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_raycone(words);
+  };
+  const CommandResult lattice = limited({"--size", "4000", "--memory-limit", "380M"});
+  EXPECT_EQ(lattice.status, 4);
+  EXPECT_NE(lattice.err.find("needs about "), std::string::npos) << lattice.err;
+}
+
+// A sheet of n x n squares.
+std::string sheet(int n) {
+  std::ostringstream obj;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) obj << "v " << i << ' ' << j << ' ' << (i * j) % 7 << '\n';
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j + 1, b = a + n + 1;
+      obj << "f " << a << ' ' << b << ' ' << b + 1 << "\nf " << a << ' ' << b + 1 << ' ' << a + 1 << '\n';
+    }
+  }
+  return obj.str();
+}
+
+// Which takes twenty times as long as the eight points.
+TEST_F(Slice, ReportsThePreparationOfPointsAsSuch) {
+  write_text(cube_, sheet(300));
+  const std::string report = dir_ / "report.json";
+  ASSERT_EQ(slice({"--normal", "1,1,1", "--size", "8", "--report", report}).status, 0);
+  const nlohmann::json seconds = nlohmann::json::parse(contents(report))["seconds"];
+  EXPECT_GT(seconds["prepare"].get<double>(), 2 * seconds["evaluate"].get<double>());
 }
 
 TEST_F(Slice, LeavesNothingBehindWhereItFails) {

@@ -132,8 +132,9 @@ MeshOptions parse_meshes(const Values& values, const FieldOptions& field) {
   if (!mesh.further.empty() && !field.has(Field::kLabel)) {
     throw UsageError("unexpected operand " + mesh.further.front() + ", expected one mesh, or --field label");
   }
-  for (const std::string& path : mesh.further) {
-    if (path.empty() || path == "@") throw UsageError("MESH: expected a file, not an empty name");
+  const auto is_no_name = [](const std::string& path) { return path.empty() || path == "@"; };
+  if (field.has(Field::kLabel) && (is_no_name(mesh.path) || std::ranges::any_of(mesh.further, is_no_name))) {
+    throw UsageError("MESH: expected a file, not an empty name");
   }
   return mesh;
 }

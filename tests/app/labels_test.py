@@ -426,6 +426,8 @@ class Refusals(Labels):
         self.refused("slice left_lobe.obj -o l.png --field label,inside", 1, "--field label,inside: expected winding")
         self.refused("batch left_lobe.obj --out-dir out --field label", 1, "expected --parts group or component")
         self.refused("lattice left_lobe.obj right.obj -o right.obj --format csv --field label", 1, "is input and output")
+        for meshes in ("@", "@ right.obj", "right.obj @"):
+            self.refused("lattice %s -o l.npy --field label" % meshes, 1, "MESH: expected a file, not an empty name")
         self.assertEqual([name for name in os.listdir() if name.startswith("l.")], [])
 
     def test_what_cannot_be_read(self):

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "app/run/lattice_choice.h"
@@ -14,8 +15,8 @@ namespace {
 
 class SampledPoints final : public PointReader {
  public:
-  SampledPoints(PointSampler sampler, bool single, bool on_surface)
-      : sampler_(std::move(sampler)), single_(single), on_surface_(on_surface) {}
+  SampledPoints(std::string name, PointSampler sampler, bool single, bool on_surface)
+      : name_(std::move(name)), sampler_(std::move(sampler)), single_(single), on_surface_(on_surface) {}
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.resize(static_cast<std::size_t>(std::min<std::uint64_t>(max, sampler_.size() - drawn_)));
@@ -38,16 +39,18 @@ class SampledPoints final : public PointReader {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return sampler_.size(); }
 
  private:
-  static void round_to_floats(std::vector<Vec3>& points) {
+  void round_to_floats(std::vector<Vec3>& points) const {
     for (Vec3& point : points) {
       for (int axis = 0; axis < 3; ++axis) {
         const double rounded = static_cast<double>(static_cast<float>(point[axis]));
-        if (!std::isfinite(rounded)) throw LimitError("points are too large for 32 bits; see --dtype and --scale");
+        if (!std::isfinite(rounded))
+          throw LimitError(name_ + ": points are too large for 32 bits; see --dtype and --scale");
         point[axis] = rounded;
       }
     }
   }
 
+  std::string name_;  // of the mesh's file
   PointSampler sampler_;
   bool single_, on_surface_;
   std::vector<std::int64_t> faces_;
@@ -72,7 +75,7 @@ std::unique_ptr<PointReader> draw_points(const std::string& name, const Triangle
     throw InputError(name + ": no triangle has an area, expected a surface to draw from");
   if (!sampler.is_finite())
     throw LimitError(name + ": box or noise is too large, expected points within double precision; see --scale");
-  return std::make_unique<SampledPoints>(std::move(sampler), single, draws_on_surface(request));
+  return std::make_unique<SampledPoints>(name, std::move(sampler), single, draws_on_surface(request));
 }
 
 }  // namespace raycone

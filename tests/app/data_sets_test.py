@@ -399,7 +399,8 @@ class Points(DataSets):
             again = self.points("%s given.npz --field winding,inside,sdf --dtype %s" % (TEAPOT, dtype))
             for name in ("w", "inside", "sdf"):
                 self.assertTrue((values[name] == again[name]).all(), name)
-        self.refused("points %s --sample uniform=5 -o a.npz --dtype f32 --scale 1e39" % CUBE, 4, "too large for 32 bits")
+        self.refused("points %s --sample uniform=5 -o a.npz --dtype f32 --scale 1e39" % CUBE, 4,
+                     CUBE + ": points are too large for 32 bits")
 
 
 class Meshes(DataSets):

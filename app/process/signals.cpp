@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <sys/signalfd.h>
 #include <sys/time.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,7 +32,14 @@ constexpr double kMaxTimeout = 1e8;
 // ends it though nobody meant it.
 constexpr std::array kInterruptions{SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUSR2,
                                     SIGALRM, SIGVTALRM, SIGPROF, SIGPOLL, SIGPWR,  SIGSTKFLT};
-constexpr std::array kFaults{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGSYS, SIGTRAP};
+struct Fault {
+  int signal;
+  const char* description;
+};
+constexpr std::array kFaults{
+    Fault{SIGSEGV, "Segmentation fault"},      Fault{SIGBUS, "Bus error"}, Fault{SIGILL, "Illegal instruction"},
+    Fault{SIGFPE, "Floating point exception"}, Fault{SIGABRT, "Aborted"},  Fault{SIGSYS, "Bad system call"},
+    Fault{SIGTRAP, "Trace/breakpoint trap"}};
 
 // A handler can reach nothing else; written before the timer starts, constant afterwards.
 char timeout_message[8192];
@@ -42,7 +50,9 @@ void write_to_stderr(const char* text) {
 
 // The progress line, if any, must not stay in front of what follows.
 void erase_progress_line() {
-  if (isatty(STDERR_FILENO)) write_to_stderr("\r\033[K");
+  termios settings{};
+  const bool is_terminal = tcgetattr(STDERR_FILENO, &settings) == 0;
+  if (is_terminal) write_to_stderr("\r\033[K");
 }
 
 // Installed with SA_RESETHAND: the signal raised again takes its default action as soon as this returns.
@@ -59,8 +69,9 @@ extern "C" void clean_up_and_crash(int signal) {
   remove_temporary_files();
   erase_progress_line();
   write_to_stderr("raycone: internal error, please report: ");
-  const char* const description = sigdescr_np(signal);
-  write_to_stderr(description ? description : "unknown signal");
+  for (const Fault& fault : kFaults) {
+    if (fault.signal == signal) write_to_stderr(fault.description);
+  }
   write_to_stderr("\n");
   raise(signal);
 }
@@ -112,8 +123,8 @@ void set_up_process() {
   for (const int signal : kInterruptions) {
     if (is_set_to(signal, SIG_DFL)) handle(signal, clean_up_and_die);
   }
-  for (const int signal : kFaults) {
-    if (is_set_to(signal, SIG_DFL)) handle(signal, clean_up_and_crash);
+  for (const Fault& fault : kFaults) {
+    if (is_set_to(fault.signal, SIG_DFL)) handle(fault.signal, clean_up_and_crash);
   }
   handle(SIGXCPU, clean_up_and_die);
   handle(SIGPIPE, clean_up_and_die);
@@ -127,8 +138,8 @@ void set_up_process() {
 
 void leave_signals_to_supervisor() {
   for (const int signal : kInterruptions) ::signal(signal, SIG_IGN);
-  for (const int signal : kFaults) {
-    if (is_set_to(signal, clean_up_and_crash)) ::signal(signal, SIG_DFL);
+  for (const Fault& fault : kFaults) {
+    if (is_set_to(fault.signal, clean_up_and_crash)) ::signal(fault.signal, SIG_DFL);
   }
 }
 

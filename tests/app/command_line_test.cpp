@@ -230,8 +230,8 @@ TEST_F(CommandLine, VersionIsAResultAndNamesTheLibraries) {
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(result.out.rfind("raycone " RAYCONE_VERSION " (", 0), 0U) << result.out;
   EXPECT_NE(result.out.find("commit"), std::string::npos) << result.out;
-  for (const char* const library :
-       {"CGAL", "Embree", "Highway", "OpenVDB", "TBB", "CLI11", "nlohmann-json", "nettle", "libpng", "zlib"}) {
+  for (const char* const library : {"CGAL", "GMP", "Embree", "Highway", "OpenVDB", "TBB", "CLI11", "nlohmann-json",
+                                    "tinygltf", "Draco", "Expat", "nettle", "libpng", "zlib", "Zstandard"}) {
     const std::regex with_version(std::string(library) + " [0-9]+\\.[0-9]");
     EXPECT_TRUE(std::regex_search(result.out, with_version)) << library << " in " << result.out;
   }

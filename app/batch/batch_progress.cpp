@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/process/messages.h"
+#include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
 namespace raycone {
@@ -27,7 +28,7 @@ void BatchProgress::show() {
 void BatchProgress::rewrite() {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   std::string line = std::to_string(done_) + '/' + counted(meshes_, "mesh");
-  if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
+  if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed, "meshes/s");
   if (part_ > 0.0) line += "  " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
   if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";
   std::fprintf(stderr, "\r\033[K%s", line.c_str());
@@ -40,7 +41,7 @@ void BatchProgress::write_line() {
   const double elapsed = std::chrono::duration<double>(last_line_ - start_).count();
   std::string line =
       std::to_string(done_) + '/' + counted(meshes_, "mesh") + ", " + std::to_string(failed_) + " failed";
-  if (elapsed > 0.0) line += ", " + readable_count(static_cast<double>(done_) / elapsed) + "meshes/s";
+  if (elapsed > 0.0) line += ", " + readable_count(static_cast<double>(done_) / elapsed, "meshes/s");
   if (part_ > 0.0 && done_ < meshes_) line += ", " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
   print_message(line);
 }

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <map>
 
-#include "app/process/progress.h"
+#include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
 namespace raycone {
@@ -39,7 +39,7 @@ std::string of_evaluated(const BatchOutcome& outcome) {
   const std::size_t done = outcome.evaluated.size() - failed;
   std::string line = counted(done, "mesh") + " done, " + std::to_string(failed) + " failed" +
                      failures_by_cause(outcome.evaluated) + time;
-  if (outcome.seconds > 0.0) line += ", " + readable_count(samples / outcome.seconds) + "samples/s";
+  if (outcome.seconds > 0.0) line += ", " + readable_count(samples / outcome.seconds, "samples/s");
   return line;
 }
 

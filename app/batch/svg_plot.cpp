@@ -7,6 +7,7 @@
 #include <map>
 
 #include "app/text/html.h"
+#include "app/text/readable_count.h"
 
 namespace raycone {
 namespace {
@@ -132,13 +133,13 @@ double start_of(int bin) { return std::pow(10.0, static_cast<double>(bin) / kBin
 
 std::string readable_quantity(double value, Quantity quantity) {
   if (value == 0.0) return "0";
+  if (quantity == Quantity::kCount) return readable_count(value);
   struct Unit {
     double size;
     const char* name;
   };
-  static constexpr Unit kCounts[] = {{1e9, " G"}, {1e6, " M"}, {1e3, " k"}, {1.0, ""}};
   static constexpr Unit kTimes[] = {{1.0, " s"}, {1e-3, " ms"}, {1e-6, " \xC2\xB5s"}, {1e-9, " ns"}};
-  const Unit* unit = quantity == Quantity::kCount ? kCounts : kTimes;
+  const Unit* unit = kTimes;
   for (int i = 0; i < 3 && value < unit->size * (1.0 - 1e-9); ++i) ++unit;
   return formatted("%.3g", value / unit->size) + unit->name;
 }

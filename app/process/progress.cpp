@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
 namespace raycone {
@@ -22,24 +23,14 @@ void erase_line() { std::fputs("\r\033[K", stderr); }
 std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
   const auto count = static_cast<double>(done);
   const double rate = seconds > 0.0 ? count / seconds : 0.0;
-  if (!total) return counted(done, "sample") + "  " + readable_count(rate) + "samples/s";
+  if (!total) return counted(done, "sample") + "  " + readable_count(rate, "samples/s");
   const auto all = static_cast<double>(*total);
-  std::string line =
-      std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_count(rate) + "samples/s";
+  std::string line = std::to_string(static_cast<int>(100.0 * count / all)) + " %  " + readable_count(rate, "samples/s");
   if (rate > 0.0) line += "  " + readable_time((all - count) / rate) + " left";
   return line;
 }
 
 }  // namespace
-
-std::string readable_count(double count) {
-  constexpr const char* kPrefixes[] = {"", "k", "M", "G"};
-  std::size_t prefix = 0;
-  for (; count >= 1000.0 && prefix + 1 < std::size(kPrefixes); ++prefix) count /= 1000.0;
-  char text[48];
-  std::snprintf(text, sizeof text, "%.3g %s", count, kPrefixes[prefix]);
-  return text;
-}
 
 std::string readable_time(double seconds) {
   const long long whole = std::llround(seconds);

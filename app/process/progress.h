@@ -21,9 +21,6 @@ enum class ProgressMode { kAuto, kAlways, kNever };
 // "1:05", "2:00:00"
 [[nodiscard]] std::string readable_time(double seconds);
 
-// "4.2 M", "870": a count or rate with the prefix of a unit that follows.
-[[nodiscard]] std::string readable_count(double count);
-
 // Rewrites one line about `done` from a thread of its own, at most ten times a second, until stop().
 class Progress {
  public:

@@ -35,12 +35,11 @@ struct PointBatch {
 
 // Where a boundary is summed over or a triangle is searched for, many points that are known to come share much: the
 // more at a time, the less time each takes. That needs memory.
-PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool has_boundary,
-                     const RunLimits& limits) {
+PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool open, const RunLimits& limits) {
   constexpr std::size_t kMany = std::size_t{1} << 18;
   constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 29;
   PointBatch batch;
-  if ((!has_boundary && !command.field.has(Field::kDistance)) || !reader.size()) return batch;
+  if ((!open && !command.field.has(Field::kDistance)) || !reader.size()) return batch;
   if (limits.memory() >= kEnoughMemory) batch.most = kMany;
   batch.gathered = !command.sample;  // places() are those of one batch of the reader
   return batch;
@@ -55,26 +54,6 @@ bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& point
     points.insert(points.end(), more.begin(), more.end());
   }
   return true;
-}
-
-// Answers are handed on whenever the next question would have to be waited for. `source`: the seconds of what reading
-// points is part of.
-void evaluate_points(FieldRun& fields, PointLabels* labels, PointReader& reader, const PointBatch& batch,
-                     PointWriter& writer, MeshRun& run, double& source) {
-  std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
-  std::vector<Vec3> points;
-  for (;;) {
-    if (reader.would_block()) writer.flush();
-    if (!timed(source, [&] { return next(reader, batch, points); })) return;
-    fields.evaluate(points, done);
-    if (labels) timed(run.report.seconds.evaluate, [&] { labels->evaluate(points, fields.labels()); });
-    const SurfacePlaces places = reader.places();
-    timed(run.report.seconds.write, [&] {
-      writer.write(points, fields.values());
-      if (!places.faces.empty()) writer.write_places(places.normals, places.faces);
-    });
-    run.report.samples += points.size();
-  }
 }
 
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
@@ -113,46 +92,84 @@ TriangleMesh load(const PointsCommand& command, MeshRun& run, std::optional<Labe
   return whole ? run.prepare(parts->whole()) : TriangleMesh{};
 }
 
+// Points that are ready to be read, evaluated and written, batch by batch.
+struct PointWork {
+  FieldOptions field;  // but that labels verify themselves
+  std::unique_ptr<PointReader> reader;
+  std::unique_ptr<PointWriter> writer;
+  std::optional<PointLabels> labels;  // where they are asked for
+  std::optional<FieldRun> fields;
+};
+
+// Reserves room for the values of as many points as are known to come.
+std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const PointReader& reader, MeshRun& run) {
+  OutputDescription description = description_of(run.report, command.field, command.encoding);
+  description.single_points = draws_single(command);
+  description.has_places = command.sample && draws_on_surface(*command.sample);
+  run.output.reserve(least_point_file(command.encoding.format, description, reader.size().value_or(0)));
+  return make_point_writer(command.encoding.format, run.output, reader.size(), description);
+}
+
+void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
+  check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  work.writer = open_writer(command, *work.reader, run);
+  const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
+  if (parts) work.labels.emplace(*parts, command.field, points, run);
+  work.field = command.field;
+  if (command.field.labels_only()) {
+    work.field.verify = 0;
+    mesh = {};
+    static_cast<void>(run.take_edges());
+  }
+  const auto known = static_cast<double>(work.reader->size().value_or(0));
+  work.fields.emplace(run, std::move(mesh), work.field, points, known);
+  work.fields->prepare_points();
+}
+
+// Answers are handed on whenever the next question would have to be waited for.
+void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run) {
+  PointReader& reader = *work.reader;
+  FieldRun& fields = *work.fields;
+  Seconds& seconds = run.report.seconds;
+  double& source = command.sample ? seconds.evaluate : seconds.read;  // points that are drawn are made, not read
+  const PointBatch batch = batch_for(command, reader, run.report.exterior_edges > 0, run.limits());
+  std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
+  std::vector<Vec3> points;
+  for (;;) {
+    if (reader.would_block()) work.writer->flush();
+    if (!timed(source, [&] { return next(reader, batch, points); })) return;
+    fields.evaluate(points, done);
+    if (work.labels) timed(seconds.evaluate, [&] { work.labels->evaluate(points, fields.labels()); });
+    const SurfacePlaces places = reader.places();
+    timed(seconds.write, [&] {
+      work.writer->write(points, fields.values());
+      if (!places.faces.empty()) work.writer->write_places(places.normals, places.faces);
+    });
+    run.report.samples += points.size();
+  }
+}
+
 }  // namespace
 
-RunReport run_points(const PointsCommand& asked, const RunLimits& limits) {
-  PointsCommand command = asked;
+RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
-  std::unique_ptr<PointReader> reader = timed(report.seconds.read, [&] { return open_given_points(command); });
+  PointWork work;
+  work.reader = timed(report.seconds.read, [&] { return open_given_points(command); });
   std::optional<LabelledParts> parts;
   TriangleMesh mesh = load(command, run, parts);
   if (!command.sample) report.files_read.push_back(command.points);
   run.print_warnings();
   if (command.sample) {
-    reader = timed(report.seconds.prepare,
-                   [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
+    work.reader = timed(report.seconds.prepare,
+                        [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
   }
 
-  check_points_memory(command.mesh, report.faces, command.field, limits);
-  const double points = expected_points(*reader, command.sample ? "-" : command.points);
-  std::optional<PointLabels> labels;
-  if (parts) labels.emplace(*parts, asked.field, points, run);
-  if (command.field.labels_only()) {
-    command.field.verify = 0;  // labels do so
-    mesh = {};
-    static_cast<void>(run.take_edges());
-  }
-  FieldRun fields(run, std::move(mesh), command.field, points, static_cast<double>(reader->size().value_or(0)));
-  fields.prepare_points();
-  OutputDescription description = description_of(report, command.field, command.encoding);
-  description.single_points = draws_single(command);
-  description.has_places = command.sample && draws_on_surface(*command.sample);
-  run.output.reserve(least_point_file(command.encoding.format, description, reader->size().value_or(0)));
-  const std::unique_ptr<PointWriter> writer =
-      make_point_writer(command.encoding.format, run.output, reader->size(), description);
-  // Points that are drawn are made, not read.
-  double& source = command.sample ? report.seconds.evaluate : report.seconds.read;
-  const PointBatch batch = batch_for(command, *reader, report.exterior_edges > 0, limits);
-  evaluate_points(fields, labels ? &*labels : nullptr, *reader, batch, *writer, run, source);
-  fields.finish(std::numeric_limits<double>::infinity());
-  if (labels) labels->finish();
-  timed(report.seconds.write, [&] { writer->finish(); });
+  prepare(command, std::move(mesh), parts ? &*parts : nullptr, run, work);
+  evaluate_points(command, work, run);
+  work.fields->finish(std::numeric_limits<double>::infinity());
+  if (work.labels) work.labels->finish();
+  timed(report.seconds.write, [&] { work.writer->finish(); });
   return run.finish();
 }
 

@@ -87,7 +87,7 @@ std::string default_format(bool sampled) { return sampled ? "npz" : "vdb"; }
 
 // The name of a format in lower case, "none" included.
 std::string parse_batch_format(const Values& values) {
-  const std::string format =
+  std::string format =
       lower_case(values.given("--format") ? values.text("--format") : default_format(values.given("--sample")));
   if (format != "none" && !field_format_from_name(format)) {
     invalid("--format", values.text("--format"), "vdb, csv, npy, npz, vti, nrrd, nii, nii.gz or none");

@@ -182,8 +182,8 @@ std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_open(const std::ve
   std::vector<std::size_t> doubtful;
   points.clear();
   for (std::size_t n = 0; n < edges.size(); ++n) {
-    const int jump = edges[n]->hits[place].jump;
-    const double value = jump != 0 ? rule_.from_threshold(w[n] + jump) : 0.0;
+    const double jump = edges[n]->hits[place].jump;
+    const double value = jump != 0.0 ? rule_.from_threshold(w[n] + jump) : 0.0;
     sides.push_back({rule_.from_threshold(w[n]) >= 0.0, value > 0.0});
     if (std::abs(value) > kClear) continue;
     doubtful.push_back(n);

@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "app/text/parse_value.h"
+
 namespace raycone {
 namespace {
 

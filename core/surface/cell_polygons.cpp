@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/machine/threads.h"
+#include "core/surface/triangle_shape.h"
 
 namespace raycone {
 namespace {
@@ -122,12 +123,6 @@ const LoopSteps& loop_of(std::uint8_t inside) {
 }
 
 bool is_diagonal(unsigned direction) { return std::popcount(direction) == 2; }
-
-// Twice the area of a triangle over the square of its longest side, along `normal`.
-double quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
-  const Vec3 u = b - a, v = c - a, w = c - b;
-  return dot(cross(u, v), normal) / std::max({dot(u, u), dot(v, v), dot(w, w)});
-}
 
 }  // namespace
 
@@ -376,17 +371,17 @@ std::size_t best_fan(std::span<const Vec3> polygon) {
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
     normal = normal + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
   std::size_t best = 0;
-  double best_quality = -std::numeric_limits<double>::infinity();
+  double best_shape = -std::numeric_limits<double>::infinity();
   for (std::size_t from = 0; from < polygon.size(); ++from) {
     double worst = std::numeric_limits<double>::infinity();
     const auto corner = [&](std::size_t step) -> const Vec3& {
       const std::size_t at = from + step;  // divisions would take longer than all else here
       return polygon[at < polygon.size() ? at : at - polygon.size()];
     };
-    for (std::size_t i = 1; i + 1 < polygon.size() && worst > best_quality; ++i)
-      worst = std::min(worst, quality(corner(0), corner(i), corner(i + 1), normal));
-    if (!(worst > best_quality)) continue;
-    best_quality = worst;
+    for (std::size_t i = 1; i + 1 < polygon.size() && worst > best_shape; ++i)
+      worst = std::min(worst, shape_along(normal, corner(0), corner(i), corner(i + 1)));
+    if (!(worst > best_shape)) continue;
+    best_shape = worst;
     best = from;
   }
   return best;

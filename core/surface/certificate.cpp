@@ -13,6 +13,7 @@
 #include "core/machine/buckets.h"
 #include "core/machine/first_touch.h"
 #include "core/machine/numbers_where.h"
+#include "core/machine/sum_over.h"
 #include "core/machine/threads.h"
 #include "core/mesh/edge_uses.h"
 #include "core/mesh/exterior_edges.h"
@@ -67,17 +68,6 @@ bool is_fan(const TriangleMesh& mesh, std::uint32_t vertex, std::span<const std:
   return false;
 }
 
-template <class IsWrong>
-std::uint64_t count_wrong(std::size_t count, const IsWrong& is_wrong) {
-  std::atomic<std::uint64_t> wrong = 0;
-  parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
-    for (std::size_t n = begin; n < end; ++n) here += is_wrong(static_cast<std::uint32_t>(n)) ? 1 : 0;
-    wrong += here;
-  });
-  return wrong;
-}
-
 // What there is around each vertex.
 struct Fans {
   std::vector<std::uint8_t> wrong;   // whether its faces are no single fan
@@ -110,7 +100,7 @@ bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
 }
 
 std::uint64_t degenerate_faces(const TriangleMesh& mesh) {
-  return count_wrong(mesh.triangles.size(), [&](std::uint32_t face) { return is_degenerate(mesh, face); });
+  return sum_over(mesh.triangles.size(), [&](std::size_t face) { return is_degenerate(mesh, face); });
 }
 
 // The same for equal positions.
@@ -123,20 +113,27 @@ std::size_t hash_of(const Vec3& p) {
   return static_cast<std::size_t>(hash);
 }
 
-std::uint64_t equal_vertices(const TriangleMesh& mesh) {
+// How many vertices there are, beyond the first, at positions of several. Marks all of these where `marked` is not
+// null.
+std::uint64_t equal_vertices(const std::vector<Vec3>& vertices, std::vector<std::uint8_t>* marked = nullptr) {
   constexpr std::size_t kBuckets = 1024;
-  const Buckets<Vec3> buckets(mesh.vertices.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
-    for (std::size_t v = begin; v < end; ++v) emit(hash_of(mesh.vertices[v]) % kBuckets, mesh.vertices[v]);
+  const Buckets<std::uint32_t> buckets(vertices.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
+    for (std::size_t v = begin; v < end; ++v) emit(hash_of(vertices[v]) % kBuckets, static_cast<std::uint32_t>(v));
   });
   std::atomic<std::uint64_t> equal = 0;
   parallel_for(kBuckets, 8, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
     for (std::size_t n = begin; n < end; ++n) {
-      const std::span<Vec3> bucket = buckets[n];
-      std::ranges::sort(bucket, {}, [](const Vec3& p) { return std::tuple(p.x, p.y, p.z); });
-      for (std::size_t i = 1; i < bucket.size(); ++i) here += bucket[i] == bucket[i - 1] ? 1 : 0;
+      const std::span<std::uint32_t> bucket = buckets[n];
+      std::ranges::sort(bucket, {}, [&](std::uint32_t v) {
+        const Vec3& p = vertices[v];
+        return std::tuple(p.x, p.y, p.z);
+      });
+      for (std::size_t i = 1; i < bucket.size(); ++i) {
+        if (vertices[bucket[i]] != vertices[bucket[i - 1]]) continue;
+        if (marked) (*marked)[bucket[i - 1]] = (*marked)[bucket[i]] = 1;  // nobody else has these
+        ++equal;
+      }
     }
-    equal += here;
   });
   return equal;
 }
@@ -221,30 +218,6 @@ MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const La
   return part;
 }
 
-// Marks those at the position of another one. Returns their number, without the first of each position.
-std::uint64_t mark_equal_vertices(const std::vector<Vec3>& vertices, std::vector<std::uint8_t>& marked) {
-  constexpr std::size_t kBuckets = 1024;
-  const Buckets<std::uint32_t> buckets(vertices.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
-    for (std::size_t v = begin; v < end; ++v) emit(hash_of(vertices[v]) % kBuckets, static_cast<std::uint32_t>(v));
-  });
-  std::atomic<std::uint64_t> equal = 0;
-  parallel_for(kBuckets, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::span<std::uint32_t> bucket = buckets[n];
-      std::ranges::sort(bucket, {}, [&](std::uint32_t v) {
-        const Vec3& p = vertices[v];
-        return std::tuple(p.x, p.y, p.z);
-      });
-      for (std::size_t i = 1; i < bucket.size(); ++i) {
-        if (vertices[bucket[i]] != vertices[bucket[i - 1]]) continue;
-        marked[bucket[i - 1]] = marked[bucket[i]] = 1;  // nobody else has these
-        ++equal;
-      }
-    }
-  });
-  return equal;
-}
-
 // What lies between two states of a closed mesh: the faces of the one, and those of the other turned around. It is
 // closed, too.
 TriangleMesh mesh_between(const TriangleMesh& mesh, const SurfaceEdit& change) {
@@ -303,7 +276,7 @@ SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside, NodeSet
   faults.edges = faults.links > 0 ? wrong_edges(mesh) : 0;
   const std::vector<ExteriorEdge> none;
   faults.degenerate_faces = degenerate_faces(mesh);
-  faults.equal_vertices = equal_vertices(mesh);
+  faults.equal_vertices = equal_vertices(mesh.vertices);
   NodeSet nodes = misplaced_nodes(mesh, inside, faults.links > 0 ? nullptr : &none);
   faults.nodes = nodes.size();
   if (misplaced) *misplaced = std::move(nodes);
@@ -317,7 +290,7 @@ NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, cons
   std::vector<std::uint8_t> faulty = fans.wrong;
   NearFaults found;
   found.faults.links = fans.count_of_wrong();
-  found.faults.equal_vertices = mark_equal_vertices(part.mesh.vertices, faulty);
+  found.faults.equal_vertices = equal_vertices(part.mesh.vertices, &faulty);
   found.faults.intersections = self_intersections(part.mesh, SearchOrder::kCurve, &fans.graphs, &part.changed);
   SelfIntersections& of_part = found.faults.intersections;
   const std::vector<bool> meeting = std::exchange(of_part.of_triangle, std::vector<bool>(mesh.triangles.size(), false));

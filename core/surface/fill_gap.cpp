@@ -40,14 +40,14 @@ class PolygonCutter {
       for (std::size_t first = 0; first + sides < size_; ++first) cut(first, first + sides);
     }
     std::vector<Triangle> found;
-    if (at(0, size_ - 1).quality > 0.0) collect(0, size_ - 1, found);
+    if (at(0, size_ - 1).shape > 0.0) collect(0, size_ - 1, found);
     return found;
   }
 
  private:
   static constexpr double kWhole = 1e300;
   struct Cut {
-    double quality;  // of the worst triangle between two corners and those between them
+    double shape;  // of the worst triangle between two corners and those between them
     std::size_t corner;
   };
 
@@ -55,10 +55,10 @@ class PolygonCutter {
   void cut(std::size_t first, std::size_t last) {
     Cut best{0.0, 0};
     for (std::size_t corner = first + 1; corner < last; ++corner) {
-      const double sides = std::min(at(first, corner).quality, at(corner, last).quality);
-      if (!(sides > best.quality)) continue;
-      const double quality = std::min(sides, quality_of(points_[first], points_[corner], points_[last]));
-      if (quality > best.quality) best = {quality, corner};
+      const double sides = std::min(at(first, corner).shape, at(corner, last).shape);
+      if (!(sides > best.shape)) continue;
+      const double shape = std::min(sides, shape_of(points_[first], points_[corner], points_[last]));
+      if (shape > best.shape) best = {shape, corner};
     }
     at(first, last) = best;
   }
@@ -72,7 +72,7 @@ class PolygonCutter {
   }
 
   // Twice the area by the square of the longest side; 0 for what is turned over.
-  [[nodiscard]] static double quality_of(const Point2& a, const Point2& b, const Point2& c) {
+  [[nodiscard]] static double shape_of(const Point2& a, const Point2& b, const Point2& c) {
     const auto square = [](const Point2& p, const Point2& q) {
       return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
     };

@@ -6,13 +6,13 @@
 
 #include "core/surface/contour.h"
 #include "core/surface/edge_crossing.h"
+#include "core/surface/triangle_shape.h"
 
 namespace raycone {
 namespace {
 
-// A triangle's area over the square of its longest edge: 0.43 where it is regular. Pulls make none below this, unless
-// there was one before.
-constexpr double kLeastQuality = 1e-3;
+// Pulls make no face of less shape_along() than this, unless there was one before.
+constexpr double kLeastShape = 2e-3;
 
 // Of two planes back to back: 180 degrees but for 1e-3 radians. Others hold a point within a thousand times what they
 // are off by themselves.
@@ -21,11 +21,6 @@ constexpr double kBackToBack = -1 + 0x1p-21;  // cosine
 double longest_square(const Vec3& u, const Vec3& v) {
   const Vec3 w = v - u;
   return std::max({dot(u, u), dot(v, v), dot(w, w)});
-}
-
-double quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
-  const Vec3 u = b - a, v = c - a;
-  return dot(cross(u, v), normal) / 2.0 / longest_square(u, v);
 }
 
 }  // namespace
@@ -231,12 +226,12 @@ void PatchMerger::sort_ring() {
 
 // The worst of the faces, their vertex pulled into `target`, that are left. The search ends at one that is not above
 // `needed`.
-double PatchMerger::worst_quality(std::uint32_t target, bool with_needles, double needed) const {
+double PatchMerger::worst_shape(std::uint32_t target, bool with_needles, double needed) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const StarFace& face : star_) {
     if (face.next == target || face.last == target || (face.is_needle && !with_needles)) continue;
-    worst = std::min(worst,
-                     quality(position(target), position(face.next), position(face.last), planes_[face.plane].normal));
+    worst = std::min(
+        worst, shape_along(planes_[face.plane].normal, position(target), position(face.next), position(face.last)));
     if (!(worst > needed)) break;
   }
   return worst;
@@ -318,15 +313,15 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   find_star(v);
   find_planes(false);
   const std::vector<std::uint32_t> faces = faces_at_node(v);
-  const double before = worst_quality(v, false, -std::numeric_limits<double>::infinity());
-  const double needed = std::max(0.0, kMayLose * std::min(kLeastQuality, before));
+  const double before = worst_shape(v, false, -std::numeric_limits<double>::infinity());
+  const double needed = std::max(0.0, kMayLose * std::min(kLeastShape, before));
   std::optional<std::uint32_t> best;
   std::pair best_rank(planes_through(v, faces), -limits_.needle);
   for (const std::uint32_t target : ring_) {
     const std::pair rank(planes_through(target, faces), -distance(v, target));
     if (!(rank > best_rank) || roles_[target] == VertexRole::kForeign || !is_at_node(v, target)) continue;
     if (!is_in_planes(position(target))) continue;
-    if (!(worst_quality(target, false, needed) > needed) || !keeps_topology(target)) continue;
+    if (!(worst_shape(target, false, needed) > needed) || !keeps_topology(target)) continue;
     best = target;
     best_rank = rank;
   }
@@ -368,23 +363,23 @@ std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
   const std::vector<std::uint32_t> rim = may_have_rim() ? rim_neighbours() : std::vector<std::uint32_t>();
   std::optional<std::uint32_t> best;
   bool by_geometry = true;
-  std::optional<double> best_quality;  // most vertices have no target in their planes, and need none
+  std::optional<double> best_shape;  // most vertices have no target in their planes, and need none
   for (const std::uint32_t target : ring_) {
     if (!is_in_planes(position(target)) || !keeps_rim(v, target, rim)) continue;
     if (roles_[target] == VertexRole::kForeign) {
       by_geometry = false;
       continue;
     }
-    if (!best_quality) {
-      const double before = worst_quality(v, true, -std::numeric_limits<double>::infinity());
-      best_quality = std::max(0.0, std::min(kLeastQuality, before));
+    if (!best_shape) {
+      const double before = worst_shape(v, true, -std::numeric_limits<double>::infinity());
+      best_shape = std::max(0.0, std::min(kLeastShape, before));
     }
-    const double worst = worst_quality(target, true, *best_quality);
-    if (!(worst > *best_quality)) continue;
+    const double worst = worst_shape(target, true, *best_shape);
+    if (!(worst > *best_shape)) continue;
     by_geometry = false;
     if (!keeps_topology(target)) continue;
     best = target;
-    best_quality = worst;
+    best_shape = worst;
   }
   by_geometry_[v] = by_geometry ? 1 : 0;
   return best;

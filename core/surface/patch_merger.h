@@ -131,7 +131,7 @@ class PatchMerger {
   void sort_ring();
   void find_planes(bool with_needles);
   [[nodiscard]] bool is_in_planes(const Vec3& p) const;
-  [[nodiscard]] double worst_quality(std::uint32_t target, bool with_needles, double needed) const;
+  [[nodiscard]] double worst_shape(std::uint32_t target, bool with_needles, double needed) const;
   [[nodiscard]] bool may_have_rim() const;
   [[nodiscard]] std::vector<std::uint32_t> rim_neighbours() const;
   [[nodiscard]] bool keeps_rim(std::uint32_t v, std::uint32_t target, const std::vector<std::uint32_t>& rim) const;

@@ -9,17 +9,13 @@
 
 #include "core/mesh/vertex_faces.h"
 #include "core/surface/star_change.h"
+#include "core/surface/triangle_shape.h"
 
 namespace raycone {
 namespace {
 
-// A triangle's area over the square of its longest edge. Pulls make none below this, unless there was one before.
-constexpr double kLeastShape = 1e-2;
-
-double shape_of(const Corners3& c) {
-  const Vec3 u = c[1] - c[0], v = c[2] - c[0], w = c[2] - c[1], normal = cross(u, v);
-  return std::sqrt(dot(normal, normal)) / 2.0 / std::max({dot(u, u), dot(v, v), dot(w, w)});
-}
+// Pulls make no face of less shape_of(), unless there was one before.
+constexpr double kLeastShape = 2e-2;
 
 class Simplifier {
  public:
@@ -108,7 +104,7 @@ class Simplifier {
     double before = 0.0, shape = kLeastShape;
     for (const std::uint32_t face : star_[v]) {
       before = std::max(before, off_[face]);
-      shape = std::min(shape, shape_of(corners_of(surface_.mesh.triangles[face])));
+      shape = std::min(shape, shape_of_face(face));
     }
     std::optional<Pull> best;
     for (std::size_t n = 0; n < ring.size(); ++n) {
@@ -131,9 +127,10 @@ class Simplifier {
     return other.off * (shape > other.shape ? 1.0 + kAbout : 1.0 - kAbout);
   }
 
-  [[nodiscard]] Corners3 corners_of(const Triangle& t) const {
+  [[nodiscard]] double shape_of_face(std::uint32_t face) const {
+    const Triangle& t = surface_.mesh.triangles[face];
     const std::vector<Vec3>& at = surface_.mesh.vertices;
-    return {at[t[0]], at[t[1]], at[t[2]]};
+    return shape_of(at[t[0]], at[t[1]], at[t[2]]);
   }
 
   // Of the faces around a vertex when it is pulled into that neighbour.
@@ -141,7 +138,7 @@ class Simplifier {
     double least = 1.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const std::size_t next = (i + 1) % ring.size();
-      if (i != target && next != target) least = std::min(least, shape_of({ring[target], ring[i], ring[next]}));
+      if (i != target && next != target) least = std::min(least, shape_of(ring[target], ring[i], ring[next]));
     }
     return least;
   }

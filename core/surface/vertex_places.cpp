@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 
-#include "core/machine/threads.h"
+#include "core/machine/sum_over.h"
 #include "core/surface/contour.h"
 #include "core/surface/source_plane.h"
 
@@ -54,17 +53,6 @@ class ChainPlace {
   double margin_;
 };
 
-template <class WrongAt>
-std::uint64_t sum_of_wrong(std::size_t count, const WrongAt& wrong_at) {
-  std::atomic<std::uint64_t> wrong = 0;
-  parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t here = 0;
-    for (std::size_t n = begin; n < end; ++n) here += wrong_at(n);
-    wrong += here;
-  });
-  return wrong;
-}
-
 }  // namespace
 
 std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells, const FacePoints& face_points,
@@ -97,8 +85,8 @@ std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells
     const SurfaceCell& cell = cells.cells()[tetrahedra[n] / kuhn::kTetrahedra.size()];
     return place.holds(p, cell, std::span(tetrahedron.corners).subspan(1)) ? 0U : 1U;
   };
-  return sum_of_wrong(cells.cells().size(), at_edges) + sum_of_wrong(face_points.faces().size(), at_face) +
-         sum_of_wrong(tetrahedra.size(), at_apex);
+  return sum_over(cells.cells().size(), at_edges) + sum_over(face_points.faces().size(), at_face) +
+         sum_over(tetrahedra.size(), at_apex);
 }
 
 }  // namespace raycone

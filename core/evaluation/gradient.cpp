@@ -29,19 +29,21 @@ Vec3 within_doubles(const Vec3& v) {
 }
 
 // What an edge adds, for queries next to it and for numbers whose products leave the doubles.
-Vec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q) {
+QuadVec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec3& q) {
   const QuadVec3 a = quad_difference(from, q), b = quad_difference(to, q);
   const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), ab = dot(a, b);
   const QuadVec3 normal = cross_of_differences(from, to, q);
   const Quad square = dot(normal, normal);
-  if (square == 0) return {};
+  if (square == 0) return {0, 0, 0};
   const Quad opening = ab < 0 ? square / (la * lb - ab) : la * lb + ab;
   const Quad factor = weight * ((la + lb) / (la * lb * opening));
-  return {within_doubles(factor * normal.x), within_doubles(factor * normal.y), within_doubles(factor * normal.z)};
+  return {factor * normal.x, factor * normal.y, factor * normal.z};
 }
 
+// Infinite where no double holds it.
 Vec3 careful_part_of(const GradientSegment& segment, const Vec3& q) {
-  return careful_part(segment.from, segment.to, segment.weight, q);
+  const QuadVec3 part = careful_part(segment.from, segment.to, segment.weight, q);
+  return {static_cast<double>(part.x), static_cast<double>(part.y), static_cast<double>(part.z)};
 }
 
 PowerOfTwo scale_of(const TriangleMesh& mesh) {
@@ -64,28 +66,32 @@ GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector
   }
 }
 
-// Scaling the mesh lost nothing, so that it can be undone.
+// For queries that leave the doubles where the mesh is scaled, or whose parts do: these may cancel. Scaling the mesh
+// lost nothing, so that it can be undone.
 Vec3 GradientEvaluator::sum_unscaled(const Vec3& point) const {
-  Vec3 sum;
-  for (const GradientSegment& s : segments_)
-    sum = sum + careful_part(inverse_(s.from), inverse_(s.to), s.weight, point);
-  return sum;
+  QuadVec3 sum{0, 0, 0};
+  for (const GradientSegment& s : segments_) {
+    const QuadVec3 part = careful_part(inverse_(s.from), inverse_(s.to), s.weight, point);
+    sum = {sum.x + part.x, sum.y + part.y, sum.z + part.z};
+  }
+  return Vec3{within_doubles(sum.x), within_doubles(sum.y), within_doubles(sum.z)} + kNoMinusZero;
 }
 
 // Of kTile points at most. value(n) is where that of point n belongs.
 template <class Point, class Value>
 void GradientEvaluator::evaluate_tile(std::size_t count, const Point& point, const Value& value) const {
+  constexpr double kFar = 0x1p400;  // beyond, parts lose bits by underflow
   SampleTile tile;
   std::array<std::size_t, kTile> numbers;
   for (std::size_t n = 0; n < count; ++n) {
     const Vec3 p = point(n), q = scale_(p);
     if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) {
       value(n) = {};  // so far away that the gradient is no double but 0
-    } else if (scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {
+    } else if (largest_coordinate(q) < kFar && scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {
       numbers[tile.count] = n;
       tile.add(q);
     } else {
-      value(n) = within_doubles(sum_unscaled(p)) + kNoMinusZero;
+      value(n) = sum_unscaled(p);
     }
   }
   if (tile.count == 0) return;
@@ -93,8 +99,9 @@ void GradientEvaluator::evaluate_tile(std::size_t count, const Point& point, con
   GradientTile sums;
   sum_parts_(segments_, tile, careful_part_of, sums);
   for (std::size_t i = 0; i < tile.count; ++i) {
-    const Vec3 sum = within_doubles(Vec3{sums.x[i], sums.y[i], sums.z[i]});
-    value(numbers[i]) = within_doubles(scale_(sum)) + kNoMinusZero;
+    const bool is_finite = std::isfinite(sums.x[i]) && std::isfinite(sums.y[i]) && std::isfinite(sums.z[i]);
+    value(numbers[i]) = is_finite ? within_doubles(scale_({sums.x[i], sums.y[i], sums.z[i]})) + kNoMinusZero
+                                  : sum_unscaled(point(numbers[i]));
   }
 }
 

@@ -15,7 +15,7 @@ namespace raycone {
 namespace {
 
 // Pulls make no face of less shape_of(), unless there was one before.
-constexpr double kLeastShape = 2e-2;
+constexpr double kLeastShapeOfPull = 2e-2;
 
 class Simplifier {
  public:
@@ -101,7 +101,7 @@ class Simplifier {
       seen_in_[neighbour] = look_;
     }
     StarChange change(surface_.mesh.vertices[v], places);
-    double before = 0.0, shape = kLeastShape;
+    double before = 0.0, shape = kLeastShapeOfPull;
     for (const std::uint32_t face : star_[v]) {
       before = std::max(before, off_[face]);
       shape = std::min(shape, shape_of_face(face));

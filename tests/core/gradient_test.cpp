@@ -193,6 +193,31 @@ TEST(Gradient, NextToASkewEdgeIsThatOfItsLine) {
   }
 }
 
+// Parts that no double holds may cancel.
+TEST(Gradient, NextToACornerIsTheSumOfPartsBeyondDoubles) {
+  const Vec3 q{0, 0, 2e-311};
+  const TriangleMesh mesh = weld({{{0, 0, 0}, {1, 1, 0}, {1.001, 1, 0}}, {{{0, 1, 2}}}}, {});
+  const Vec3 gradient = gradients_of(mesh, {q}).front();
+  const DirectGradient expected = direct_gradient(mesh, q);
+  for (const int axis : {0, 1}) {
+    EXPECT_GT(std::abs(gradient[axis]), 1e306);
+    EXPECT_NEAR(gradient[axis] / component(expected.value, axis), 1.0, 1e-12);
+  }
+}
+
+// Parts that doubles hold with few bits do not cancel.
+TEST(Gradient, OfATinyMeshFarAwayIsNothing) {
+  const double h = 1e-290;
+  const TriangleMesh mesh = weld({{{h, 2 * h, 3 * h}, {5 * h, h, 2 * h}, {3 * h, 7 * h, h}}, {{{0, 1, 2}}}}, {});
+  for (const Vec3& q : {Vec3{-2.08e-133, 7.13e-133, -2.04e-133}, Vec3{1e-140, 0, 2e-150}, Vec3{3e-130, 1e-131, 0}}) {
+    const Vec3 gradient = gradients_of(mesh, {q}).front();
+    const DirectGradient expected = direct_gradient(mesh, q);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(gradient[axis], component(expected.value, axis), 1e-12 * static_cast<double>(expected.magnitude));
+    }
+  }
+}
+
 TEST(Gradient, ScalesWithTheMeshAtAllMagnitudes) {
   const TriangleMesh mesh = welded_soup(2);
   const std::vector<Vec3> points{{0.3, 0.4, 0.6}, {-2, 5, 1}};

@@ -82,7 +82,7 @@ MUTANTS = [
     Mutant("slope_underflow_ignored", "what underflows in a slope is multiplied by the reach", [
         ("core/crossings/triangle_sections.h", "kSlopeUnderflow * std::abs(reach) + ", "")]),
     Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
-        ("core/evaluation/gradient.cpp", "} else if (scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {",
+        ("core/evaluation/gradient.cpp", "} else if (largest_coordinate(q) < kFar && scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {",
          "} else if (true) {")]),
     Mutant("source_areas_vanish", "squares of areas underflow", [
         ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),

@@ -120,11 +120,12 @@ class Simplifier {
     return best;
   }
 
-  // What a pull that leaves faces of this shape may cost to be better: about as much where they are rounder, as noise
-  // shall not choose.
-  [[nodiscard]] static double most_instead(const Pull& other, double shape) {
-    constexpr double kAbout = 0.01;
-    return other.off * (shape > other.shape ? 1.0 + kAbout : 1.0 - kAbout);
+  // What a pull that leaves faces of this shape may cost to be better: in flat parts all cost what rounding does, and
+  // the one is taken that leaves the roundest faces.
+  [[nodiscard]] double most_instead(const Pull& other, double shape) const {
+    constexpr double kSame = 1e-9;  // voxels
+    const double same = kSame * lattice_.least_spacing();
+    return other.off + (shape > other.shape ? same : -same);
   }
 
   [[nodiscard]] double shape_of_face(std::uint32_t face) const {

@@ -202,16 +202,27 @@ MeshCommand mesh_command_from(const Message& message) {
 }
 
 // A command is one string.
-Message to_message(const HashRequest& request) {
+Message to_message(const InputsRequest& request) {
+  Message message = to_message(request.command);
   const FileStamp& stamp = request.stamp;
-  return {request.path, std::to_string(stamp.size), std::to_string(stamp.modified), std::to_string(stamp.changed)};
+  for (const std::int64_t number :
+       {static_cast<std::int64_t>(stamp.size), stamp.modified, stamp.changed, request.started}) {
+    message.push_back(std::to_string(number));
+  }
+  return message;
 }
 
-std::optional<HashRequest> hash_request_from(const Message& message) {
-  if (message.size() != 4) return std::nullopt;
-  const auto size = integer_from(message[1]), modified = integer_from(message[2]), changed = integer_from(message[3]);
-  if (!size || !modified || !changed) return std::nullopt;
-  return HashRequest{message[0], {static_cast<std::uint64_t>(*size), *modified, *changed}};
+std::optional<InputsRequest> inputs_request_from(const Message& message) {
+  if (message.size() != 5) return std::nullopt;
+  std::array<std::int64_t, 4> numbers{};
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const std::optional<std::int64_t> number = integer_from(message[n + 1]);
+    if (!number) return std::nullopt;
+    numbers[n] = *number;
+  }
+  const auto [size, modified, changed, started] = numbers;
+  return InputsRequest{
+      mesh_command_from({message.front()}), {static_cast<std::uint64_t>(size), modified, changed}, started};
 }
 
 }  // namespace raycone

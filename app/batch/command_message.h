@@ -1,9 +1,9 @@
 // What a worker is asked to do, as a message: all values of a MeshCommand, so that nothing is parsed again; or to hash
-// a file, which may take as long or hang as well.
+// what a mesh was read from, which may take as long or hang as well.
 #pragma once
 
+#include <cstdint>
 #include <optional>
-#include <string>
 
 #include "app/batch/file_stamp.h"
 #include "app/batch/message.h"
@@ -15,13 +15,14 @@ namespace raycone {
 // Throws std::runtime_error for any other message.
 [[nodiscard]] MeshCommand mesh_command_from(const Message& message);
 
-// A file of which the hash is wanted, as it was when it had this stamp.
-struct HashRequest {
-  std::string path;
-  FileStamp stamp;
+// The hashes are wanted of the files that a command which failed has read, as they were when it was begun.
+struct InputsRequest {
+  MeshCommand command;
+  FileStamp stamp;           // of the mesh then
+  std::int64_t started = 0;  // nanoseconds since 1970
 };
-[[nodiscard]] Message to_message(const HashRequest& request);
+[[nodiscard]] Message to_message(const InputsRequest& request);
 // Nothing where `message` is no such request.
-[[nodiscard]] std::optional<HashRequest> hash_request_from(const Message& message);
+[[nodiscard]] std::optional<InputsRequest> inputs_request_from(const Message& message);
 
 }  // namespace raycone

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <system_error>
 
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
@@ -17,6 +19,16 @@ constexpr std::int64_t kCoarsestTime = 2 * kSecond;
 
 std::int64_t nanoseconds(const timespec& time) {
   return static_cast<std::int64_t>(time.tv_sec) * kSecond + static_cast<std::int64_t>(time.tv_nsec);
+}
+
+std::string content_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return kNoFile;  // a pipe would have to be waited for
+  try {
+    return sha256_of_file(path);
+  } catch (const InputError&) {
+    return kNoFile;
+  }
 }
 
 }  // namespace
@@ -37,13 +49,16 @@ bool is_certainly_same(const FileStamp& earlier, const FileStamp& now) { return 
 bool is_unchanged(StampedFile& file) {
   const FileStamp now = stamp_of(file.path);
   if (is_certainly_same(file.stamp, now)) return true;
-  try {
-    if (file.sha256.empty() || sha256_of_file(file.path) != file.sha256) return false;
-  } catch (const InputError&) {
-    return false;
-  }
+  if (file.sha256.empty() || content_of(file.path) != file.sha256) return false;
   file.stamp = now;
   return true;
+}
+
+StampedFile file_as_at(const std::string& path, std::int64_t time) {
+  const FileStamp before = stamp_of(path);
+  if (std::max(before.modified, before.changed) > time - kCoarsestTime) return {.path = path};
+  const std::string content = content_of(path);
+  return {.path = path, .sha256 = stamp_of(path) == before ? content : ""};
 }
 
 }  // namespace raycone

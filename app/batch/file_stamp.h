@@ -27,16 +27,22 @@ struct FileStamp {
 // A stamp that is never certainly the same, for where there is a hash only.
 inline constexpr FileStamp kNoStamp{0, 0, 0, true};
 
-// A file that was read, and the hash of what was read.
+// Instead of a hash where no regular file can be read.
+inline constexpr const char* kNoFile = "none";
+
+// A file that was read or looked for, and the hash of what was there.
 struct StampedFile {
   std::string path;
   FileStamp stamp = kNoStamp;
-  std::string sha256{};  // empty: unknown, no file is the same
+  std::string sha256{};  // or kNoFile; empty: unknown, no file is the same
 
   friend bool operator==(const StampedFile&, const StampedFile&) = default;
 };
 
 // Whether it holds what it held; its stamp is brought up to date then. Reads it where its stamp does not tell.
 [[nodiscard]] bool is_unchanged(StampedFile& file);
+
+// The file at `path`, its hash unknown where it may have changed since `time` (nanoseconds since 1970). Reads it.
+[[nodiscard]] StampedFile file_as_at(const std::string& path, std::int64_t time);
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -57,6 +58,12 @@ Clock::duration seconds(double count) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(count, kMost)));
 }
 
+// Nanoseconds since 1970.
+std::int64_t now_by_calendar() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
 // Throws LimitError where so few are left that another worker would take those of the tables of results.
 void require_descriptors() {
   constexpr int kSpare = 12;
@@ -71,7 +78,8 @@ void require_descriptors() {
 struct Slot {
   std::unique_ptr<WorkerProcess> worker;
   std::optional<Schedule::Start> running;
-  std::optional<JobResult> unhashed;  // all is done but for the mesh's hash
+  std::optional<JobResult> unhashed;  // all is done but for the hashes of what was read
+  std::int64_t started = 0;           // nanoseconds since 1970
   Clock::time_point deadline;
 };
 
@@ -121,6 +129,7 @@ class Supervisor {
       if (!slot.worker && !none_runs()) require_descriptors();
       ask(slot, to_message(command_for(jobs_[start.mesh], start.threads, options_)));
       slot.running = start;
+      slot.started = now_by_calendar();
       slot.deadline = Clock::now() + seconds(options_.timeout);
     } catch (const LimitError&) {
       if (none_runs()) throw;
@@ -175,7 +184,7 @@ class Supervisor {
     }
   }
 
-  // Has the mesh of a result hashed that does not tell its hash: by a worker, as reading it may take long or hang.
+  // Has the inputs of a result hashed that does not tell their hashes: by a worker, as reading may take long or hang.
   void hash(Slot& slot, JobResult result) {
     constexpr double kPatience = 60.0;  // seconds
     if (!result.row.sha256.empty()) return finish(slot, std::move(result));
@@ -183,15 +192,16 @@ class Supervisor {
     slot.unhashed = std::move(result);
     slot.deadline = Clock::now() + seconds(std::min(options_.timeout, kPatience));
     try {
-      ask(slot, to_message(HashRequest{job.mesh, job.stamp}));
+      ask(slot, to_message(InputsRequest{command_for(job, slot.running->threads, options_), job.stamp, slot.started}));
     } catch (const LimitError&) {
       finish_unhashed(slot);
     }
   }
 
   void attend_to_hash(Slot& slot) {
-    if (const std::optional<JobResult> hashed = slot.worker->receive()) {
-      slot.unhashed->row.sha256 = hashed->row.sha256;
+    if (std::optional<JobResult> hashed = slot.worker->receive()) {
+      slot.unhashed->row.sha256 = std::move(hashed->row.sha256);
+      slot.unhashed->companions = std::move(hashed->companions);
     } else if (slot.worker->ended() || Clock::now() >= slot.deadline) {
       replace(slot);
     } else {

@@ -33,8 +33,8 @@ struct SupervisorOptions {
 using ResultHandler = std::function<bool(std::size_t job, JobResult result, double progress)>;
 
 // Does all jobs, each in a worker process. A worker is used again after it evaluated or rejected a mesh, and replaced
-// where it ran out of time or memory or crashed. Results of meshes that were not read to the end have their hash, too,
-// where a worker can tell it in time. `tick` is called at least four times a second. Returns the one of
+// where it ran out of time or memory or crashed. Results of meshes that failed have the hashes of what was read, too,
+// where a worker can tell them in time. `tick` is called at least four times a second. Returns the one of
 // `signals` that interrupted it, or 0; either way no worker is left, nor any file that one was writing. Call in a
 // process of one thread.
 [[nodiscard]] int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options,

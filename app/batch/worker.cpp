@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "app/batch/command_message.h"
 #include "app/batch/job_result.h"
@@ -34,6 +35,7 @@
 #include "io/files/base64.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
+#include "io/mesh/read_mesh.h"
 
 namespace raycone {
 namespace {
@@ -189,17 +191,46 @@ JobResult evaluate(const PointsCommand& command, const RunLimits& limits) {
   return result_of(run_points(command, limits), "");
 }
 
-// Of a file that could not be evaluated: what tells later whether it is still the same. A pipe would have to be waited
+// Of a mesh that could not be evaluated: what tells later whether it is still the same. A pipe would have to be waited
 // for. Empty where the file is no longer the one that was asked about.
-std::string hash_of(const HashRequest& request) {
+std::string hash_of(const std::string& mesh, const FileStamp& stamp) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(request.path, error)) return "";
+  if (!std::filesystem::is_regular_file(mesh, error)) return "";
   try {
-    const std::string hash = sha256_of_file(request.path);
-    return stamp_of(request.path) == request.stamp ? hash : "";
+    const std::string hash = sha256_of_file(mesh);
+    return stamp_of(mesh) == stamp ? hash : "";
   } catch (const InputError&) {
     return "";
   }
+}
+
+const MeshOptions& mesh_of(const MeshCommand& command) {
+  return std::visit([](const auto& one) -> const MeshOptions& { return one.mesh; }, command);
+}
+
+// What else its evaluation depends on.
+std::vector<std::string> further_inputs(const MeshCommand& command) {
+  const MeshOptions& mesh = mesh_of(command);
+  std::vector<std::string> paths;
+  try {
+    paths = files_referred_to(mesh.path, mesh.reading);
+  } catch (const std::exception&) {  // it fails whatever there is beside it
+  }
+  const auto* const lattice = std::get_if<LatticeCommand>(&command);
+  const auto* const grid = lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
+  if (grid) paths.push_back(grid->path);
+  return paths;
+}
+
+JobResult answer_to(const InputsRequest& request) {
+  JobResult result;
+  result.row.status = MeshStatus::kInvalid;  // it has no figures
+  result.row.sha256 = hash_of(mesh_of(request.command).path, request.stamp);
+  if (result.row.sha256.empty()) return result;
+  for (const std::string& path : further_inputs(request.command)) {
+    result.companions.push_back(file_as_at(path, request.started));
+  }
+  return result;
 }
 
 template <typename OneCommand>
@@ -216,12 +247,7 @@ JobResult perform(const OneCommand& command) {
 }
 
 JobResult answer_to(const Message& message) {
-  if (const std::optional<HashRequest> request = hash_request_from(message)) {
-    JobResult result;
-    result.row.status = MeshStatus::kInvalid;  // it has no figures
-    result.row.sha256 = hash_of(*request);
-    return result;
-  }
+  if (const std::optional<InputsRequest> request = inputs_request_from(message)) return answer_to(*request);
   return std::visit([](const auto& one) { return perform(one); }, mesh_command_from(message));
 }
 

@@ -96,22 +96,26 @@ std::string decode_data_uri(const NamedBytes& source, std::size_t buffer, std::s
   return *std::move(decoded);
 }
 
-std::string read_beside(const NamedBytes& source, std::size_t buffer, std::string_view uri,
-                        std::vector<FileRead>* companions) {
+std::string path_beside(const NamedBytes& source, std::size_t buffer, std::string_view uri) {
   const std::filesystem::path relative = percent_decoded(uri);
   if (relative.native().find('\0') != std::string::npos) refuse(source, buffer, uri, "is not a file name");
   if (has_scheme(uri) || relative.is_absolute() || leaves_directory(relative)) {
     refuse(source, buffer, uri, "is outside the file's directory, expected a relative path within it");
   }
   if (source.directory.empty()) refuse(source, buffer, uri, "is another file, which standard input cannot refer to");
-  const std::filesystem::path path = (std::filesystem::path(source.directory) / relative).lexically_normal();
+  return (std::filesystem::path(source.directory) / relative).lexically_normal().string();
+}
+
+std::string read_beside(const NamedBytes& source, std::size_t buffer, std::string_view uri,
+                        std::vector<FileRead>* companions) {
+  const std::string path = path_beside(source, buffer, uri);
   // A device or FIFO of a hostile archive would never end.
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
     refuse(source, buffer, uri, "is missing, expected a file beside this one");
   }
-  std::string bytes = read_file(path == "-" ? "./-" : path.string());  // a file, not standard input
-  if (companions) companions->push_back({path.string(), sha256(bytes)});
+  std::string bytes = read_file(path == "-" ? "./-" : path);  // a file, not standard input
+  if (companions) companions->push_back({path, sha256(bytes)});
   return bytes;
 }
 
@@ -146,6 +150,11 @@ std::string load_gltf_uri(const NamedBytes& source, std::size_t buffer, std::str
                           std::vector<FileRead>* companions) {
   if (is_data_uri(uri)) return decode_data_uri(source, buffer, uri);
   return read_beside(source, buffer, uri, companions);
+}
+
+std::optional<std::string> path_of_gltf_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri) {
+  if (is_data_uri(uri)) return std::nullopt;
+  return path_beside(source, buffer, uri);
 }
 
 }  // namespace raycone

@@ -29,4 +29,9 @@ struct GlbChunks {
 [[nodiscard]] std::string load_gltf_uri(const NamedBytes& source, std::size_t buffer, std::string_view uri,
                                         std::vector<FileRead>* companions);
 
+// The path of the file, there or not, that `uri` of buffer number `buffer` refers to; nothing where it is a data URI.
+// Throws InputError where it may not be followed.
+[[nodiscard]] std::optional<std::string> path_of_gltf_uri(const NamedBytes& source, std::size_t buffer,
+                                                          std::string_view uri);
+
 }  // namespace raycone

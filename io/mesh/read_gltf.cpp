@@ -322,15 +322,33 @@ std::vector<Warning> warnings_of(const Omissions& omissions) {
   return warnings;
 }
 
+GlbChunks chunks_of(const NamedBytes& source) {
+  return is_glb(source.bytes) ? split_glb(source) : GlbChunks{source.bytes, 0, std::nullopt};
+}
+
+GltfDocument document_of(const NamedBytes& source, const GlbChunks& chunks) {
+  const auto offset = is_glb(source.bytes) ? std::optional<std::size_t>(chunks.json_offset) : std::nullopt;
+  return parse_gltf_document({source.name, chunks.json, offset, "a glTF document"});
+}
+
 }  // namespace
 
+std::vector<std::string> files_of_gltf(const NamedBytes& source) {
+  const std::vector<GltfBuffer> buffers = document_of(source, chunks_of(source)).buffers;
+  std::vector<std::string> paths;
+  for (std::size_t n = 0; n < buffers.size(); ++n) {
+    try {
+      if (!buffers[n].uri) continue;
+      if (std::optional<std::string> path = path_of_gltf_uri(source, n, *buffers[n].uri)) paths.push_back(*path);
+    } catch (const InputError&) {  // what may not be followed is not read, whatever is there
+    }
+  }
+  return paths;
+}
+
 ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions) {
-  GlbChunks chunks{source.bytes, 0, std::nullopt};
-  const bool glb = is_glb(source.bytes);
-  if (glb) chunks = split_glb(source);
-  const auto offset = glb ? std::optional<std::size_t>(chunks.json_offset) : std::nullopt;
-  GltfData data(source, parse_gltf_document({source.name, chunks.json, offset, "a glTF document"}), chunks.binary,
-                companions);
+  const GlbChunks chunks = chunks_of(source);
+  GltfData data(source, document_of(source, chunks), chunks.binary, companions);
   Omissions omissions;
   MeshAssembler assembler(source.name, data, omissions);
 

@@ -111,4 +111,13 @@ MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   return parse_mesh(path, mesh, bytes, options);
 }
 
+std::vector<std::string> files_referred_to(const std::string& path, const ReadMeshOptions& options) {
+  std::string bytes = read_file(path);
+  if (is_packed(bytes)) bytes = unpacked(bytes, path);
+  const NamedBytes source{path, directory_of(path), bytes};
+  const MeshFormat format = format_of(source, options);
+  const bool gltf = format == MeshFormat::kGltf || format == MeshFormat::kGlb;
+  return gltf ? files_of_gltf(source) : std::vector<std::string>();
+}
+
 }  // namespace raycone

@@ -51,6 +51,10 @@ struct MeshFile {
 // finite; else, or where the file cannot be read, throws InputError. LimitError where it takes too much memory.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options = {});
 
+// The further files that a mesh in a regular file refers to, there or not, whether or not it is good otherwise. Throws
+// as read_mesh().
+[[nodiscard]] std::vector<std::string> files_referred_to(const std::string& path, const ReadMeshOptions& options = {});
+
 // The readers behind it, one per format: same guarantees but for "at least one triangle" and sha256.
 [[nodiscard]] ParsedMesh read_obj(const NamedBytes& source);
 [[nodiscard]] ParsedMesh read_ply(const NamedBytes& source);
@@ -58,6 +62,8 @@ struct MeshFile {
 [[nodiscard]] ParsedMesh read_off(const NamedBytes& source);
 // glTF (JSON) or GLB, told apart by content. Files referred to are appended to *companions.
 [[nodiscard]] ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions);
+// The paths of the files that its buffers name, but for those that are refused wherever they are.
+[[nodiscard]] std::vector<std::string> files_of_gltf(const NamedBytes& source);
 // The items of the build, components resolved, in the file's unit. Groups are objects with triangles.
 [[nodiscard]] ParsedMesh read_3mf(const NamedBytes& source);
 

@@ -425,6 +425,19 @@ TEST(ReadGltf, UriThatLeavesTheDirectoryIsRefusedByName) {
   }
 }
 
+TEST(ReadGltf, FilesThatItRefersToAreNamedThereOrNot) {
+  const TemporaryDirectory directory;
+  Asset asset;
+  asset.buffers = R"([{"byteLength":60,"uri":"a%20b.bin"},{"byteLength":1,"uri":"../c.bin"},
+      {"byteLength":1,"uri":"data:,x"},{"byteLength":1},{"byteLength":1,"uri":"d/e.bin"}])";
+  const std::vector<std::string> files{directory / "a b.bin", directory / "d/e.bin"};
+  EXPECT_EQ(files_of_gltf({"a.gltf", directory.path().string(), asset.json()}), files);
+  std::ofstream(directory / "a.mesh", std::ios::binary) << asset.json();
+  EXPECT_EQ(files_referred_to(directory / "a.mesh", {.format = MeshFormat::kGltf}), files);
+  std::ofstream(directory / "b.obj") << "f 1 2 3\n";
+  EXPECT_EQ(files_referred_to(directory / "b.obj"), std::vector<std::string>()) << "no mesh, but it refers to none";
+}
+
 TEST(ReadGltf, StandardInputCannotReferToFiles) {
   Asset asset;
   asset.buffers = R"([{"byteLength":60,"uri":"x.bin"}])";

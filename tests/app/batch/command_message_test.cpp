@@ -167,15 +167,19 @@ TEST(CommandMessage, GivesWhatWasSent) {
   EXPECT_EQ(std::get<GridReference>(received.lattice).name, "name");
 }
 
-TEST(CommandMessage, ARequestForAHashIsNoCommand) {
-  const Message message = to_message(HashRequest{"a.stl", {1, -2, 3}});
-  const std::optional<HashRequest> received = hash_request_from(message);
+TEST(CommandMessage, ARequestForHashesIsNoCommand) {
+  LatticeCommand command;
+  command.mesh.path = "a.stl";
+  Message message = to_message(InputsRequest{command, {1, -2, 3}, 4});
+  const std::optional<InputsRequest> received = inputs_request_from(message);
   ASSERT_TRUE(received);
-  EXPECT_EQ(received->path, "a.stl");
+  EXPECT_EQ(std::get<LatticeCommand>(received->command).mesh.path, "a.stl");
   EXPECT_EQ(received->stamp, (FileStamp{1, -2, 3}));
+  EXPECT_EQ(received->started, 4);
   EXPECT_THROW((void)mesh_command_from(message), std::runtime_error);
-  EXPECT_FALSE(hash_request_from(to_message(LatticeCommand())));
-  EXPECT_FALSE(hash_request_from({"a.stl", "1", "x", "3"}));
+  EXPECT_FALSE(inputs_request_from(to_message(command)));
+  message[2] = "x";
+  EXPECT_FALSE(inputs_request_from(message));
 }
 
 TEST(CommandMessage, OfADamagedSupervisorIsRefused) {

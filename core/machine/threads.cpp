@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <stdexcept>
@@ -23,11 +24,23 @@ struct BodyException {
   std::exception_ptr cause;
 };
 
+// Workers that have run a loop's body.
+std::atomic<std::size_t> workers{0};
+
+// Counts the calling thread where it is a worker and was not counted yet.
+void count_worker() {
+  thread_local bool counted = false;
+  if (counted || tbb::this_task_arena::current_thread_index() == 0) return;
+  counted = true;
+  ++workers;
+}
+
 void run_loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   const tbb::blocked_range<std::size_t> all(0, count, std::max<std::size_t>(grain, 1));
   try {
     tbb::parallel_for(all, [&body](const tbb::blocked_range<std::size_t>& range) {
       const DefaultFloatingPoint guard;
+      count_worker();
       try {
         body(range.begin(), range.end());
       } catch (...) {
@@ -66,7 +79,14 @@ void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate
 
 namespace {
 
-constexpr int kPatience = 100'000;  // looks; a system that starts no more threads goes on with fewer
+// Lets others run until `done()`, for a second at most: a system that starts no more threads goes on with fewer. Time
+// is what counts, as each look may last as long as all others want the CPU.
+template <class Done>
+void wait_until(const Done& done) {
+  constexpr std::chrono::seconds kPatience{1};
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!done() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+}
 
 // TBB starts a worker for what is enqueued even on a single CPU, and OpenVDB enqueues: where it could not be started
 // then, the process would be terminated. Where there are other workers they do: one that was called for what is
@@ -74,18 +94,16 @@ constexpr int kPatience = 100'000;  // looks; a system that starts no more threa
 void start_worker_for_enqueued() {
   const auto done = std::make_shared<std::atomic<bool>>(false);
   tbb::task_arena().enqueue([done] { *done = true; });
-  for (int looks = 0; !*done && looks < kPatience; ++looks) std::this_thread::yield();
+  wait_until([&] { return done->load(); });
 }
 
 }  // namespace
 
+// Within a loop all workers may be in bodies that wait for this one: they are there already then.
 void prime_threads() {
   const auto count = static_cast<std::size_t>(thread_count());
-  std::atomic<std::size_t> started = 0;
-  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-    started += end - begin;
-    for (int looks = 0; started < count && looks < kPatience; ++looks) std::this_thread::yield();
-  });
+  const auto all_started = [&] { return workers + 1 >= count; };
+  if (!all_started()) parallel_for(count, 1, [&](std::size_t, std::size_t) { wait_until(all_started); });
   try {
     if (tbb::this_task_arena::max_concurrency() == 1) start_worker_for_enqueued();
   } catch (const std::runtime_error&) {

@@ -33,7 +33,8 @@ class ThreadLimit {
 
 // Starts all of TBB's workers, in the floating-point environment of the caller. Call it before Embree is first used:
 // workers inherit the environment of the thread that starts them, and Embree flushes to zero. Call it before memory is
-// capped, too, so that no worker lacks a stack later. Throws ThreadsUnavailable.
+// capped, too, so that no worker lacks a stack later. Where they do not come within a second it goes on without. Throws
+// ThreadsUnavailable.
 void prime_threads();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), on the allowed threads. Each call has the default

@@ -16,6 +16,13 @@ struct SolidTriangle {
   double orientation;  // 1, or -1 if it is a, c, b
 };
 
+// How far the argument of a factor may be off. Crossings are exact all the same.
+enum class Care {
+  kFull,   // no more than doubt_of_factors() says (core/boundary/boundary_term.h)
+  kRough,  // kRoughness times that, so that next to long edges, too, few factors are taken with care
+};
+inline constexpr double kRoughness = 0x1p10;
+
 // Multiplies the factors z_T of all triangles (core/boundary/solid_angles.h) at all samples; the argument of the
 // product is 2 pi times the winding number. One lane is one sample, and its operations come in one order, without fused
 // multiply-add: results are the same for every SIMD level. Needs DefaultFloatingPoint. Thread-safe.

@@ -31,9 +31,14 @@ constexpr double kPlaneSideFilter = 5.0 * 0x1p-53 * (1.0 + 0x1p-40);
 constexpr double kPlaneSideUnderflow = 0x1p-1000;
 
 // Re z_T, four terms of at most |a||b||c|, is off by less than 50 u of that. Next to the triangle, where |z_T| is below
-// these shares of |a||b||c| and of the absolute terms of Im z_T, the argument could be off by more than 2^-41.
-constexpr double kNearTriangle = 0x1p-6;
-constexpr double kNearCorner = 0x1p-8;
+// these shares of |a||b||c| and of the absolute terms of Im z_T, the argument could be off by more than 2^-41; for
+// rough factors by more than kRoughness times that.
+template <Care kCare>
+inline constexpr double kCareless = kCare == Care::kRough ? kRoughness : 1.0;
+template <Care kCare>
+inline constexpr double kNearTriangle = 0x1p-6 / kCareless<kCare>;
+template <Care kCare>
+inline constexpr double kNearCorner = 0x1p-8 / kCareless<kCare>;
 
 // What y and z contribute: to |a|^2, |b|^2, |c|^2, to the products of two of them, to n . a, and to its absolute terms.
 template <class Real>
@@ -78,12 +83,14 @@ struct CornerLanes {
 };
 
 // im: n . a; terms: the sum of the magnitudes of its three terms.
+template <Care kCare>
 HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const CornerLanes& p, Lanes im, Lanes terms) {
   const Lanes all = hn::Mul(hn::Mul(p.a, p.b), p.c);
   const Lanes re = hn::Add(hn::Add(all, hn::Mul(p.ab, p.c)), hn::Add(hn::Mul(p.bc, p.a), hn::Mul(p.ca, p.b)));
   const Lanes doubt = hn::Add(hn::Mul(hn::Set(d, kPlaneSideFilter), terms), hn::Set(d, kPlaneSideUnderflow));
   const Lanes magnitude = hn::Add(hn::Abs(re), hn::Abs(im));
-  const Lanes near = hn::Max(hn::Mul(hn::Set(d, kNearTriangle), all), hn::Mul(hn::Set(d, kNearCorner), terms));
+  const Lanes near =
+      hn::Max(hn::Mul(hn::Set(d, kNearTriangle<kCare>), all), hn::Mul(hn::Set(d, kNearCorner<kCare>), terms));
   // Which side of the triangle's plane the query is on matters only where the argument may be near +-pi.
   const auto sided = hn::Or(hn::Gt(hn::Abs(im), doubt), hn::Gt(re, hn::Zero(d)));
   const auto trusted = hn::And(sided, hn::Gt(magnitude, hn::Max(near, hn::Set(d, kSmallestFactor))));
@@ -96,10 +103,10 @@ HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const ProjectedTri
   const auto norm = [](Lanes v, Lanes square) { return hn::Sqrt(hn::Add(hn::Mul(v, v), square)); };
   const auto product = [](Lanes v, Lanes w, Lanes rest) { return hn::Add(hn::Mul(v, w), rest); };
   const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), ax);
-  return factors_of(t,
-                    {norm(ax, p.aa), norm(bx, p.bb), norm(cx, p.cc), product(ax, bx, p.ab), product(bx, cx, p.bc),
-                     product(cx, ax, p.ca)},
-                    hn::Add(nx, p.side), hn::Add(hn::Abs(nx), p.terms));
+  return factors_of<Care::kFull>(t,
+                                 {norm(ax, p.aa), norm(bx, p.bb), norm(cx, p.cc), product(ax, bx, p.ab),
+                                  product(bx, cx, p.bc), product(cx, ax, p.ca)},
+                                 hn::Add(nx, p.side), hn::Add(hn::Abs(nx), p.terms));
 }
 
 // Of triangle n of the rays, at the samples from i on.

@@ -28,7 +28,8 @@ RoughSums::RoughSums(const LatticeBlocks& blocks, const LatticeRows& rows)
     : blocks_(blocks),
       rows_(rows),
       axes_{rows.xs, rows.ys, rows.zs},
-      kernels_{shared_corners_kernel(blocks.level()), cone_kernel(blocks.level()), far_kernel(blocks.level())},
+      kernels_{shared_corners_kernel(blocks.level(), Care::kRough), cone_kernel(blocks.level()),
+               far_kernel(blocks.level())},
       matrices_(matrix_kernel(blocks.level())),
       doubt_(doubt_of_factors(3 * static_cast<double>(blocks.tree().triangles().size()))),
       covers_(blocks.tree(), axes_, kernels_, blocks.edges()) {}
@@ -59,8 +60,12 @@ void RoughSums::add_at_nodes(RoughBox& box, const RoughBox* around) const {
   }
   double largest = 0.0;
   for (const double value : box.at_nodes) largest = std::max(largest, std::abs(value));
-  box.error =
-      (around ? around->error : 0.0) + box.cover.error + box.nodes.growth() * (doubt_ + kSumsRound * (1 + largest));
+  const double doubt = doubt_of(box.cover.smooth) + kSumsRound * (1 + largest);
+  box.error = (around ? around->error : 0.0) + box.cover.error + box.nodes.growth() * doubt;
+}
+
+double RoughSums::doubt_of(const Cover& cover) const {
+  return doubt_ + kRoughness * doubt_of_factors(3 * static_cast<double>(cover.triangles.size()));
 }
 
 double RoughSums::cost(const RoughBox& box) {
@@ -85,7 +90,7 @@ double RoughSums::evaluate(const RoughBox& box, std::vector<double>& numbers) {
   }
   covers_.add(box.cover.near, rows_.box_of(samples), samples, sums);
   blocks_.count_terms(box.cover.near, samples.size());
-  return box.error + box.cover.near_error + doubt_;
+  return box.error + box.cover.near_error + doubt_of(box.cover.near);
 }
 
 }  // namespace raycone

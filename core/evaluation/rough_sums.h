@@ -56,13 +56,15 @@ class RoughSums {
 
  private:
   void add_at_nodes(RoughBox& box, const RoughBox* around) const;
+  // What a sum over a cover rounds at most.
+  [[nodiscard]] double doubt_of(const Cover& cover) const;
 
   const LatticeBlocks& blocks_;
   const LatticeRows& rows_;
   const LatticeAxes axes_;
   const CoverKernels kernels_;
   const MatrixKernel matrices_;
-  const double doubt_;  // what a sum of solid angles rounds at most
+  const double doubt_;  // what a sum of all solid angles rounds at most, if none is rough
   LatticeCovers covers_;
   LayerValues layer_;
 };

@@ -34,6 +34,7 @@ HWY_INLINE void see_corners(const SharedCorners::Chunk& chunk, std::size_t n, st
 }
 
 // A chunk as seen from a group of samples.
+template <Care kCare>
 class TrianglesOfChunk {
  public:
   TrianglesOfChunk(const SharedCorners::Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
@@ -59,7 +60,7 @@ class TrianglesOfChunk {
     };
     const Lanes nx = hn::Mul(hn::Set(d, t.normal.x), ax), ny = hn::Mul(hn::Set(d, t.normal.y), ay);
     const Lanes nz = hn::Mul(hn::Set(d, t.normal.z), az);
-    return factors_of(
+    return factors_of<kCare>(
         t,
         {load(corners_[a].norm), load(corners_[b].norm), load(corners_[c].norm), product(ax, bx, ay, by, az, bz),
          product(bx, cx, by, cy, bz, cz), product(cx, ax, cy, ay, cz, az)},
@@ -92,6 +93,7 @@ class TrianglesOfChunk {
 
 // A chunk as seen from a tile of rows. What x contributes to a product is the same in all rows, what y and z contribute
 // is one number of each: of every product one sum is left to each sample.
+template <Care kCare>
 class TrianglesOfRows {
  public:
   TrianglesOfRows(const SharedCorners::Chunk& chunk, const SampleTile& samples) : chunk_(chunk) {
@@ -119,9 +121,9 @@ class TrianglesOfRows {
   [[nodiscard]] HWY_INLINE TriangleFactors factors(std::size_t n) const {
     const auto& [a, b, c, known] = chunk_.places[n];
     const Products& p = products_[n];
-    return factors_of(chunk_.triangles[n],
-                      {load(norms_[a]), load(norms_[b]), load(norms_[c]), sum(p.ab), sum(p.bc), sum(p.ca)}, sum(p.side),
-                      sum(p.terms));
+    return factors_of<kCare>(chunk_.triangles[n],
+                             {load(norms_[a]), load(norms_[b]), load(norms_[c]), sum(p.ab), sum(p.bc), sum(p.ca)},
+                             sum(p.side), sum(p.terms));
   }
 
  private:
@@ -182,12 +184,14 @@ class TrianglesOfRows {
   std::array<Products, SharedCorners::kInChunk> products_;
 };
 
-HWY_INLINE TriangleFactors factors_at(TrianglesOfChunk& triangles, const SolidTriangle&, std::size_t n,
+template <Care kCare>
+HWY_INLINE TriangleFactors factors_at(TrianglesOfChunk<kCare>& triangles, const SolidTriangle&, std::size_t n,
                                       const SampleTile&, std::size_t) {
   triangles.see(n);
   return triangles.factors(n);
 }
-HWY_INLINE TriangleFactors factors_at(TrianglesOfRows& triangles, const SolidTriangle&, std::size_t n,
+template <Care kCare>
+HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const SolidTriangle&, std::size_t n,
                                       const SampleTile&, std::size_t) {
   triangles.see(n);
   return triangles.factors(n);

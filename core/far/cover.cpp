@@ -75,6 +75,11 @@ namespace {
 
 constexpr double kInverse = (1 + 0x1p-30) / (4 * std::numbers::pi);  // of 4 pi
 
+double square_of_diagonal(const Box& box) {
+  const Vec3 sides = box.upper - box.lower;
+  return dot(sides, sides);
+}
+
 // Makes one rough cover.
 class RoughWalk {
  public:
@@ -103,9 +108,13 @@ class RoughWalk {
   void take_triangle(std::uint32_t number) {
     constexpr double kOfTriangle = 0.25;  // what is spared is less than for a node
     const TriangleExtent& triangle = extents_[number];
-    const double square = square_of_gap(box_, triangle.box) * (1 - 0x1p-40);
-    const double solid_angle = kInverse * triangle.area / square, bend = bend_of(triangle.area, square);
-    if (square > kLeastSquare && solid_angle <= kOfTriangle * each_) {
+    double square = square_of_gap(box_, triangle.box) * (1 - 0x1p-40);
+    const bool is_large = square_of_diagonal(triangle.box) > square_of_diagonal(box_);
+    if (is_large && !(bend_of(triangle, square) <= kOfTriangle * each_)) {
+      square = square_of_gap(tree_.triangles()[number], triangle, box_);
+    }
+    const double solid_angle = solid_angle_of(triangle, square), bend = bend_of(triangle, square);
+    if (solid_angle <= kOfTriangle * each_) {
       result_.error += solid_angle;
     } else if (bend <= kOfTriangle * each_) {
       result_.smooth.triangles.push_back(number);
@@ -165,6 +174,20 @@ class RoughWalk {
     static_assert(Interpolation::kOrder == 4);
     if (!(square > kLeastSquare)) return std::numeric_limits<double>::infinity();
     return interpolation_.bend * (Interpolation::kOrder + 1) * kInverse * area / (square * square * square);
+  }
+
+  // What is farther away counts for less: of a slender triangle, and of a large one, as much as docs/method.md says.
+  [[nodiscard]] double bend_of(const TriangleExtent& triangle, double square) const {
+    constexpr double kOfWidth = 3 * std::numbers::pi / 8 * (1 + 0x1p-40), kOfAny = std::numbers::pi / 2 * (1 + 0x1p-40);
+    const double slender = kOfWidth * triangle.width * std::sqrt(square);
+    return bend_of(std::min({triangle.area, slender, kOfAny * square}), square);
+  }
+
+  // In turns, at most.
+  [[nodiscard]] static double solid_angle_of(const TriangleExtent& triangle, double square) {
+    constexpr double kOfWidth = std::numbers::pi * (1 + 0x1p-40);
+    if (!(square > kLeastSquare)) return std::numeric_limits<double>::infinity();
+    return kInverse * std::min(triangle.area, kOfWidth * triangle.width * std::sqrt(square)) / square;
   }
 
   const SourceTree& tree_;

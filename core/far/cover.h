@@ -14,6 +14,7 @@
 #include "core/far/far_kernel.h"
 #include "core/far/shared_corners.h"
 #include "core/far/source_tree.h"
+#include "core/far/triangle_extent.h"
 
 namespace raycone {
 
@@ -34,12 +35,6 @@ struct Cover {
 // less where they are not summed one by one.
 [[nodiscard]] Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles, const Box& box,
                              double tolerance, double triangle_cost = 1.0);
-
-// Where a triangle is, and how large.
-struct TriangleExtent {
-  Box box;
-  double area;  // NaN where it is not known: such a triangle is near everywhere
-};
 
 // What interpolation between nodes in a box makes of a function: where its derivatives of order kOrder along any
 // axis are at most D times the factorial of that, it is off by at most bend D, and values at nodes that are off by e

@@ -241,7 +241,7 @@ struct Walk {
       const bool small = hn::AllTrue(d, hn::Ge(square, hn::Set(d, node.square_of_small)));
       for (std::size_t n = node.first_chunk; n < node.last_chunk; ++n) {
         const SharedCorners::Chunk chunk = tree.corners().chunk(n);
-        TrianglesOfChunk views(chunk, samples);
+        TrianglesOfChunk<Care::kFull> views(chunk, samples);
         multiply_chunk(result.near, chunk, views, samples, i, near, small);
       }
       result.near_terms += (node.own_end - node.begin) * hn::CountTrue(d, near);

@@ -16,9 +16,7 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
       tolerance_(tolerance),
       level_(level) {
   sources_.reserve(tree_.triangles().size());
-  for (const SolidTriangle& t : tree_.triangles()) {
-    sources_.push_back({box_of(t.a, t.b, t.c), safe_norm(t.normal) / 2 * (1 + 0x1p-40)});
-  }
+  for (const SolidTriangle& triangle : tree_.triangles()) sources_.push_back(extent_of(triangle));
   if (near == Near::kBoundary) edges_.emplace(tree_.triangles());
 }
 

@@ -57,7 +57,8 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
     : blocks_(blocks),
       axes_(axes),
       axes_of_(axes_of),
-      kernels_{shared_corners_kernel(blocks.level_), cone_kernel(blocks.level_), far_kernel(blocks.level_)},
+      kernels_{shared_corners_kernel(blocks.level_, Care::kFull), cone_kernel(blocks.level_),
+               far_kernel(blocks.level_)},
       matrices_(matrix_kernel(blocks.level_)),
       near_triangle_(blocks.edges_ && axes_of == AxesOf::kSamples ? kInPatch : 1.0) {
   for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++levels_) {

@@ -27,17 +27,28 @@ void multiply_chunk_at_all(ProductTile& products, const SharedCorners::Chunk& ch
   }
 }
 
-void multiply_chunks_here(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
-                          ProductTile& products) {
+template <Care kCare>
+void multiply_chunks(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
+                     ProductTile& products) {
   set_ones(products);
   for (std::size_t n = 0; n < triangles.chunks(); ++n) {
     if (shape == TileShape::kInRows) {
-      multiply_chunk_at_all<TrianglesOfRows>(products, triangles.chunk(n), samples);
+      multiply_chunk_at_all<TrianglesOfRows<kCare>>(products, triangles.chunk(n), samples);
     } else {
-      multiply_chunk_at_all<TrianglesOfChunk>(products, triangles.chunk(n), samples);
+      multiply_chunk_at_all<TrianglesOfChunk<kCare>>(products, triangles.chunk(n), samples);
     }
   }
   set_arguments(products, samples.count);
+}
+
+void multiply_chunks_here(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
+                          ProductTile& products) {
+  multiply_chunks<Care::kFull>(triangles, samples, shape, products);
+}
+
+void multiply_chunks_roughly(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
+                             ProductTile& products) {
+  multiply_chunks<Care::kRough>(triangles, samples, shape, products);
 }
 
 }  // namespace
@@ -48,7 +59,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace raycone {
 
-SharedCornersKernel shared_corners_kernel(SimdLevel level) { return RAYCONE_AT_LEVEL(level, multiply_chunks_here); }
+SharedCornersKernel shared_corners_kernel(SimdLevel level, Care care) {
+  return care == Care::kRough ? RAYCONE_AT_LEVEL(level, multiply_chunks_roughly)
+                              : RAYCONE_AT_LEVEL(level, multiply_chunks_here);
+}
 
 double square_to_look_small(const SolidTriangle& triangle) {
   constexpr double kLeast = 0x1p-40;  // distance: beyond it no factor is too small to be trusted

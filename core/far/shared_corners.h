@@ -62,6 +62,6 @@ using SharedCornersKernel = void (*)(const SharedCorners& triangles, const Sampl
                                      ProductTile& products);
 
 // That of the level, of the best one where the level is not available.
-[[nodiscard]] SharedCornersKernel shared_corners_kernel(SimdLevel level);
+[[nodiscard]] SharedCornersKernel shared_corners_kernel(SimdLevel level, Care care);
 
 }  // namespace raycone

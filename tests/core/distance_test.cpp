@@ -125,7 +125,7 @@ TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
 
 // On a lattice many triangles are equally near.
 TEST(Distance, NearestTriangleIsTheFirstOfThoseAtTheLeastDistance) {
-  Random random(6);
+  test::Random random(6);
   for (const int triangles : {7, 60, 1000}) {
     const TriangleMesh mesh = test::lattice_soup(random, triangles, 3);
     std::vector<Vec3> points;
@@ -148,7 +148,7 @@ TEST(Distance, NearestTriangleIsTheFirstOfThoseAtTheLeastDistance) {
 TEST(Distance, OfManyPointsIsThatOfFew) {
   const TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
   const DistanceEvaluator distance(mesh);
-  Random random(8);
+  test::Random random(8);
   std::vector<Vec3> points{{1e300, -1e300, 0}, {0, 1e-300, 0}};
   while (points.size() < (std::size_t{1} << 20) + 5000) {
     points.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));

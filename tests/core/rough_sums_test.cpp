@@ -160,6 +160,18 @@ TEST(RoughSumsTest, OfOneTriangleFromAfar) {
   EXPECT_GT(look_from_afar(mesh).closest, 0.05);
 }
 
+// Much longer than it is away, and much wider: what is farther off than the nearest point counts for less.
+TEST(RoughSumsTest, OfLongAndOfWideTrianglesFromNearby) {
+  for (const double width : {1e-3, 0.1, 2.0}) {
+    TriangleMesh mesh;
+    mesh.vertices = {{-3, -width, 0}, {0.2, 0, 0.01}, {3, -width, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_GT(look_from_afar(mesh).closest, 0.01) << width;
+    mesh.vertices = {{-3, 0, 0}, {3, 0, 0.01}, {0.2, width, 0}};
+    EXPECT_GT(look_from_afar(mesh).closest, 0.003) << width;
+  }
+}
+
 // A node of the tree, whose expansion is exact to many digits.
 TEST(RoughSumsTest, OfAPatchFromAfar) {
   TriangleMesh mesh;

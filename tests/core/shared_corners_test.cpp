@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/boundary/boundary_term.h"
 #include "core/boundary/solid_angles.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
@@ -51,12 +52,12 @@ Box box_of(const SampleTile& tile) {
 }
 
 std::vector<double> sums_of(std::span<const SolidTriangle> triangles, bool small, const SampleTile& tile,
-                            TileShape shape, SimdLevel level) {
+                            TileShape shape, SimdLevel level, Care care = Care::kFull) {
   const DefaultFloatingPoint guard;
   SharedCorners corners = SharedCorners(triangles);
   corners.add_group(triangles.size(), small);
   ProductTile products;
-  shared_corners_kernel(level)(corners, tile, shape, products);
+  shared_corners_kernel(level, care)(corners, tile, shape, products);
   std::vector<double> sums(tile.count);
   for (std::size_t i = 0; i < tile.count; ++i) {
     sums[i] = static_cast<double>(products.turns(i)) + products.argument[i];
@@ -80,6 +81,35 @@ TEST(SharedCorners, RowsHaveTheBitsOfScatteredSamples) {
       EXPECT_EQ(sums_of(triangles, false, tile, TileShape::kScattered, level), scattered);
     }
   }
+}
+
+// Triangles a million times as long as they are far away from samples: that is where factors cancel.
+TEST(SharedCorners, RoughFactorsAreOffByNoMoreThanTheyMayBe) {
+  std::vector<SolidTriangle> triangles;
+  test::Random random(3);
+  for (int n = 0; n < 20; ++n) {
+    const Vec3 a{-1, test::uniform(random, -1, 1), 1e-6 * n}, b{1.5, test::uniform(random, -1, 1), 2e-6};
+    triangles.push_back(solid_faces({{a, b, a + Vec3{0.0, 1e-4 * n, 1e-3}}, {{0, 1, 2}}}).triangles.front());
+  }
+  const double most = kRoughness * doubt_of_factors(3 * static_cast<double>(triangles.size()));
+  double largest = 0.0;
+  for (int n = 0; n < 500; ++n) {
+    const SolidTriangle& t = triangles[random() % triangles.size()];
+    const Vec3 near = t.a + test::uniform(random, 0, 1) * (t.b - t.a);
+    const double away = std::pow(10.0, test::uniform(random, -7, -1));
+    SampleTile tile;
+    tile.clear();
+    for (int i = 0; i < 64; ++i) {
+      tile.add(near + away * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+    }
+    const std::vector<double> full = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kBest);
+    for (const SimdLevel level : kLevels) {
+      const std::vector<double> rough = sums_of(triangles, false, tile, TileShape::kScattered, level, Care::kRough);
+      for (std::size_t i = 0; i < full.size(); ++i) largest = std::max(largest, std::abs(full[i] - rough[i]));
+    }
+  }
+  EXPECT_LE(largest, most);
+  EXPECT_GT(largest, 1e-5 * most) << "the control: they are rough";
 }
 
 // What is known to look small is not looked at again: nothing changes by that.

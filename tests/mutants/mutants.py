@@ -85,7 +85,7 @@ MUTANTS = [
         ("core/evaluation/gradient.cpp", "} else if (largest_coordinate(q) < kFar && scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {",
          "} else if (true) {")]),
     Mutant("source_areas_vanish", "squares of areas underflow", [
-        ("core/far/lattice_blocks.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
+        ("core/far/triangle_extent.cpp", "safe_norm(t.normal)", "norm(t.normal)")]),
     Mutant("cap_areas_vanish", "squares of areas underflow", [
         ("core/boundary/change_bound.cpp", "safe_norm(normal)", "norm(normal)")]),
     Mutant("surfaces_unscaled", "products of areas overflow far from 1", [
@@ -144,8 +144,8 @@ MUTANTS = [
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
         ("core/boundary/triangle_lanes-inl.h", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),
     Mutant("no_care_next_to_triangles", "next to a triangle z_T cancels", [
-        ("core/boundary/triangle_lanes-inl.h", "kNearTriangle = 0x1p-6;", "kNearTriangle = 0.0;"),
-        ("core/boundary/triangle_lanes-inl.h", "kNearCorner = 0x1p-8;", "kNearCorner = 0.0;")]),
+        ("core/boundary/triangle_lanes-inl.h", "kNearTriangle = 0x1p-6 /", "kNearTriangle = 0.0 /"),
+        ("core/boundary/triangle_lanes-inl.h", "kNearCorner = 0x1p-8 /", "kNearCorner = 0.0 /")]),
     Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
         ("core/boundary/triangle_lanes-inl.h", "if (crossing.crossed > 0) products", "if (false) products")]),
     Mutant("triangles_as_they_come", "the order of faces changes no bit", [
@@ -398,6 +398,14 @@ MUTANTS = [
         ("core/far/cover.cpp", "result_.error += bend;", "result_.error += 0 * bend;")]),
     Mutant("small_triangles_are_nothing", "what is left out is part of the error", [
         ("core/far/cover.cpp", "result_.error += solid_angle;", "result_.error += 0 * solid_angle;")]),
+    Mutant("slender_triangles_are_narrower", "what a slender triangle bends grows with its width", [
+        ("core/far/cover.cpp", "kOfWidth = 3 * std::numbers::pi / 8", "kOfWidth = 3e-3 * std::numbers::pi / 8")]),
+    Mutant("large_triangles_are_smaller", "what a large triangle bends grows with the square of the distance", [
+        ("core/far/cover.cpp", "kOfAny = std::numbers::pi / 2", "kOfAny = 1e-3 * std::numbers::pi / 2")]),
+    Mutant("gaps_are_from_lines_alone", "no gap is more than the distance", [
+        ("core/far/triangle_extent.cpp", "least - reach", "least - 0.5 * reach")]),
+    Mutant("rough_factors_are_exact", "rough factors are off by more", [
+        ("core/evaluation/rough_sums.cpp", "doubt_ + kRoughness * doubt_of_factors(", "doubt_ + 0 * doubt_of_factors(")]),
     Mutant("nodes_without_expansion_are_nothing", "a node without expansion has no bounds", [
         ("core/far/source_tree.cpp", "if (node.order == 0) return std::nullopt;", "if (node.order < 0) return std::nullopt;")]),
     Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [

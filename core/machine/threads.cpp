@@ -79,33 +79,37 @@ void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate
 
 namespace {
 
-// Lets others run until `done()`, for a second at most: a system that starts no more threads goes on with fewer. Time
-// is what counts, as each look may last as long as all others want the CPU.
+using Clock = std::chrono::steady_clock;
+
+// Lets others run until `done()`, but not beyond `end`. Time is what counts, as each look may last as long as all
+// others want the CPU.
 template <class Done>
-void wait_until(const Done& done) {
-  constexpr std::chrono::seconds kPatience{1};
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!done() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+void wait_until(const Done& done, Clock::time_point end) {
+  while (!done() && Clock::now() < end) std::this_thread::yield();
 }
 
 // TBB starts a worker for what is enqueued even on a single CPU, and OpenVDB enqueues: where it could not be started
 // then, the process would be terminated. Where there are other workers they do: one that was called for what is
 // enqueued goes on looking for work, beyond the number of threads that is allowed.
-void start_worker_for_enqueued() {
+void start_worker_for_enqueued(Clock::time_point end) {
   const auto done = std::make_shared<std::atomic<bool>>(false);
   tbb::task_arena().enqueue([done] { *done = true; });
-  wait_until([&] { return done->load(); });
+  wait_until([&] { return done->load(); }, end);
 }
 
 }  // namespace
 
-// Within a loop all workers may be in bodies that wait for this one: they are there already then.
+// Within a loop all workers may be in bodies that wait for this one: they are there already then. A system that starts
+// no more threads goes on with fewer, after a second: of all bodies together, which a thread that is alone does in
+// turn.
 void prime_threads() {
+  constexpr std::chrono::seconds kPatience{1};
+  const Clock::time_point end = Clock::now() + kPatience;
   const auto count = static_cast<std::size_t>(thread_count());
   const auto all_started = [&] { return workers + 1 >= count; };
-  if (!all_started()) parallel_for(count, 1, [&](std::size_t, std::size_t) { wait_until(all_started); });
+  if (!all_started()) parallel_for(count, 1, [&](std::size_t, std::size_t) { wait_until(all_started, end); });
   try {
-    if (tbb::this_task_arena::max_concurrency() == 1) start_worker_for_enqueued();
+    if (tbb::this_task_arena::max_concurrency() == 1) start_worker_for_enqueued(end);
   } catch (const std::runtime_error&) {
     throw ThreadsUnavailable();
   }

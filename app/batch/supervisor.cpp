@@ -185,12 +185,14 @@ class Supervisor {
   }
 
   // Has the inputs of a result hashed that does not tell their hashes: by a worker, as reading may take long or hang.
+  // A mesh without a hash may be done again in each run, so that a short time limit is not one for this.
   void hash(Slot& slot, JobResult result) {
-    constexpr double kPatience = 60.0;  // seconds
+    constexpr double kLeast = 10.0;  // seconds
+    constexpr double kMost = 60.0;
     if (!result.row.sha256.empty()) return finish(slot, std::move(result));
     const SupervisedJob& job = jobs_[slot.running->mesh];
     slot.unhashed = std::move(result);
-    slot.deadline = Clock::now() + seconds(std::min(options_.timeout, kPatience));
+    slot.deadline = Clock::now() + seconds(std::clamp(options_.timeout, kLeast, kMost));
     try {
       ask(slot, to_message(InputsRequest{command_for(job, slot.running->threads, options_), job.stamp, slot.started}));
     } catch (const LimitError&) {

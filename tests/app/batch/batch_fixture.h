@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -12,6 +13,7 @@
 #include "app/batch/result_row.h"
 #include "app/text/csv.h"
 #include "tests/app/meshes.h"
+#include "tests/support/environment.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -94,6 +96,8 @@ class Batch : public testing::Test {
     return result;
   }
 
+  // Jobs share the memory: of a machine with many cores and little of it each would have too little, unless told so.
+  Environment threads_{{{"RAYCONE_THREADS", std::getenv("RAYCONE_THREADS") ? std::getenv("RAYCONE_THREADS") : "2"}}};
   TemporaryDirectory dir_;
   std::string meshes_ = dir_ / "meshes";
   std::string out_ = dir_ / "out";

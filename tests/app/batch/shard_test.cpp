@@ -3,39 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <map>
+#include <optional>
 
 #include "app/command_line/parse_shard.h"
 #include "app/process/usage_error.h"
+#include "tests/support/environment.h"
 
 namespace raycone::test {
 namespace {
 
-// Environment variables for the life of this.
-class Environment {
- public:
-  explicit Environment(const std::map<std::string, std::string>& variables) : variables_(variables) {
-    for (const auto& [name, value] : variables_) setenv(name.c_str(), value.c_str(), 1);
-  }
-  ~Environment() {
-    for (const auto& [name, value] : variables_) unsetenv(name.c_str());
-  }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  std::map<std::string, std::string> variables_;
-};
-
 Environment array_task(const std::string& id, const std::string& least, const std::string& most,
-                       const std::string& step, const std::string& count = "") {
-  std::map<std::string, std::string> variables{{"SLURM_ARRAY_TASK_ID", id},
-                                               {"SLURM_ARRAY_TASK_MIN", least},
-                                               {"SLURM_ARRAY_TASK_MAX", most},
-                                               {"SLURM_ARRAY_TASK_STEP", step}};
-  if (!count.empty()) variables["SLURM_ARRAY_TASK_COUNT"] = count;
-  return Environment(variables);
+                       const std::string& step, const std::optional<std::string>& count = std::nullopt) {
+  return Environment({{"SLURM_ARRAY_TASK_ID", id},
+                      {"SLURM_ARRAY_TASK_MIN", least},
+                      {"SLURM_ARRAY_TASK_MAX", most},
+                      {"SLURM_ARRAY_TASK_STEP", step},
+                      {"SLURM_ARRAY_TASK_COUNT", count}});
 }
 
 TEST(Shard, IsReadFromText) {
@@ -61,7 +44,10 @@ TEST(Shard, OfSlurmCountsTheTasksOfTheArray) {
 }
 
 TEST(Shard, OfSlurmRefusesArraysWithGaps) {
-  EXPECT_THROW((void)parse_shard("slurm"), UsageError) << "not in an array job";
+  {
+    const Environment environment = outside_array_jobs();
+    EXPECT_THROW((void)parse_shard("slurm"), UsageError);
+  }
   {
     const Environment environment = array_task("3", "1", "7", "1", "3");  // --array=1,3,7
     EXPECT_THROW((void)parse_shard("slurm"), UsageError);

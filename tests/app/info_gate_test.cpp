@@ -217,7 +217,7 @@ TEST_F(InfoGate, AHostileSoupIsRefusedAtItsFirstPair) {
   }
   const std::string soup = mesh("soup.obj", text);
   EXPECT_EQ(run_raycone({"info", soup, "--require", "embedded", "--timeout", "60"}).status, 2);
-  const CommandResult count = run_raycone({"info", soup, "--intersections", "--timeout", "1"});
+  const CommandResult count = run_raycone({"info", soup, "--intersections", "--timeout", "1", "--threads", "1"});
   EXPECT_EQ(count.status, 4);
   EXPECT_NE(count.err.find("--timeout"), std::string::npos);
 }

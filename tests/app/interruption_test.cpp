@@ -49,8 +49,8 @@ class Interruption : public testing::Test {
   TemporaryDirectory dir_;
   std::string mesh_ = dir_ / "mesh.obj";
   std::string output_ = dir_ / "out.vdb";
-  std::vector<std::string> long_run_{"lattice",      mesh_, "-o",       output_,
-                                     "--resolution", "400", "--report", dir_ / "r.json"};
+  std::vector<std::string> long_run_{"lattice",  mesh_,           "-o",        output_, "--resolution", "400",
+                                     "--report", dir_ / "r.json", "--threads", "1"};
 };
 
 TEST_F(Interruption, BySignalCleansUpAndDiesOfIt) {

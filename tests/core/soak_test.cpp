@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evaluation/winding_number.h"
+#include "core/machine/threads.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
@@ -39,6 +40,7 @@ TEST(Soak, ThousandsOfEvaluatorsLeaveNoMemoryBehind) {
   constexpr std::size_t kAllowed = 4 << 10;  // arenas of threads; a leak of one vector per evaluation would be 10 MB
   constexpr int kEvaluators = 10'000;
 #endif
+  const ThreadLimit limit(8);  // each thread keeps some memory
   test::Random random(3);
   const TriangleMesh mesh = test::joined(test::open_box(), weld(test::soup(random, 20), {}));
   const std::vector<Vec3> points{{0, 0, 0}, {0.25, 0.5, 0.75}, {3, 2, 1}};

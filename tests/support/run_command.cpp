@@ -35,6 +35,8 @@ void close_if_open(int& descriptor) {
 }
 
 [[noreturn]] void become(const std::vector<std::string>& arguments, const CommandOptions& options) {
+  const rlimit none{0, 0};  // of the cores that tests of crashes would leave
+  setrlimit(RLIMIT_CORE, &none);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.file_size_limit) {
     const rlimit limit{*options.file_size_limit, *options.file_size_limit};

@@ -8,7 +8,7 @@ set -eu
 build_packages='g++ cmake ninja-build pkg-config libcgal-dev libcli11-dev libdraco-dev libembree-dev libexpat1-dev
   libhwy-dev
   libopenvdb-dev libboost-iostreams-dev libpng-dev libtbb-dev libtinygltf-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev'
-test_packages='libfaketime libgtest-dev libbenchmark-dev make mandoc python3 python3-nibabel python3-numpy python3-openvdb strace zsh'
+test_packages='libfaketime libgtest-dev libbenchmark-dev locales make mandoc python3 python3-nibabel python3-numpy python3-openvdb strace zsh'
 
 tidy_packages='clang-tidy'
 

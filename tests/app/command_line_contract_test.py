@@ -13,14 +13,13 @@ import re
 import select
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+from command_case import MESHES, PATIENCE, RAYCONE, run_tests
+
 CUBE = os.path.join(MESHES, "cube.obj")
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
 
 # Command lines that work, by command.
 WORKING = {
@@ -130,10 +129,21 @@ class Everywhere(Contract):
     def test_nothing_but_the_documented_environment_counts(self):
         words = ["lattice", CUBE, "-o", "-", "--resolution", "3", "--padding", "0.25"]
         expected = self.works(words).stdout
-        others = {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "LC_NUMERIC": "de_DE.UTF-8", "TMPDIR": "/absent",
-                  "HOME": "/absent", "XDG_CONFIG_HOME": "/absent", "OMP_NUM_THREADS": "1", "NO_COLOR": "1"}
+        others = {"TMPDIR": "/absent", "HOME": "/absent", "XDG_CONFIG_HOME": "/absent", "OMP_NUM_THREADS": "1", "NO_COLOR": "1"}
         self.assertEqual(self.works(words, env={**os.environ, **others}).stdout, expected)
         self.assertEqual(run(words, env={**os.environ, "RAYCONE_THREADS": "none"}).returncode, 1)
+        self.assertEqual(self.works(words, env={**os.environ, **self.with_decimal_commas()}).stdout, expected)
+
+    def with_decimal_commas(self):
+        """An environment in which programs that obey the locale write them. Without its sources the test is skipped."""
+        locale = "de_DE.UTF-8"
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", "./" + locale], capture_output=True)
+        if made.returncode != 0:
+            self.skipTest("no locale de_DE can be made: %s" % made.stderr.decode())
+        others = {"LOCPATH": os.getcwd(), "LC_ALL": locale, "LANG": locale, "LC_NUMERIC": locale}
+        number = subprocess.check_output(["/usr/bin/printf", "%.1f", "0,5"], env={**os.environ, **others})
+        self.assertEqual(number, b"0,5")
+        return others
 
     def test_every_format_goes_to_standard_output(self):
         for name in ("csv", "npy", "npz", "nii", "nii.gz", "nrrd", "vdb", "vti"):
@@ -274,7 +284,8 @@ class Messages(Contract):
         with open("report.json") as file:
             self.assertEqual(list(json.load(file)["seconds"]), ["read", "prepare", "evaluate", "write", "total"])
         teapot = os.path.join(MESHES, "teapot.obj")
-        words = ["lattice", teapot, "-o", "out.csv", "--resolution", "8", "--report", "report.json", "--verify", "100"]
+        words = ["lattice", teapot, "-o", "out.csv", "--resolution", "8", "--report", "report.json", "--verify", "100",
+                 "--threads", "2"]
         self.assertRegex(self.works(words).stderr, r"write [0-9.]+, verify [0-9.]+\) -> ")
         with open("report.json") as file:
             seconds = json.load(file)["seconds"]
@@ -357,4 +368,4 @@ class Terminals(Contract):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

@@ -18,6 +18,7 @@ import unittest
 
 RAYCONE, DIRECTORY = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
 MAN, BASH, ZSH = (os.path.join(DIRECTORY, name) for name in ("raycone.1", "raycone.bash", "_raycone"))
+PLAIN = {**os.environ, "LC_ALL": "C.UTF-8"}  # man and bash warn of a locale that is not there
 
 
 def output_of(*command, **options):
@@ -60,7 +61,7 @@ class ManualPage(unittest.TestCase):
     def test_is_sound(self):
         self.assertEqual(output_of("mandoc", "-Tlint", "-Wwarning", MAN), "")
         if shutil.which("man"):
-            output_of("man", "--warnings", "-l", MAN, env={**os.environ, "LC_ALL": "C.UTF-8", "MANPAGER": "cat"})
+            output_of("man", "--warnings", "-l", MAN, env={**PLAIN, "MANPAGER": "cat"})
 
 
 def complete_in_bash(*words):
@@ -69,7 +70,7 @@ def complete_in_bash(*words):
         compopt() { set_options+=("${@: -1}"); }
         COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _raycone
         printf '%s\n' "${COMPREPLY[@]}"; echo; printf '%s\n' "${set_options[@]}" """
-    offered, set_options = output_of("bash", "-uc", script, "bash", BASH, *words).split("\n\n", 1)
+    offered, set_options = output_of("bash", "-uc", script, "bash", BASH, *words, env=PLAIN).split("\n\n", 1)
     return set(offered.split()), set(set_options.split())
 
 
@@ -153,7 +154,7 @@ class Terminal:
             os.environ.update(PS1="$ ", HOME=directory, ZDOTDIR=directory, TERM="dumb", INPUTRC="/dev/null")
             os.execvp(command[0], command)
 
-    def type_until(self, keys, expected, patience=20):
+    def type_until(self, keys, expected, patience=120):
         """What appears once `keys` are typed, up to `expected`."""
         os.write(self.terminal, keys.encode())
         shown, end = "", time.monotonic() + patience

@@ -119,7 +119,7 @@ with tempfile.TemporaryDirectory() as directory:
     with open(os.path.join("out", PRECIOUS), "wb") as file:
         file.write(b"precious")
     chance, elsewhere, end = random.Random(given.seed), has_other_host(), time.monotonic() + given.seconds
-    while time.monotonic() < end:
+    while time.monotonic() < end or counts["checked"] < 3:  # rounds take longer on a busy machine
         run_round(chance, complete, elsewhere)
     os.chdir("/")
 for failure in failures:

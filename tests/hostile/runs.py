@@ -12,6 +12,7 @@ RAYCONE, MESHES = (os.path.abspath(path) for path in sys.argv[1:3])
 CLOSED, OPEN = (os.path.join(MESHES, name) for name in ("teapot.obj", "open_box.obj"))
 EARLIER = b"earlier"
 failures = []
+resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # for all that is started here: cores would be left and take long
 
 
 def fail(what, status, message):

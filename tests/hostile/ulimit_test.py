@@ -14,7 +14,7 @@ from runs import CLOSED, OPEN, RAYCONE, Run, fail, is_sanitized, report
 
 LONG = "--long" in sys.argv
 KB = 1024
-# What the dynamic linker needs, beside some kilobytes at random and the environment, before any line of ours runs.
+# What the dynamic linker needs, beside some kilobytes at random, before any line of ours runs.
 LINKER_STACK = 32 * KB
 # Limits, whether root obeys them, and the values tried.
 LIMITS = [
@@ -27,7 +27,8 @@ LIMITS = [
 
 
 def disturbed(run, kind, soft, hard):
-    process = run.start(preexec_fn=lambda: resource.setrlimit(kind, (soft, hard)))
+    # The environment lies on the stack, too: one of some kilobytes more would leave the linker nothing.
+    process = run.start(preexec_fn=lambda: resource.setrlimit(kind, (soft, hard)), env={"PATH": os.defpath})
     message = process.communicate(timeout=100)[1]
     return process.returncode, message
 

@@ -12,4 +12,10 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The same of an output that would replace an input, or another output.
+class ReplacesFileError : public UsageError {
+ public:
+  using UsageError::UsageError;
+};
+
 }  // namespace raycone

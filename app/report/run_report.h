@@ -11,6 +11,7 @@
 #include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "core/orientation/orient.h"
+#include "io/files/output_file.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -81,6 +82,7 @@ struct RunReport {
   std::uint64_t peak_memory_bytes = 0;
   std::vector<Warning> warnings;
   Seconds seconds;
+  std::vector<PlacedFile> placed;  // what was written, but for pipes and devices
 };
 
 // "bunny.obj: 69451 faces, 223 exterior edges, 125000 samples in 0.42 s (read 0.05, ...) -> bunny.vdb", and, where

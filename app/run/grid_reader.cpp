@@ -24,7 +24,14 @@ namespace raycone {
 namespace {
 
 // What the reader writes: one of these letters, and behind it what was read or the message.
-enum Outcome : char { kRead = 'r', kInvalid = 'i', kLimited = 'l', kOutOfMemory = 'm' };
+enum Outcome : char {
+  kRead = 'r',
+  kInvalid = 'i',
+  kUnreadable = 'u',
+  kLimited = 'l',
+  kUnavailable = 'a',
+  kOutOfMemory = 'm'
+};
 
 constexpr const char* kLatticeWord = "lattice";
 constexpr const char* kFactsWord = "facts";
@@ -85,8 +92,12 @@ std::string read_as(const std::string& what, const std::string& path, const std:
 std::string outcome_of_reading(const std::string& what, const std::string& path, const std::string& name) {
   try {
     return std::string(1, kRead) + read_as(what, path, name);
+  } catch (const UnreadableError& error) {
+    return std::string(1, kUnreadable) + error.what();
   } catch (const InputError& error) {
     return std::string(1, kInvalid) + error.what();
+  } catch (const UnavailableError& error) {
+    return std::string(1, kUnavailable) + error.what();
   } catch (const LimitError& error) {
     return std::string(1, kLimited) + error.what();
   } catch (const std::bad_alloc&) {
@@ -95,12 +106,14 @@ std::string outcome_of_reading(const std::string& what, const std::string& path,
 }
 
 [[noreturn]] void fail_disturbed(const std::string& path) {
-  throw InputError(path + ": cannot read: the process that does it was disturbed");
+  throw UnreadableError(path + ": cannot read: the process that does it was disturbed");
 }
 
 // What was read.
 std::string content_of(const std::string& path, const std::string& outcome) {
   if (outcome[0] == kInvalid) throw InputError(outcome.substr(1));
+  if (outcome[0] == kUnreadable) throw UnreadableError(outcome.substr(1));
+  if (outcome[0] == kUnavailable) throw UnavailableError(outcome.substr(1));
   if (outcome[0] == kLimited) throw LimitError(outcome.substr(1));
   if (outcome[0] == kOutOfMemory) throw std::bad_alloc();
   if (outcome[0] != kRead) fail_disturbed(path);
@@ -138,7 +151,7 @@ VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
 }
 
 [[noreturn]] void fail(const std::string& path, const char* what) {
-  throw LimitError(path + ": cannot " + what + ": " + std::generic_category().message(errno));
+  throw UnavailableError(path + ": cannot " + what + ": " + std::generic_category().message(errno));
 }
 
 // In the child: async-signal-safe calls only.
@@ -166,10 +179,12 @@ std::string read_to_end(int descriptor) {
   }
 }
 
-// How it ended, for people; nothing where it ended well. Throws std::bad_alloc where it had no memory to say so itself.
-std::string end_of(pid_t process) {
+// How it ended, for people; nothing where it ended well. Throws std::bad_alloc where it had no memory to say so itself,
+// UnreadableError where it was killed.
+std::string end_of(pid_t process, const std::string& path) {
   int state = 0;
   while (waitpid(process, &state, 0) < 0 && errno == EINTR) continue;
+  if (WIFSIGNALED(state) && WTERMSIG(state) == SIGKILL) fail_disturbed(path);  // no fault of the file's
   if (WIFSIGNALED(state)) return strsignal(WTERMSIG(state));
   const int status = WEXITSTATUS(state);
   if (status == kNotStarted || status == static_cast<int>(ExitCode::kLimit)) throw std::bad_alloc();
@@ -197,7 +212,7 @@ std::string read_elsewhere(const std::string& what, const std::string& path, con
     errno = error;
     fail(path, "start another process");
   }
-  const std::string end = end_of(process);
+  const std::string end = end_of(process, path);
   if (!end.empty()) throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + end + ")");
   return content_of(path, outcome);
 }

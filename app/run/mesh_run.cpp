@@ -103,7 +103,7 @@ RunReport MeshRun::finish() {
   report.peak_memory_bytes = peak_memory();
   if (report_file_) write_all(*report_file_, to_json(report));
   if (depfile_) write_all(*depfile_, depfile_text(report.output, report.files_read));
-  files.commit();
+  report.placed = files.commit();
   return std::move(report);
 }
 

@@ -46,8 +46,8 @@ class MeshRun {
   // The same of a mesh that has been read already.
   [[nodiscard]] TriangleMesh prepare(TriangleMesh as_read);
 
-  // To be called when the report knows which files meshes refer to. Throws UsageError where one of `written` would
-  // replace one of them, OutputError where the list of files read cannot name one.
+  // To be called when the report knows which files meshes refer to. Throws ReplacesFileError where one of `written`
+  // would replace one of them, OutputError where the list of files read cannot name one.
   void check_files_read(const std::vector<WrittenFile>& written) const;
 
   // exterior_edges() of that mesh, once.

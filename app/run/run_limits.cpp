@@ -46,7 +46,7 @@ void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
     const std::string limit = limits ? ", the limit is " + readable_bytes(static_cast<double>(limits->memory())) : "";
     throw LimitError(mesh + ": out of memory" + limit);
   } catch (const ThreadsUnavailable& error) {
-    throw LimitError(mesh + ": " + error.what());
+    throw UnavailableError(mesh + ": " + error.what());
   }
 }
 

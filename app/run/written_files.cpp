@@ -112,12 +112,12 @@ void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std:
     const std::string& role = written[n].role;
     const std::optional<FileIdentity> identity = identity_of_output(path);
     if (identity && std::ranges::count(read, identity) > 0) {
-      throw UsageError(name_of_output(path) + ": is input and " + role);
+      throw ReplacesFileError(name_of_output(path) + ": is input and " + role);
     }
     for (std::size_t before = 0; before < n; ++before) {
       const std::string& other = written[before].path;
       if (path == other || (identity && identity == identity_of_output(other))) {
-        throw UsageError(name_of_output(path) + ": is " + written[before].role + " and " + role);
+        throw ReplacesFileError(name_of_output(path) + ": is " + written[before].role + " and " + role);
       }
     }
   }

@@ -41,9 +41,9 @@ struct WrittenFile {
 // Writes and completes it.
 void write_all(OutputFile& file, const std::string& text);
 
-// Throws UsageError where one of `written` would replace or grow one of `inputs` ("-": standard input) or another of
-// `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before the work,
-// and once more when it is known which files a mesh refers to.
+// Throws ReplacesFileError where one of `written` would replace or grow one of `inputs` ("-": standard input) or
+// another of `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before
+// the work, and once more when it is known which files a mesh refers to.
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs);
 
 // Throws UsageError where what is no text would go to standard output, and that is a terminal.

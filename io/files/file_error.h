@@ -14,6 +14,13 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The same of a file that may be as good as ever: the system refused to read it (permissions, a damaged disk, too many
+// open files), or what reads it is not installed or was killed. Another attempt may succeed.
+class UnreadableError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 // Output cannot be written: exit status 3. what() is "FILE: what is wrong".
 class OutputError : public std::runtime_error {
  public:
@@ -24,6 +31,12 @@ class OutputError : public std::runtime_error {
 class LimitError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// The same where the system refuses what it may grant later: threads, processes.
+class UnavailableError : public LimitError {
+ public:
+  using LimitError::LimitError;
 };
 
 // Throws InputError "FILE:byte N: what", bytes counted from 0.

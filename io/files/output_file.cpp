@@ -17,6 +17,7 @@
 #include "io/files/file_buffer.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
+#include "io/files/file_time.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {
@@ -89,7 +90,7 @@ struct OutputFile::State {
   void open_descriptor(int number);
   void open_special();
   void open_temporary();
-  void put_in_place();
+  PlacedFile put_in_place();
 
   std::string name;
   bool no_clobber;
@@ -160,13 +161,17 @@ void OutputFile::State::open_temporary() {
   }
 }
 
-void OutputFile::State::put_in_place() {
-  const std::string& path = temporary->path();
+// Its size and time are asked for while no other process knows it: a rename leaves them.
+PlacedFile OutputFile::State::put_in_place() {
+  const std::string path = temporary->path();
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) fail_writing(errno);
   const bool renamed = no_clobber ? rename_to_new(path, target) : rename(path.c_str(), target.c_str()) == 0;
   if (!renamed && errno == EEXIST) fail("already exists (--no-clobber)");
   if (!renamed) fail_writing(errno);
   temporary->renamed();
   if (directory >= 0 && !write_to_disk(directory)) fail_writing(errno);
+  return {name, static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim)};
 }
 
 OutputFile::OutputFile(const std::string& path, bool no_clobber, OutputGroup* group)
@@ -240,8 +245,10 @@ void OutputFile::commit() {
   }
 }
 
-void OutputGroup::commit() {
-  for (const auto& file : std::exchange(waiting_, {})) file->put_in_place();
+std::vector<PlacedFile> OutputGroup::commit() {
+  std::vector<PlacedFile> placed;
+  for (const auto& file : std::exchange(waiting_, {})) placed.push_back(file->put_in_place());
+  return placed;
 }
 
 const std::string& OutputFile::name() const { return state_->name; }

@@ -11,6 +11,13 @@ namespace raycone {
 
 class OutputGroup;
 
+// A regular file as it was put in its place.
+struct PlacedFile {
+  std::string name;           // as given on the command line
+  std::uint64_t size = 0;     // bytes
+  std::int64_t modified = 0;  // nanoseconds since 1970
+};
+
 // Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
 // output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
 // removes an uncommitted temporary file; so does remove_temporary_files() (io/files/temporary_file.h).
@@ -53,8 +60,9 @@ class OutputFile {
 // be written, none appears. Members may be destroyed before.
 class OutputGroup {
  public:
-  // Renames them, in the order in which they were committed. Throws OutputError; those before are in place then.
-  void commit();
+  // Renames them, in the order in which they were committed, and returns them. Throws OutputError; those before are in
+  // place then.
+  std::vector<PlacedFile> commit();
 
  private:
   friend class OutputFile;

@@ -17,7 +17,10 @@ namespace raycone {
 
 void fail_to_read(const std::string& path, int error) {
   if (error == EISDIR) throw InputError(path + ": is a directory, expected a file");
-  throw InputError(path + ": cannot be read: " + std::generic_category().message(error));
+  const std::string what = path + ": cannot be read: " + std::generic_category().message(error);
+  const bool is_there = error != ENOENT && error != ENOTDIR && error != ELOOP && error != ENAMETOOLONG;
+  if (is_there) throw UnreadableError(what);
+  throw InputError(what);
 }
 
 namespace {

@@ -7,7 +7,8 @@
 
 namespace raycone {
 
-// Throws InputError about `path`, where a system call that reads it has set errno to `error`.
+// Throws InputError about `path`, where a system call that reads it has set errno to `error`; UnreadableError unless it
+// tells that there is no file.
 [[noreturn]] void fail_to_read(const std::string& path, int error);
 
 // All bytes of a regular file, FIFO or device, or of standard input for "-". Throws InputError, LimitError where the

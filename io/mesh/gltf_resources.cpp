@@ -103,7 +103,8 @@ std::string path_beside(const NamedBytes& source, std::size_t buffer, std::strin
     refuse(source, buffer, uri, "is outside the file's directory, expected a relative path within it");
   }
   if (source.directory.empty()) refuse(source, buffer, uri, "is another file, which standard input cannot refer to");
-  return (std::filesystem::path(source.directory) / relative).lexically_normal().string();
+  const std::string path = (std::filesystem::path(source.directory) / relative).lexically_normal().string();
+  return path == "-" ? "./-" : path;  // a file, not standard input
 }
 
 std::string read_beside(const NamedBytes& source, std::size_t buffer, std::string_view uri,
@@ -114,7 +115,7 @@ std::string read_beside(const NamedBytes& source, std::size_t buffer, std::strin
   if (!std::filesystem::is_regular_file(path, ignored)) {
     refuse(source, buffer, uri, "is missing, expected a file beside this one");
   }
-  std::string bytes = read_file(path == "-" ? "./-" : path);  // a file, not standard input
+  std::string bytes = read_file(path);
   if (companions) companions->push_back({path, sha256(bytes)});
   return bytes;
 }

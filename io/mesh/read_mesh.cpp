@@ -6,8 +6,10 @@
 
 #include "core/machine/threads.h"
 #include "io/files/ascii.h"
+#include "io/files/byte_source.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
+#include "io/files/input_buffer.h"
 #include "io/files/read_file.h"
 #include "io/files/unpack.h"
 #include "io/mesh/mesh_builder.h"
@@ -36,6 +38,8 @@ MeshFormat format_of(const NamedBytes& source, const ReadMeshOptions& options) {
   throw InputError(source.name + ": not recognised as a mesh, expected OBJ, PLY, STL, OFF, glTF, GLB or 3MF" +
                    "; --mesh-format names the format where neither content nor extension tells it, as in pipes");
 }
+
+bool is_gltf(MeshFormat format) { return format == MeshFormat::kGltf || format == MeshFormat::kGlb; }
 
 ParsedMesh parse(const NamedBytes& source, MeshFormat format, std::vector<FileRead>* companions) {
   switch (format) {
@@ -111,13 +115,19 @@ MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options) {
   return parse_mesh(path, mesh, bytes, options);
 }
 
+bool may_refer_to_files(const std::string& path, const ReadMeshOptions& options) {
+  const std::optional<MeshFormat> format = options.format ? options.format : format_from_extension(path);
+  return !format || is_gltf(*format);
+}
+
 std::vector<std::string> files_referred_to(const std::string& path, const ReadMeshOptions& options) {
+  constexpr std::size_t kHead = std::size_t{1} << 16;
+  InputBuffer head(path, unpacked(open_source(path), path));
+  while (head.pending().size() < kHead && head.fill()) continue;
+  if (!is_gltf(format_of({path, directory_of(path), head.pending()}, options))) return {};
   std::string bytes = read_file(path);
   if (is_packed(bytes)) bytes = unpacked(bytes, path);
-  const NamedBytes source{path, directory_of(path), bytes};
-  const MeshFormat format = format_of(source, options);
-  const bool gltf = format == MeshFormat::kGltf || format == MeshFormat::kGlb;
-  return gltf ? files_of_gltf(source) : std::vector<std::string>();
+  return files_of_gltf({path, directory_of(path), bytes});
 }
 
 }  // namespace raycone

@@ -39,6 +39,8 @@ struct ParsedMesh {
 struct FileRead {
   std::string path;
   std::string sha256;  // of the bytes that were read, 64 hexadecimal digits
+
+  friend bool operator==(const FileRead&, const FileRead&) = default;
 };
 
 struct MeshFile {
@@ -51,8 +53,11 @@ struct MeshFile {
 // finite; else, or where the file cannot be read, throws InputError. LimitError where it takes too much memory.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const ReadMeshOptions& options = {});
 
-// The further files that a mesh in a regular file refers to, there or not, whether or not it is good otherwise. Throws
-// as read_mesh().
+// Whether a mesh may refer to further files, as far as its name and `options` tell: all but glTF do not.
+[[nodiscard]] bool may_refer_to_files(const std::string& path, const ReadMeshOptions& options = {});
+
+// The further files that a mesh in a regular file refers to, there or not, whether or not it is good otherwise. Of
+// other formats than glTF only the first bytes are read. Throws as read_mesh().
 [[nodiscard]] std::vector<std::string> files_referred_to(const std::string& path, const ReadMeshOptions& options = {});
 
 // The readers behind it, one per format: same guarantees but for "at least one triangle" and sha256.

@@ -49,7 +49,7 @@ void require_threads(const std::string& name) {
   pthread_mutex_unlock(&gate);
   for (std::size_t i = 0; i < started; ++i) pthread_join(trial[i], nullptr);
   if (started < kNeeded)
-    throw LimitError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
+    throw UnavailableError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
 }
 
 // Where threads or memory are short, the libraries that OpenVDB brings abort or wait for ever while they are loaded,
@@ -64,7 +64,8 @@ void require_what_loading_takes(const std::string& name) {
   require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
 }
 
-// `name`: the file that asks for it. Throws std::bad_alloc, LimitError, and Error where the module cannot be loaded.
+// `name`: the file that asks for it. Throws std::bad_alloc, UnavailableError, and Error where the module cannot be
+// loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
   require_what_loading_takes(name);
@@ -83,9 +84,9 @@ std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const
 }
 
 PlacedLattice read_vdb_lattice(const std::string& path, const std::string& name) {
-  return vdb_module<InputError>(path).read(path, name);
+  return vdb_module<UnreadableError>(path).read(path, name);
 }
 
-VolumeFacts read_vdb_facts(const std::string& path) { return vdb_module<InputError>(path).facts(path); }
+VolumeFacts read_vdb_facts(const std::string& path) { return vdb_module<UnreadableError>(path).facts(path); }
 
 }  // namespace raycone

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "io/files/file_error.h"
+#include "io/files/file_time.h"
 #include "io/files/spool_file.h"
 #include "io/files/temporary_file.h"
 #include "tests/support/output_checks.h"
@@ -112,6 +113,22 @@ TEST(OutputGroup, FilesAppearTogether) {
   EXPECT_EQ(contents(directory / "first"), "1");
   EXPECT_EQ(contents(directory / "second"), "2");
   EXPECT_EQ(entries(directory).size(), 2U);
+}
+
+TEST(OutputGroup, TellsWhatItPutInPlace) {
+  const TemporaryDirectory directory;
+  OutputGroup group;
+  OutputFile file(directory / "out", false, &group), device("/dev/null", false, &group);
+  write(file, "hello");
+  file.commit();
+  device.commit();
+  const std::vector<PlacedFile> placed = group.commit();
+  ASSERT_EQ(placed.size(), 1U);
+  EXPECT_EQ(placed[0].name, directory / "out");
+  EXPECT_EQ(placed[0].size, 5U);
+  struct stat status {};
+  ASSERT_EQ(stat((directory / "out").c_str(), &status), 0);
+  EXPECT_EQ(placed[0].modified, nanoseconds(status.st_mtim));
 }
 
 TEST(OutputGroup, NoneAppearsWhereOneFails) {

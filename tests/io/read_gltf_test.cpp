@@ -436,6 +436,16 @@ TEST(ReadGltf, FilesThatItRefersToAreNamedThereOrNot) {
   EXPECT_EQ(files_referred_to(directory / "a.mesh", {.format = MeshFormat::kGltf}), files);
   std::ofstream(directory / "b.obj") << "f 1 2 3\n";
   EXPECT_EQ(files_referred_to(directory / "b.obj"), std::vector<std::string>()) << "no mesh, but it refers to none";
+  std::ofstream(directory / "c.stl", std::ios::binary) << asset.json();
+  EXPECT_EQ(files_referred_to(directory / "c.stl").size(), 2U) << "its first bytes tell";
+  EXPECT_TRUE(may_refer_to_files("a.GLB.gz") && may_refer_to_files("a"));
+  EXPECT_FALSE(may_refer_to_files("a.stl") || may_refer_to_files("a", {.format = MeshFormat::kObj}));
+}
+
+TEST(ReadGltf, AFileThatIsCalledMinusIsNoStandardInput) {
+  Asset asset;
+  asset.buffers = R"([{"byteLength":60,"uri":"-"}])";
+  EXPECT_EQ(files_of_gltf({"a.gltf", ".", asset.json()}), std::vector<std::string>{"./-"});
 }
 
 TEST(ReadGltf, StandardInputCannotReferToFiles) {

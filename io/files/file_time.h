@@ -1,0 +1,16 @@
+// Times of files as one number.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <cstdint>
+
+namespace raycone {
+
+// Nanoseconds since 1970.
+[[nodiscard]] inline std::int64_t nanoseconds(const timespec& time) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return static_cast<std::int64_t>(time.tv_sec) * kSecond + static_cast<std::int64_t>(time.tv_nsec);
+}
+
+}  // namespace raycone

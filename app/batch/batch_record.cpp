@@ -1,5 +1,8 @@
 #include "app/batch/batch_record.h"
 
+#include <algorithm>
+#include <iterator>
+#include <span>
 #include <utility>
 
 #include "app/text/parse_value.h"
@@ -9,53 +12,76 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kRow = 1;  // empty in a note of a start
-constexpr std::size_t kFinished = 10;
-constexpr std::size_t kChanged = 12;
-constexpr std::size_t kPath = 13;
+// Columns. A note of a start has no row.
+constexpr std::size_t kRow = 1;
+constexpr std::size_t kFinished = 2;
+constexpr std::size_t kPath = 3;
+constexpr std::size_t kStamp = 4;
+constexpr std::size_t kBuffers = kStamp + kStampFields;
+constexpr std::size_t kWritten = kBuffers + 1;
+constexpr std::size_t kVersion = kBuffers + 2;
+constexpr std::size_t kOptions = kBuffers + 3;
+constexpr std::size_t kMemoryLimit = kBuffers + 4;
+constexpr std::size_t kDefaultMemoryLimit = kBuffers + 5;
+constexpr std::size_t kTimeout = kBuffers + 6;
+constexpr std::size_t kThumbnail = kBuffers + 7;
 
 std::string hash_of_line(const std::string& line) {
   constexpr std::size_t kDigits = 16;
   return sha256(line).substr(0, kDigits);
 }
 
-// Empty where the time does not vouch for what was read.
-std::string changed_text(const FileStamp& stamp) { return stamp.recent ? "" : std::to_string(stamp.changed); }
+std::optional<FileStamp> stamp_in(const CsvRecord& record, std::size_t at) {
+  return stamp_from(std::span<const std::string, kStampFields>(record.data() + at, kStampFields));
+}
 
 // A CSV line a file, as one field.
 std::string to_text(const std::vector<StampedFile>& files) {
   std::string text;
   for (const StampedFile& file : files) {
-    const FileStamp& stamp = file.stamp;
-    text += csv_line(
-        {file.path, std::to_string(stamp.size), std::to_string(stamp.modified), changed_text(stamp), file.sha256});
+    CsvRecord record{file.path, file.sha256};
+    std::ranges::copy(to_fields(file.stamp), std::back_inserter(record));
+    text += csv_line(record);
   }
   return text;
 }
 
-std::optional<FileStamp> stamp_from(const std::string& size, const std::string& modified, const std::string& changed) {
-  const std::optional<std::int64_t> bytes = integer_from(size);
-  const std::optional<std::int64_t> time = integer_from(modified);
-  if (!bytes || !time) return std::nullopt;
-  const std::optional<std::int64_t> change = integer_from(changed);
-  return FileStamp{static_cast<std::uint64_t>(*bytes), *time, change.value_or(0), !change};
-}
-
 std::optional<std::vector<StampedFile>> files_from(const std::string& text) {
-  constexpr std::size_t kFields = 5;
   std::vector<StampedFile> files;
   for (const CsvRecord& record : parse_csv(text).records) {
-    if (record.size() != kFields) return std::nullopt;
-    const std::optional<FileStamp> stamp = stamp_from(record[1], record[2], record[3]);
+    if (record.size() != 2 + kStampFields) return std::nullopt;
+    const std::optional<FileStamp> stamp = stamp_in(record, 2);
     if (!stamp) return std::nullopt;
-    files.push_back({record[0], *stamp, record[4]});
+    files.push_back({record[0], *stamp, record[1]});
   }
   return files;
 }
 
+std::string to_text(const std::vector<OutputStamp>& outputs) {
+  std::string text;
+  for (const OutputStamp& output : outputs) {
+    text += csv_line({std::to_string(output.size), std::to_string(output.modified)});
+  }
+  return text;
+}
+
+std::optional<std::vector<OutputStamp>> outputs_from(const std::string& text) {
+  std::vector<OutputStamp> outputs;
+  for (const CsvRecord& record : parse_csv(text).records) {
+    if (record.size() != 2) return std::nullopt;
+    const std::optional<std::int64_t> size = integer_from(record[0]);
+    const std::optional<std::int64_t> modified = integer_from(record[1]);
+    if (!size || !modified) return std::nullopt;
+    outputs.push_back({static_cast<std::uint64_t>(*size), *modified});
+  }
+  return outputs;
+}
+
 }  // namespace
 
-std::int64_t finished(const BatchRecord& record) { return record.origin ? record.origin->finished : 0; }
+std::int64_t finished(const BatchRecord& record) {
+  return record.origin ? record.origin->finished : record.finished_by;
+}
 
 void keep_latest(BatchRecord record, BatchRecords& records) {
   const std::string mesh = record.row.mesh;
@@ -66,34 +92,38 @@ void keep_latest(BatchRecord record, BatchRecords& records) {
 }
 
 const CsvRecord& origin_columns() {
-  static const CsvRecord columns{"mesh",        "row",          "size",
-                                 "modified_ns", "companions",   "version",
-                                 "options",     "memory_limit", "default_memory_limit",
-                                 "timeout_s",   "finished_ns",  "thumbnail",
-                                 "changed_ns",  "path"};
+  static const CsvRecord columns{"mesh",        "row",        "finished_ns", "path",         "size",
+                                 "modified_ns", "changed_ns", "inode",       "recent",       "buffers",
+                                 "written",     "version",    "options",     "memory_limit", "default_memory_limit",
+                                 "timeout_s",   "thumbnail"};
   return columns;
 }
 
 std::vector<CsvRecord> former_origin_columns() {
-  const auto first = origin_columns().begin();
-  return {{first, first + kChanged}, {first, first + kPath}};
+  const CsvRecord last{"mesh",        "row",          "size",
+                       "modified_ns", "companions",   "version",
+                       "options",     "memory_limit", "default_memory_limit",
+                       "timeout_s",   "finished_ns",  "thumbnail",
+                       "changed_ns",  "path"};
+  return {{last.begin(), last.end() - 2}, {last.begin(), last.end() - 1}, last};
 }
 
 CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std::string& line) {
-  return {mesh,
-          hash_of_line(line),
-          std::to_string(origin.stamp.size),
-          std::to_string(origin.stamp.modified),
-          to_text(origin.companions),
-          origin.version,
-          origin.options,
-          std::to_string(origin.memory_limit),
-          origin.default_memory_limit ? "1" : "0",
-          shortest_text(origin.timeout),
-          std::to_string(origin.finished),
-          origin.thumbnail,
-          changed_text(origin.stamp),
-          origin.path};
+  CsvRecord record(origin_columns().size());
+  record.front() = mesh;
+  record[kRow] = hash_of_line(line);
+  record[kFinished] = std::to_string(origin.finished);
+  record[kPath] = origin.path;
+  std::ranges::copy(to_fields(origin.stamp), record.begin() + kStamp);
+  record[kBuffers] = to_text(origin.buffers);
+  record[kWritten] = to_text(origin.written);
+  record[kVersion] = origin.version;
+  record[kOptions] = origin.options;
+  record[kMemoryLimit] = std::to_string(origin.memory_limit);
+  record[kDefaultMemoryLimit] = origin.default_memory_limit ? "1" : "0";
+  record[kTimeout] = shortest_text(origin.timeout);
+  record[kThumbnail] = origin.thumbnail;
+  return record;
 }
 
 CsvRecord to_start_record(const std::string& mesh, std::int64_t time) {
@@ -114,23 +144,24 @@ bool is_about(const CsvRecord& record, const std::string& line) {
 
 std::optional<RowOrigin> origin_from(const CsvRecord& record) {
   if (record.size() != origin_columns().size()) return std::nullopt;
-  const std::optional<FileStamp> stamp = stamp_from(record[2], record[3], record[kChanged]);
-  std::optional<std::vector<StampedFile>> companions = files_from(record[4]);
-  const std::optional<std::int64_t> memory_limit = integer_from(record[7]);
-  const std::optional<double> timeout = number_from(record[9]);
+  const std::optional<FileStamp> stamp = stamp_in(record, kStamp);
+  std::optional<std::vector<StampedFile>> buffers = files_from(record[kBuffers]);
+  std::optional<std::vector<OutputStamp>> written = outputs_from(record[kWritten]);
+  const std::optional<std::int64_t> memory_limit = integer_from(record[kMemoryLimit]);
+  const std::optional<double> timeout = number_from(record[kTimeout]);
   const std::optional<std::int64_t> finished = integer_from(record[kFinished]);
-  if (!stamp || !companions || !memory_limit || !timeout || !finished) return std::nullopt;
-  return RowOrigin{*stamp,
-                   std::move(*companions),
-                   record[5],
-                   record[6],
-                   static_cast<std::uint64_t>(*memory_limit),
-                   record[8] == "1",
-                   *timeout,
-                   *finished,
-                   false,
-                   record[11],
-                   record[kPath]};
+  if (!stamp || !buffers || !written || !memory_limit || !timeout || !finished) return std::nullopt;
+  return RowOrigin{.stamp = *stamp,
+                   .buffers = std::move(*buffers),
+                   .written = std::move(*written),
+                   .version = record[kVersion],
+                   .options = record[kOptions],
+                   .memory_limit = static_cast<std::uint64_t>(*memory_limit),
+                   .default_memory_limit = record[kDefaultMemoryLimit] == "1",
+                   .timeout = *timeout,
+                   .finished = *finished,
+                   .thumbnail = record[kThumbnail],
+                   .path = record[kPath]};
 }
 
 }  // namespace raycone

@@ -14,11 +14,12 @@
 namespace raycone {
 
 struct RowOrigin {
-  FileStamp stamp;                        // of the mesh, before it was read
-  std::vector<StampedFile> companions{};  // further files that were read: the buffers of a glTF, a grid
-  std::string version{};                  // of raycone
-  std::string options{};                  // those that results depend on
-  std::uint64_t memory_limit = 0;         // bytes
+  FileStamp stamp;                     // of the mesh, before it was read
+  std::vector<StampedFile> buffers{};  // that it refers to, relative to its directory
+  std::vector<OutputStamp> written{};  // of all files that were written, the output first
+  std::string version{};               // of raycone
+  std::string options{};               // those that results depend on, with the hash of a grid
+  std::uint64_t memory_limit = 0;      // bytes
   bool default_memory_limit = false;
   double timeout = 0.0;       // seconds
   std::int64_t finished = 0;  // nanoseconds since 1970: of two rows of a mesh the later one counts
@@ -30,12 +31,13 @@ struct RowOrigin {
 struct BatchRecord {
   ResultRow row;
   std::optional<RowOrigin> origin;  // absent where lost
+  std::int64_t finished_by = 0;     // nanoseconds since 1970: at the latest, where the origin is lost
 };
 
 // By mesh.
 using BatchRecords = std::map<std::string, BatchRecord>;
 
-// When it was finished; 0 where that is unknown.
+// When it was finished, at the latest: nanoseconds since 1970.
 [[nodiscard]] std::int64_t finished(const BatchRecord& record);
 
 // Keeps, of `record` and the one that `records` may have of the same mesh, the one that was finished last.

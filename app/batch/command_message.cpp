@@ -3,10 +3,13 @@
 // memory, since both ends are the same executable on the same machine.
 #include "app/batch/command_message.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -204,25 +207,17 @@ MeshCommand mesh_command_from(const Message& message) {
 // A command is one string.
 Message to_message(const InputsRequest& request) {
   Message message = to_message(request.command);
-  const FileStamp& stamp = request.stamp;
-  for (const std::int64_t number :
-       {static_cast<std::int64_t>(stamp.size), stamp.modified, stamp.changed, request.started}) {
-    message.push_back(std::to_string(number));
-  }
+  message.push_back(std::to_string(request.started));
+  std::ranges::copy(to_fields(request.stamp), std::back_inserter(message));
   return message;
 }
 
 std::optional<InputsRequest> inputs_request_from(const Message& message) {
-  if (message.size() != 5) return std::nullopt;
-  std::array<std::int64_t, 4> numbers{};
-  for (std::size_t n = 0; n < numbers.size(); ++n) {
-    const std::optional<std::int64_t> number = integer_from(message[n + 1]);
-    if (!number) return std::nullopt;
-    numbers[n] = *number;
-  }
-  const auto [size, modified, changed, started] = numbers;
-  return InputsRequest{
-      mesh_command_from({message.front()}), {static_cast<std::uint64_t>(size), modified, changed}, started};
+  if (message.size() != 2 + kStampFields) return std::nullopt;
+  const std::optional<std::int64_t> started = integer_from(message[1]);
+  const std::optional<FileStamp> stamp = stamp_from(std::span(message).subspan<2, kStampFields>());
+  if (!started || !stamp) return std::nullopt;
+  return InputsRequest{mesh_command_from({message.front()}), *stamp, *started};
 }
 
 }  // namespace raycone

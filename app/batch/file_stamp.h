@@ -1,20 +1,27 @@
-// What tells whether a file is still the one that was read.
+// What tells whether a file is still the one that was read or written.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace raycone {
 
-// What tells it quickly: size and times, as stat(2) has them.
+// What tells it quickly of a file that was read: what stat(2) has.
 struct FileStamp {
   std::uint64_t size = 0;     // bytes; 0 where there is no file
   std::int64_t modified = 0;  // nanoseconds since 1970
   std::int64_t changed = 0;   // likewise, of content, attributes or name: what no program can set
-  bool recent = false;        // taken so soon after that that a further change may have left the same times
+  std::uint64_t inode = 0;    // of two files that were written within one tick of the clock
+  bool recent = false;        // not to be trusted: taken so soon after a change that a further one may have left the
+                              // same times, or while the file changed
 
   friend bool operator==(const FileStamp& a, const FileStamp& b) {
-    return a.size == b.size && a.modified == b.modified && a.changed == b.changed;
+    return a.size == b.size && a.modified == b.modified && a.changed == b.changed && a.inode == b.inode;
   }
 };
 
@@ -25,10 +32,20 @@ struct FileStamp {
 [[nodiscard]] bool is_certainly_same(const FileStamp& earlier, const FileStamp& now);
 
 // A stamp that is never certainly the same, for where there is a hash only.
-inline constexpr FileStamp kNoStamp{0, 0, 0, true};
+inline constexpr FileStamp kNoStamp{0, 0, 0, 0, true};
+
+// As text, for tables and messages: so many fields.
+inline constexpr std::size_t kStampFields = 5;
+[[nodiscard]] std::array<std::string, kStampFields> to_fields(const FileStamp& stamp);
+// Nothing where these are no stamp.
+[[nodiscard]] std::optional<FileStamp> stamp_from(std::span<const std::string, kStampFields> fields);
 
 // Instead of a hash where no regular file can be read.
 inline constexpr const char* kNoFile = "none";
+
+// The hash of what is there, or kNoFile. Reads it, but only once as long as its stamp tells that it is the same. Not
+// for several threads.
+[[nodiscard]] std::string content_of(const std::string& path);
 
 // A file that was read or looked for, and the hash of what was there.
 struct StampedFile {
@@ -42,7 +59,19 @@ struct StampedFile {
 // Whether it holds what it held; its stamp is brought up to date then. Reads it where its stamp does not tell.
 [[nodiscard]] bool is_unchanged(StampedFile& file);
 
-// The file at `path`, its hash unknown where it may have changed since `time` (nanoseconds since 1970). Reads it.
+// The file at `path`, its hash unknown where it may have changed since `time` (nanoseconds since 1970, by the clock of
+// this host). Reads it.
 [[nodiscard]] StampedFile file_as_at(const std::string& path, std::int64_t time);
+
+// What tells whether a file is still the one that was written: neither renaming it nor a copy that keeps times matters.
+// All zeros for what is no regular file.
+struct OutputStamp {
+  std::uint64_t size = 0;     // bytes
+  std::int64_t modified = 0;  // nanoseconds since 1970
+
+  friend bool operator==(const OutputStamp&, const OutputStamp&) = default;
+};
+
+[[nodiscard]] OutputStamp output_stamp_of(const std::string& path);
 
 }  // namespace raycone

@@ -1,7 +1,10 @@
 #include "app/batch/job_result.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -10,39 +13,65 @@
 namespace raycone {
 namespace {
 
-std::int64_t integer_in(const std::string& text) {
-  if (const std::optional<std::int64_t> number = integer_from(text)) return *number;
-  throw std::runtime_error("a message has no number where one is expected");
-}
+// The strings of a message, one after the other.
+class Strings {
+ public:
+  explicit Strings(std::span<const std::string> strings) : rest_(strings) {}
+
+  std::span<const std::string> take(std::size_t count) {
+    if (count > rest_.size()) throw std::runtime_error("a result ends within a value");
+    const auto taken = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return taken;
+  }
+  std::string text() { return take(1).front(); }
+  std::int64_t number() {
+    if (const std::optional<std::int64_t> number = integer_from(text())) return *number;
+    throw std::runtime_error("a message has no number where one is expected");
+  }
+  std::size_t count() { return static_cast<std::size_t>(number()); }
+  [[nodiscard]] std::span<const std::string> rest() const { return rest_; }
+
+ private:
+  std::span<const std::string> rest_;
+};
 
 }  // namespace
 
-// The row, the thumbnail, the number of companions and two strings for each.
+// Row and stamp, texts, then lists behind their lengths; warnings are what is left.
 Message to_message(const JobResult& result) {
   Message message = to_record(result.row);
-  message.push_back(result.thumbnail);
-  message.push_back(std::to_string(result.companions.size()));
-  for (const StampedFile& file : result.companions) {
-    message.insert(message.end(), {file.path, file.sha256});
+  std::ranges::copy(to_fields(result.stamp), std::back_inserter(message));
+  message.insert(message.end(), {result.knows_inputs ? "1" : "0", result.grid, result.thumbnail});
+  message.push_back(std::to_string(result.buffers.size()));
+  for (const StampedFile& file : result.buffers) message.insert(message.end(), {file.path, file.sha256});
+  message.push_back(std::to_string(result.written.size()));
+  for (const OutputStamp& file : result.written) {
+    message.insert(message.end(), {std::to_string(file.size), std::to_string(file.modified)});
   }
   message.insert(message.end(), result.warnings.begin(), result.warnings.end());
   return message;
 }
 
 JobResult result_from(const Message& message) {
-  const std::size_t columns = result_columns().size();
-  if (message.size() < columns + 2) throw std::runtime_error("not a result");
-  const auto row_end = message.begin() + static_cast<std::ptrdiff_t>(columns);
-  std::optional<ResultRow> row = row_from({message.begin(), row_end});
-  if (!row) throw std::runtime_error("not a result");
-  JobResult result{std::move(*row), {}, message[columns], {}};
-  const auto companions = static_cast<std::size_t>(integer_in(message[columns + 1]));
-  std::size_t at = columns + 2;
-  if ((message.size() - at) / 2 < companions) throw std::runtime_error("not a result");
-  for (std::size_t i = 0; i < companions; ++i, at += 2) {
-    result.companions.push_back({.path = message[at], .sha256 = message[at + 1]});
+  Strings strings(message);
+  const auto record = strings.take(result_columns().size());
+  std::optional<ResultRow> row = row_from({record.begin(), record.end()});
+  const std::optional<FileStamp> stamp = stamp_from(strings.take(kStampFields).first<kStampFields>());
+  if (!row || !stamp) throw std::runtime_error("not a result");
+  JobResult result{.row = std::move(*row), .stamp = *stamp};
+  result.knows_inputs = strings.number() != 0;
+  result.grid = strings.text();
+  result.thumbnail = strings.text();
+  for (std::size_t left = strings.count(); left > 0; --left) {
+    const auto file = strings.take(2);
+    result.buffers.push_back({.path = file[0], .sha256 = file[1]});
   }
-  result.warnings.assign(message.begin() + static_cast<std::ptrdiff_t>(at), message.end());
+  for (std::size_t left = strings.count(); left > 0; --left) {
+    const auto size = static_cast<std::uint64_t>(strings.number());
+    result.written.push_back({size, strings.number()});
+  }
+  result.warnings.assign(strings.rest().begin(), strings.rest().end());
   return result;
 }
 

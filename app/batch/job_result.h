@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/batch_record.h"
+#include "app/batch/file_stamp.h"
 #include "app/batch/message.h"
 #include "app/batch/result_row.h"
 
@@ -12,9 +12,13 @@ namespace raycone {
 
 struct JobResult {
   ResultRow row;                        // its `mesh` and `output` are left empty
-  std::vector<StampedFile> companions;  // further files that were read, by their hashes
-  std::string thumbnail;                // BMP in base64; empty where there is none
-  std::vector<std::string> warnings;    // of the row's message, one by one
+  FileStamp stamp{};                    // of the mesh, before it was read
+  bool knows_inputs = true;             // what was read: else neither hashes nor stamp count
+  std::vector<StampedFile> buffers{};   // that the mesh refers to, relative to its directory, by their hashes
+  std::string grid{};                   // hash of the grid of --like; empty where unknown, or there is none
+  std::vector<OutputStamp> written{};   // of all files that the command writes, the output first
+  std::string thumbnail{};              // BMP in base64; empty where there is none
+  std::vector<std::string> warnings{};  // of the row's message, one by one
 };
 
 [[nodiscard]] Message to_message(const JobResult& result);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
+
+#include "io/files/file_identity.h"
 
 namespace raycone {
 namespace {
@@ -18,12 +20,20 @@ bool mesh_changed(const BatchMesh& mesh, BatchRecord& record) {
   record.origin->stamp = mesh.stamp;
   record.origin->path = path_from_root(mesh);
   if (is_certainly_same(earlier, mesh.stamp)) return false;
+  if (!earlier.recent && earlier.size != mesh.stamp.size) return true;
   StampedFile file{mesh.path, kNoStamp, record.row.sha256};
-  return earlier.size != mesh.stamp.size || !is_unchanged(file);
+  return !is_unchanged(file);
 }
 
-bool companions_changed(RowOrigin& origin) {
-  return !std::ranges::all_of(origin.companions, [](StampedFile& file) { return is_unchanged(file); });
+// They are beside the mesh of today, wherever the one of the record was.
+bool buffers_changed(const BatchMesh& mesh, RowOrigin& origin) {
+  return !std::ranges::all_of(origin.buffers, [&mesh](StampedFile& buffer) {
+    StampedFile file = buffer;
+    file.path = directory_of(mesh.path) + '/' + buffer.path;
+    const bool unchanged = is_unchanged(file);
+    buffer.stamp = file.stamp;
+    return unchanged;
+  });
 }
 
 bool memory_limit_changed(const RowOrigin& origin, const PlanOptions& options) {
@@ -31,13 +41,17 @@ bool memory_limit_changed(const RowOrigin& origin, const PlanOptions& options) {
   return static_cast<double>(options.memory_limit) > kMoreMemory * static_cast<double>(origin.memory_limit);
 }
 
-bool output_missing(const BatchMesh& mesh, const ResultRow& row, const PlanOptions& options) {
-  if (!options.writes) return false;
+// Another mesh may have been given the same output since, by another command, or by a batch that ran at the same time.
+std::string reason_in_output(const BatchMesh& mesh, const ResultRow& row, const RowOrigin& origin,
+                             const PlanOptions& options) {
+  if (!options.writes) return "";
+  const std::vector<std::string> paths = options.written(mesh);
   const auto is_missing_file = [](const std::string& path) {
     std::error_code error;
     return !std::filesystem::exists(path, error);
   };
-  return row.output != mesh.output || std::ranges::any_of(options.written(mesh), is_missing_file);
+  if (row.output != mesh.output || std::ranges::any_of(paths, is_missing_file)) return "output missing";
+  return std::ranges::equal(paths, origin.written, {}, output_stamp_of) ? "" : "output changed";
 }
 
 // Why a mesh with a row that holds is done again; empty where it is not.
@@ -45,7 +59,7 @@ std::string reason_to_repeat(const BatchMesh& mesh, const ResultRow& row, const 
                              const PlanOptions& options) {
   switch (row.status) {
     case MeshStatus::kOk:
-      return output_missing(mesh, row, options) ? "output missing" : "";
+      return reason_in_output(mesh, row, origin, options);
     case MeshStatus::kCrashed:
     case MeshStatus::kUnwritable:
       return name_of(row.status) + " before";
@@ -65,8 +79,10 @@ std::string reason_to_evaluate(const BatchMesh& mesh, BatchRecord& record, const
   if (!record.origin || record.origin->superseded) return "not known how it was made";
   if (record.origin->version != options.version) return "another version";
   if (record.origin->options != options.options) return "options changed";
+  const bool inputs_are_known = !record.origin->stamp.recent || !record.row.sha256.empty();
+  if (!inputs_are_known) return "not known what it was read from";
   if (mesh_changed(mesh, record)) return "mesh changed";
-  if (companions_changed(*record.origin)) return "a file that the mesh refers to changed";
+  if (buffers_changed(mesh, *record.origin)) return "a file that the mesh refers to changed";
   return reason_to_repeat(mesh, record.row, *record.origin, options);
 }
 

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/batch/file_stamp.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
 #include "io/files/read_file.h"
@@ -88,9 +89,15 @@ std::vector<ResultsFiles> all_results_files(const std::string& directory) {
   return all;
 }
 
-BatchRecord record_of(ResultRow row, const std::map<std::string, CsvRecord>& origins) {
+// Of several starts of a mesh the latest counts.
+void note_start(const std::string& mesh, std::int64_t time, Starts& starts) {
+  std::int64_t& latest = starts[mesh];
+  latest = std::max(latest, time);
+}
+
+BatchRecord record_of(ResultRow row, std::int64_t written_by, const std::map<std::string, CsvRecord>& origins) {
   const auto origin = origins.find(row.mesh);
-  BatchRecord record{std::move(row), std::nullopt};
+  BatchRecord record{std::move(row), std::nullopt, written_by};
   if (origin != origins.end() && is_about(origin->second, csv_line(to_record(record.row)))) {
     record.origin = origin_from(origin->second);
   }
@@ -125,6 +132,8 @@ off_t CsvLog::drop_incomplete_line(int descriptor) const {
   if (ftruncate(descriptor, complete) != 0) fail_writing(path_, errno);
   return complete;
 }
+
+std::int64_t CsvLog::modified() const { return stamp_of(path_).modified; }
 
 void CsvLog::append(const std::string& line) const {
   constexpr mode_t kMode = 0666;  // less the umask
@@ -172,17 +181,24 @@ ResultsFiles::Contents ResultsFiles::contents() const {
   for (CsvRecord& record : origins_.read()) {
     const std::string mesh = record.front();
     if (const std::optional<std::int64_t> start = start_from(record)) {
-      std::int64_t& latest = contents.starts[mesh];
-      latest = std::max(latest, *start);
+      note_start(mesh, *start, contents.starts);
     } else {
       origins.insert_or_assign(mesh, std::move(record));
     }
   }
+  const std::int64_t written_by = rows_.modified();
   for (const CsvRecord& record : rows_.read()) {
     std::optional<ResultRow> row = row_from(record);
     if (!row || row->mesh.empty()) continue;  // as versions before 1.0.0 wrote them of directories that are missing
     const std::string mesh = row->mesh;
-    contents.records.insert_or_assign(mesh, record_of(std::move(*row), origins));
+    contents.records.insert_or_assign(mesh, record_of(std::move(*row), written_by, origins));
+  }
+  for (const auto& [mesh, record] : origins) {
+    const auto row = contents.records.find(mesh);
+    if (row != contents.records.end() && row->second.origin) continue;
+    // Its row was never written, or has been lost: what that was about lies there.
+    if (const std::optional<RowOrigin> origin = origin_from(record))
+      note_start(mesh, origin->finished, contents.starts);
   }
   return contents;
 }
@@ -214,7 +230,11 @@ void ResultsFiles::append(const BatchRecord& record) const {
 void ResultsFiles::merge(const BatchRecords& records) const {
   const DirectoryLock lock(directory_);
   Contents all = contents();
-  for (const auto& [mesh, record] : records) keep_latest(record, all.records);
+  for (const auto& [mesh, record] : records) {
+    const auto known = all.records.find(mesh);
+    if (known != all.records.end() && !known->second.origin) all.records.erase(known);
+    keep_latest(record, all.records);
+  }
   write(all);
 }
 
@@ -240,7 +260,7 @@ BatchRecords read_all_results(const std::string& directory) {
   for (const ResultsFiles& files : all_results_files(directory)) {
     ResultsFiles::Contents contents = files.contents();
     for (auto& [mesh, record] : contents.records) keep_latest(std::move(record), all);
-    for (const auto& [mesh, start] : contents.starts) starts[mesh] = std::max(starts[mesh], start);
+    for (const auto& [mesh, start] : contents.starts) note_start(mesh, start, starts);
   }
   for (auto& [mesh, record] : all) {
     const auto start = starts.find(mesh);

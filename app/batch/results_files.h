@@ -28,6 +28,8 @@ class CsvLog {
 
   // Nothing where there is no file. Throws InputError where it is no such table.
   [[nodiscard]] std::vector<CsvRecord> read() const;
+  // Nanoseconds since 1970; 0 where there is no file.
+  [[nodiscard]] std::int64_t modified() const;
   // Throw OutputError. append() leaves the file as it was where it cannot write all of the line.
   void append(const std::string& line) const;
   void replace(const std::vector<std::string>& lines) const;  // just syncs where they are there already
@@ -58,7 +60,7 @@ class ResultsFiles {
   void append(const BatchRecord& record) const;
   // Removes the rows of `meshes`, where there are any.
   void remove(const std::set<std::string>& meshes) const;
-  // Adds `records` where they are newer than what is there, sorts by mesh, and syncs.
+  // Adds `records` where they are newer than what is there, or its origin is lost, sorts by mesh, and syncs.
   void merge(const BatchRecords& records) const;
 
  private:
@@ -75,7 +77,8 @@ class ResultsFiles {
   CsvLog origins_;
 };
 
-// Of the whole batch and all its shards together. Throws InputError.
+// Of the whole batch and all its shards together. Of a mesh with several rows the one that was finished last counts;
+// one whose origin is lost may be from any time until its file changed last. Throws InputError.
 [[nodiscard]] BatchRecords read_all_results(const std::string& directory);
 
 // Removes from the whole batch and all its shards the rows of meshes that are gone. Not while a shard runs: a row that

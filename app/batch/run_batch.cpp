@@ -42,11 +42,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const GridReference* grid_of(const MeshCommand& command) {
-  const auto* const lattice = std::get_if<LatticeCommand>(&command);
-  return lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
-}
-
 void warn(const BatchCommand& command, const std::string& text) {
   if (!command.run.quiet) print_message("warning: " + text);
 }
@@ -137,10 +132,9 @@ GoneMeshes gone_from(const BatchCommand& command, const BatchRecords& records, c
   return gone_meshes(command.shard ? ResultsFiles(command.directory, command.shard).read() : records, found);
 }
 
-// What outputs and results depend on beside the mesh, as text.
-std::string result_options(const BatchCommand& command) {
-  const GridReference* const grid = grid_of(command.for_each);
-  return grid ? command.result_options + '\n' + sha256_of_file(grid->path) : command.result_options;
+// What outputs and results depend on beside the mesh, as text. `grid`: the hash of that of --like.
+std::string result_options(const BatchCommand& command, const std::string& grid) {
+  return grid_of(command.for_each) ? command.result_options + '\n' + grid : command.result_options;
 }
 
 SupervisorOptions supervisor_options(const BatchCommand& command) {
@@ -156,11 +150,12 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
 }
 
 PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& limits) {
+  const GridReference* const grid = grid_of(command.for_each);
   return {.written = [&command](const BatchMesh& mesh) { return paths_written(command, mesh); },
           .writes = command.writes,
           .retry_failed = command.retry_failed,
           .version = kVersion,
-          .options = result_options(command),
+          .options = result_options(command, grid ? sha256_of_file(grid->path) : ""),
           .memory_limit = limits.memory_limit,
           .default_memory_limit = !command.run.memory_limit,
           .timeout = limits.timeout};
@@ -239,7 +234,7 @@ class BatchRun {
     std::set<std::string> directories{command_.directory};
     for (const PlannedMesh& planned : plan_.todo) {
       starts_.emplace(planned.mesh.name, time_after(planned.earlier));
-      directories.insert(fs::path(path_of_output(planned.mesh)).parent_path().string());
+      directories.merge(directories_of(planned.mesh));
     }
     for (const std::string& directory : directories) remove_abandoned_files(directory);
     for (const auto& [name, record] : results_.read()) {
@@ -253,12 +248,19 @@ class BatchRun {
     return options_.writes ? command_.directory + '/' + mesh.output : "/dev/null";
   }
 
+  // In which its files are written: where links lead.
+  [[nodiscard]] std::set<std::string> directories_of(const BatchMesh& mesh) const {
+    std::set<std::string> directories;
+    for (const std::string& path : options_.written(mesh)) directories.insert(directory_of(follow_links(path)));
+    return directories;
+  }
+
   [[nodiscard]] const std::vector<SupervisedJob>& jobs() {
     for (const PlannedMesh& planned : plan_.todo) {
       const std::string output = path_of_output(planned.mesh);
       std::error_code error;  // where it matters, the worker will notice and say so
       if (options_.writes) fs::create_directories(fs::path(output).parent_path(), error);
-      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp});
+      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp, directories_of(planned.mesh)});
     }
     return jobs_;
   }
@@ -281,12 +283,14 @@ class BatchRun {
   [[nodiscard]] BatchRecord record_of(const BatchMesh& mesh, JobResult result) const {
     ResultRow& row = result.row;
     row.mesh = mesh.name;
+    if (!result.knows_inputs) row.sha256.clear();
     row.message = plain_text(row.message, "?");  // a mesh's name in it may have line feeds
     if (row.status == MeshStatus::kOk && options_.writes) row.output = mesh.output;
-    RowOrigin origin{.stamp = mesh.stamp,
-                     .companions = std::move(result.companions),
+    RowOrigin origin{.stamp = result.knows_inputs ? result.stamp : kNoStamp,
+                     .buffers = std::move(result.buffers),
+                     .written = std::move(result.written),
                      .version = options_.version,
-                     .options = options_.options,
+                     .options = result_options(command_, result.grid),
                      .memory_limit = options_.memory_limit,
                      .default_memory_limit = options_.default_memory_limit,
                      .timeout = options_.timeout,

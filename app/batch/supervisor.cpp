@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -25,6 +24,7 @@
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
 #include "io/files/temporary_file.h"
+#include "io/mesh/read_mesh.h"
 
 namespace raycone {
 namespace {
@@ -51,6 +51,10 @@ MeshCommand command_for(const SupervisedJob& job, int threads, const SupervisorO
   };
   std::visit(fill_in, command);
   return command;
+}
+
+const ReadMeshOptions& reading_of(const MeshCommand& command) {
+  return std::visit([](const auto& one) -> const ReadMeshOptions& { return one.mesh.reading; }, command);
 }
 
 Clock::duration seconds(double count) {
@@ -173,15 +177,21 @@ class Supervisor {
       hash(slot, std::move(*result));
     } else if (slot.worker->ended()) {
       const int wait_status = replace(slot);
-      hash(slot, crash(jobs_[slot.running->mesh].mesh, wait_status));
+      hash(slot, killed(slot, crash(jobs_[slot.running->mesh].mesh, wait_status)));
     } else if (Clock::now() >= slot.deadline) {
       replace(slot);
       char limit[32];
       std::snprintf(limit, sizeof limit, "%g", options_.timeout);
-      hash(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
-                        jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
-                            (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)"));
+      hash(slot, killed(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
+                                     jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
+                                         (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)")));
     }
+  }
+
+  // Its worker cannot tell what it found.
+  [[nodiscard]] JobResult killed(const Slot& slot, JobResult result) const {
+    result.stamp = jobs_[slot.running->mesh].stamp;
+    return result;
   }
 
   // Has the inputs of a result hashed that does not tell their hashes: by a worker, as reading may take long or hang.
@@ -189,21 +199,26 @@ class Supervisor {
   void hash(Slot& slot, JobResult result) {
     constexpr double kLeast = 10.0;  // seconds
     constexpr double kMost = 60.0;
-    if (!result.row.sha256.empty()) return finish(slot, std::move(result));
+    if (!result.row.sha256.empty() || !result.knows_inputs) return finish(slot, std::move(result));
     const SupervisedJob& job = jobs_[slot.running->mesh];
+    const FileStamp stamp = result.stamp;
     slot.unhashed = std::move(result);
     slot.deadline = Clock::now() + seconds(std::clamp(options_.timeout, kLeast, kMost));
     try {
-      ask(slot, to_message(InputsRequest{command_for(job, slot.running->threads, options_), job.stamp, slot.started}));
+      ask(slot, to_message(InputsRequest{command_for(job, slot.running->threads, options_), stamp, slot.started}));
     } catch (const LimitError&) {
       finish_unhashed(slot);
     }
   }
 
   void attend_to_hash(Slot& slot) {
-    if (std::optional<JobResult> hashed = slot.worker->receive()) {
-      slot.unhashed->row.sha256 = std::move(hashed->row.sha256);
-      slot.unhashed->companions = std::move(hashed->companions);
+    if (std::optional<JobResult> inputs = slot.worker->receive()) {
+      JobResult result = *std::exchange(slot.unhashed, std::nullopt);
+      result.knows_inputs = inputs->knows_inputs;
+      result.row.sha256 = std::move(inputs->row.sha256);
+      result.buffers = std::move(inputs->buffers);
+      result.grid = std::move(inputs->grid);
+      return finish(slot, std::move(result));
     } else if (slot.worker->ended() || Clock::now() >= slot.deadline) {
       replace(slot);
     } else {
@@ -212,9 +227,12 @@ class Supervisor {
     finish_unhashed(slot);
   }
 
-  // Without a hash a mesh is the same only as long as its stamp is.
+  // Nobody told what was read. Without a hash a mesh is the same only as long as its stamp is, and if that is all.
   void finish_unhashed(Slot& slot) {
-    if (slot.unhashed) finish(slot, *std::exchange(slot.unhashed, std::nullopt));
+    if (!slot.unhashed) return;
+    JobResult result = *std::exchange(slot.unhashed, std::nullopt);
+    result.knows_inputs = !may_refer_to_files(jobs_[slot.running->mesh].mesh, reading_of(options_.for_each));
+    finish(slot, std::move(result));
   }
 
   // Ends the worker and removes what it was writing. Returns how it ended.
@@ -222,9 +240,7 @@ class Supervisor {
     if (!slot.worker) return 0;
     const int status = slot.worker->end();
     slot.worker.reset();
-    if (slot.running) {
-      remove_abandoned_files(std::filesystem::path(jobs_[slot.running->mesh].output).parent_path().string());
-    }
+    if (slot.running) std::ranges::for_each(jobs_[slot.running->mesh].directories, remove_abandoned_files);
     return status;
   }
 

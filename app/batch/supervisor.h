@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,10 @@
 namespace raycone {
 
 struct SupervisedJob {
-  std::string mesh;    // file to read
-  std::string output;  // file to write
-  FileStamp stamp;     // of the mesh
+  std::string mesh;                     // file to read
+  std::string output;                   // file to write
+  FileStamp stamp;                      // of the mesh, before anything was done
+  std::set<std::string> directories{};  // in which files are written: where links lead
 };
 
 struct SupervisorOptions {
@@ -33,10 +35,10 @@ struct SupervisorOptions {
 using ResultHandler = std::function<bool(std::size_t job, JobResult result, double progress)>;
 
 // Does all jobs, each in a worker process. A worker is used again after it evaluated or rejected a mesh, and replaced
-// where it ran out of time or memory or crashed. Results of meshes that failed have the hashes of what was read, too,
-// where a worker can tell them in time. `tick` is called at least four times a second. Returns the one of
-// `signals` that interrupted it, or 0; either way no worker is left, nor any file that one was writing. Call in a
-// process of one thread.
+// where it ran out of time or memory or crashed. Results of meshes that failed tell what was read,
+// too, or that it is not known: a worker has a time for that. `tick` is called at least four times a second. Returns
+// the one of `signals` that interrupted it, or 0; either way no worker is left, nor any file that one was writing. Call
+// in a process of one thread.
 [[nodiscard]] int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options,
                             const HeldSignals& signals, const ResultHandler& handle, const std::function<void()>& tick);
 

@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -20,12 +22,14 @@
 #include <vector>
 
 #include "app/batch/command_message.h"
+#include "app/batch/file_stamp.h"
 #include "app/batch/job_result.h"
 #include "app/batch/thumbnail.h"
 #include "app/options/batch_command.h"
 #include "app/process/limits.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
+#include "app/process/usage_error.h"
 #include "app/report/run_report.h"
 #include "app/run/run_lattice.h"
 #include "app/run/run_limits.h"
@@ -34,7 +38,8 @@
 #include "core/machine/threads.h"
 #include "io/files/base64.h"
 #include "io/files/file_error.h"
-#include "io/files/read_file.h"
+#include "io/files/file_identity.h"
+#include "io/files/output_file.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -120,6 +125,22 @@ MeshFigures figures_of(const RunReport& report) {
           report.orientation.patches};
 }
 
+// Where a buffer of the mesh lies, wherever both are.
+std::string relative_to_mesh(const std::string& path, const std::string& mesh) {
+  const std::filesystem::path directory = directory_of(mesh);
+  return std::filesystem::path(path).lexically_relative(directory.lexically_normal()).string();
+}
+
+// Each of `written` as it was put in its place.
+std::vector<OutputStamp> stamps_of(const std::vector<WrittenFile>& written, const std::vector<PlacedFile>& placed) {
+  std::vector<OutputStamp> stamps;
+  for (const WrittenFile& file : written) {
+    const auto same = std::ranges::find(placed, file.path, &PlacedFile::name);
+    stamps.push_back(same == placed.end() ? OutputStamp{} : OutputStamp{same->size, same->modified});
+  }
+  return stamps;
+}
+
 // `thumbnail`: BMP; empty where there is none.
 JobResult result_of(const RunReport& report, const std::string& thumbnail) {
   JobResult result;
@@ -131,17 +152,10 @@ JobResult result_of(const RunReport& report, const std::string& thumbnail) {
     result.row.warnings += (result.row.warnings.empty() ? "" : " ") + warning.name;
   }
   result.thumbnail = to_base64(thumbnail);
-  for (const FileRead& file : report.companions)
-    result.companions.push_back({.path = file.path, .sha256 = file.sha256});
+  for (const FileRead& file : report.companions) {
+    result.buffers.push_back({.path = relative_to_mesh(file.path, report.mesh), .sha256 = file.sha256});
+  }
   return result;
-}
-
-// Of the grid of --like, which is read by another process, job after job. It is hashed again where its stamp differs.
-std::string hash_of_grid(const std::string& path) {
-  static StampedFile known;
-  const FileStamp now = stamp_of(path);
-  if (!is_certainly_same(known.stamp, now)) known = {path, now, sha256_of_file(path)};
-  return known.sha256;
 }
 
 MeshStatus status_of(ExitCode code) {
@@ -173,81 +187,112 @@ JobResult result_of(const Failure& failure, const std::string& mesh) {
 JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
   Thumbnail thumbnail;
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
-  const std::string grid_before = grid ? hash_of_grid(grid->path) : "";
+  const std::string grid_before = grid ? content_of(grid->path) : "";  // read by another process, job after job
   const RunReport report =
       run_lattice(command, limits,
                   [&thumbnail](const PlacedLattice& lattice, const LatticeBlock& block,
                                std::span<const double> values) { thumbnail.add(lattice.grid, block, values); });
   JobResult result = result_of(report, thumbnail.bmp());
-  if (!grid) return result;
-  // Unknown where it changed meanwhile.
-  const std::string hash = hash_of_grid(grid->path) == grid_before ? grid_before : "";
-  result.companions.push_back({.path = grid->path, .sha256 = hash});
+  result.written = stamps_of(files_written(command), report.placed);
+  if (grid && content_of(grid->path) == grid_before) result.grid = grid_before;  // else it changed meanwhile
   return result;
 }
 
 // Points make no picture.
 JobResult evaluate(const PointsCommand& command, const RunLimits& limits) {
-  return result_of(run_points(command, limits), "");
+  const RunReport report = run_points(command, limits);
+  JobResult result = result_of(report, "");
+  result.written = stamps_of(files_written(command), report.placed);
+  return result;
 }
 
-// Of a mesh that could not be evaluated: what tells later whether it is still the same. A pipe would have to be waited
-// for. Empty where the file is no longer the one that was asked about.
-std::string hash_of(const std::string& mesh, const FileStamp& stamp) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(mesh, error)) return "";
+// Of the exception being handled. The machine and the output are no fault of the mesh's: those are tried again.
+JobResult failure_of(const std::string& mesh) {
+  JobResult result = result_of(current_failure(), mesh);
   try {
-    const std::string hash = sha256_of_file(mesh);
-    return stamp_of(mesh) == stamp ? hash : "";
-  } catch (const InputError&) {
-    return "";
+    throw;
+  } catch (const UnavailableError&) {
+    result.row.status = MeshStatus::kCrashed;
+  } catch (const ReplacesFileError&) {
+    result.row.status = MeshStatus::kUnwritable;
+  } catch (const UnreadableError&) {
+    result.knows_inputs = false;
+  } catch (...) {
   }
+  return result;
+}
+
+// The mesh has to be the same before it is read and when all is done: links and directories on its path may change.
+template <typename OneCommand>
+JobResult perform(const OneCommand& command) {
+  reset_peak_memory();
+  const std::string& mesh = command.mesh.path;
+  const FileStamp before = stamp_of(mesh);
+  JobResult result;
+  try {
+    result = within_limits(command.run, mesh, [&command](const RunLimits& limits) {
+      refuse_to_replace_input(files_written(command), inputs_of(command));
+      return evaluate(command, limits);
+    });
+  } catch (...) {
+    result = failure_of(mesh);
+  }
+  result.stamp = before;
+  result.stamp.recent = before.recent || stamp_of(mesh) != before;
+  return result;
 }
 
 const MeshOptions& mesh_of(const MeshCommand& command) {
   return std::visit([](const auto& one) -> const MeshOptions& { return one.mesh; }, command);
 }
 
-// What else its evaluation depends on.
-std::vector<std::string> further_inputs(const MeshCommand& command) {
-  const MeshOptions& mesh = mesh_of(command);
-  std::vector<std::string> paths;
-  try {
-    paths = files_referred_to(mesh.path, mesh.reading);
-  } catch (const std::exception&) {  // it fails whatever there is beside it
-  }
-  const auto* const lattice = std::get_if<LatticeCommand>(&command);
-  const auto* const grid = lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
-  if (grid) paths.push_back(grid->path);
-  return paths;
+const RunOptions& run_of(const MeshCommand& command) {
+  return std::visit([](const auto& one) -> const RunOptions& { return one.run; }, command);
 }
 
-JobResult answer_to(const InputsRequest& request) {
+// The buffers of a mesh that could not be evaluated, as they were at `time`; nothing where they cannot be told.
+std::optional<std::vector<StampedFile>> buffers_of(const MeshOptions& mesh, const RunOptions& run, std::int64_t time) {
+  std::vector<StampedFile> buffers;
+  try {
+    const auto files = [&mesh](const RunLimits&) { return files_referred_to(mesh.path, mesh.reading); };
+    for (const std::string& path : within_limits(run, mesh.path, files)) {
+      buffers.push_back(file_as_at(path, time));
+      buffers.back().path = relative_to_mesh(path, mesh.path);
+    }
+    return buffers;
+  } catch (const UnreadableError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return buffers;  // it fails whatever there is beside it
+  } catch (const LimitError&) {
+    return may_refer_to_files(mesh.path, mesh.reading) ? std::nullopt : std::optional(buffers);
+  }
+}
+
+// Of the inputs of a command that failed: what tells later whether they are still the same. Of what is no file, such as
+// a pipe, that is the stamp alone.
+JobResult inputs_of(const InputsRequest& request) {
   JobResult result;
   result.row.status = MeshStatus::kInvalid;  // it has no figures
-  result.row.sha256 = hash_of(mesh_of(request.command).path, request.stamp);
-  if (result.row.sha256.empty()) return result;
-  for (const std::string& path : further_inputs(request.command)) {
-    result.companions.push_back(file_as_at(path, request.started));
+  const MeshOptions& mesh = mesh_of(request.command);
+  const std::string content = content_of(mesh.path);
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(mesh.path, error);
+  std::optional<std::vector<StampedFile>> buffers{std::in_place};
+  if (is_file) buffers = buffers_of(mesh, run_of(request.command), request.started);
+  const bool is_same = (content != kNoFile || !is_file) && stamp_of(mesh.path) == request.stamp;
+  result.knows_inputs = is_same && buffers;
+  if (!result.knows_inputs) return result;
+  if (is_file) result.row.sha256 = content;
+  result.buffers = std::move(*buffers);
+  if (const GridReference* const grid = grid_of(request.command)) {
+    result.grid = file_as_at(grid->path, request.started).sha256;
   }
   return result;
 }
 
-template <typename OneCommand>
-JobResult perform(const OneCommand& command) {
-  reset_peak_memory();
-  try {
-    return within_limits(command.run, command.mesh.path, [&command](const RunLimits& limits) {
-      refuse_to_replace_input(files_written(command), inputs_of(command));
-      return evaluate(command, limits);
-    });
-  } catch (...) {
-    return result_of(current_failure(), command.mesh.path);
-  }
-}
-
 JobResult answer_to(const Message& message) {
-  if (const std::optional<InputsRequest> request = inputs_request_from(message)) return answer_to(*request);
+  if (const std::optional<InputsRequest> request = inputs_request_from(message)) return inputs_of(*request);
   return std::visit([](const auto& one) { return perform(one); }, mesh_command_from(message));
 }
 

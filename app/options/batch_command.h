@@ -16,6 +16,12 @@ namespace raycone {
 // What is done to one mesh.
 using MeshCommand = std::variant<LatticeCommand, PointsCommand>;
 
+// The grid of --like; null where there is none.
+[[nodiscard]] inline const GridReference* grid_of(const MeshCommand& command) {
+  const auto* const lattice = std::get_if<LatticeCommand>(&command);
+  return lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
+}
+
 // Which meshes a batch is about, and the outputs they are to have.
 struct MeshSearch {
   std::vector<std::string> operands;  // MESH, DIR, @LIST, and @- or - for a list on standard input

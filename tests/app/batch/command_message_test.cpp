@@ -170,11 +170,11 @@ TEST(CommandMessage, GivesWhatWasSent) {
 TEST(CommandMessage, ARequestForHashesIsNoCommand) {
   LatticeCommand command;
   command.mesh.path = "a.stl";
-  Message message = to_message(InputsRequest{command, {1, -2, 3}, 4});
+  Message message = to_message(InputsRequest{command, {1, -2, 3, 5}, 4});
   const std::optional<InputsRequest> received = inputs_request_from(message);
   ASSERT_TRUE(received);
   EXPECT_EQ(std::get<LatticeCommand>(received->command).mesh.path, "a.stl");
-  EXPECT_EQ(received->stamp, (FileStamp{1, -2, 3}));
+  EXPECT_EQ(received->stamp, (FileStamp{1, -2, 3, 5}));
   EXPECT_EQ(received->started, 4);
   EXPECT_THROW((void)mesh_command_from(message), std::runtime_error);
   EXPECT_FALSE(inputs_request_from(to_message(command)));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "io/files/read_file.h"
@@ -49,6 +50,52 @@ TEST(FileStamp, AMissingFileIsUnchangedUntilItIsThere) {
   EXPECT_FALSE(is_unchanged(there));
   StampedFile unknown{.path = path};
   EXPECT_FALSE(is_unchanged(unknown));
+}
+
+// Two files that were written within one tick of the clock.
+TEST(FileStamp, AnotherInodeIsAnotherFile) {
+  EXPECT_TRUE(is_certainly_same({1, 2, 3, 4}, {1, 2, 3, 4}));
+  EXPECT_FALSE(is_certainly_same({1, 2, 3, 4}, {1, 2, 3, 5}));
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a") << "text";
+  std::ofstream(directory / "b") << "text";
+  EXPECT_NE(stamp_of(directory / "a").inode, stamp_of(directory / "b").inode);
+}
+
+TEST(FileStamp, ArrivesAsFields) {
+  const FileStamp stamp{1, -2, 3, UINT64_MAX, true};
+  auto fields = to_fields(stamp);
+  const std::optional<FileStamp> read = stamp_from(fields);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, stamp);
+  EXPECT_TRUE(read->recent);
+  fields[1] = "";
+  EXPECT_FALSE(stamp_from(fields));
+}
+
+TEST(FileStamp, ContentIsReadAnewWhereItsFileChanged) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a";
+  std::ofstream(path) << "one";
+  EXPECT_EQ(content_of(path), sha256("one"));
+  std::ofstream(path) << "two";
+  EXPECT_EQ(content_of(path), sha256("two")) << "of the same size, perhaps within one tick";
+  std::filesystem::remove(path);
+  EXPECT_EQ(content_of(path), kNoFile);
+}
+
+TEST(FileStamp, OutputsAreKnownBySizeAndTime) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a";
+  std::ofstream(path) << "text";
+  const OutputStamp stamp = output_stamp_of(path);
+  EXPECT_EQ(stamp.size, 4U);
+  EXPECT_EQ(stamp.modified, stamp_of(path).modified);
+  std::filesystem::rename(path, directory / "b");
+  EXPECT_EQ(output_stamp_of(directory / "b"), stamp);
+  for (const std::string& none : {path, directory.path().string(), std::string("/dev/null")}) {
+    EXPECT_EQ(output_stamp_of(none), OutputStamp{}) << none;
+  }
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ BatchRecord record(const std::string& mesh, std::uint64_t faces = 1, std::int64_
   result.row.output = mesh + ".vdb";
   result.row.message = "a \"quoted\", message";
   result.row.warnings = "reversed inconsistent";
-  result.origin = RowOrigin{.stamp = {7, 8, 9},
-                            .companions = {{"a,b.bin", {1, 2, 3}, "hash"}, {.path = "c.vdb", .sha256 = "other"}},
+  result.origin = RowOrigin{.stamp = {7, 8, 9, 10},
+                            .buffers = {{"a,b.bin", {1, 2, 3, 4}, "hash"}, {.path = "c.vdb", .sha256 = "other"}},
+                            .written = {{11, 12}, {}},
                             .version = "1",
                             .options = "--a\n--b",
                             .finished = finished,
@@ -55,8 +56,9 @@ TEST_F(ResultsFilesTest, KeepRowsAndWhatTheyWereMadeFrom) {
   const BatchRecord& b = read.at("b");
   EXPECT_EQ(to_record(b.row), to_record(record("b", 2).row));
   ASSERT_TRUE(b.origin);
-  EXPECT_EQ(b.origin->stamp, (FileStamp{7, 8, 9}));
-  EXPECT_EQ(b.origin->companions, record("b").origin->companions);
+  EXPECT_EQ(b.origin->stamp, (FileStamp{7, 8, 9, 10}));
+  EXPECT_EQ(b.origin->buffers, record("b").origin->buffers);
+  EXPECT_EQ(b.origin->written, record("b").origin->written);
   EXPECT_EQ(b.origin->options, "--a\n--b");
   EXPECT_EQ(b.origin->path, "/d/b");
   EXPECT_LT(results().find("\nb,"), results().find("\na,")) << "as they come";

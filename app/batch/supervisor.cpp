@@ -97,7 +97,7 @@ class Supervisor {
       if (stopped_) return 0;
       while (const std::optional<Schedule::Start> start = schedule_.next()) begin(*start);
       if (none_runs()) return 0;
-      wait(signals);
+      put_off_deadlines(wait(signals));
       if (const int signal = signals.take()) {
         for (Slot& slot : slots_) finish_unhashed(slot);
         return signal;
@@ -153,8 +153,9 @@ class Supervisor {
     static_cast<void>(slot.worker->send(message));  // of one that has ended again the end is seen
   }
 
-  // Until a worker or a signal has something to say, the next deadline, or the next tick.
-  void wait(const HeldSignals& signals) const {
+  // Until a worker or a signal has something to say, the next deadline, or the next tick. Returns by how much longer it
+  // took than it should.
+  [[nodiscard]] Clock::duration wait(const HeldSignals& signals) const {
     std::vector<pollfd> descriptors{{signals.descriptor(), POLLIN, 0}};
     Clock::duration patience = kTick;
     for (const Slot& slot : slots_) {
@@ -162,8 +163,18 @@ class Supervisor {
       descriptors.push_back({slot.worker->descriptor(), POLLIN, 0});
       patience = std::min(patience, slot.deadline - Clock::now());
     }
+    patience = std::max(patience, Clock::duration::zero());
     const auto milliseconds = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
-    poll(descriptors.data(), descriptors.size(), static_cast<int>(std::max<decltype(milliseconds)>(milliseconds, 0)));
+    const Clock::time_point begun = Clock::now();
+    poll(descriptors.data(), descriptors.size(), static_cast<int>(milliseconds));
+    return Clock::now() - begun - patience;
+  }
+
+  // A batch that was suspended, as a terminal or a batch system does it to the whole group, has not used that time.
+  void put_off_deadlines(Clock::duration overdue) {
+    constexpr std::chrono::seconds kSuspended{1};
+    if (overdue < kSuspended) return;
+    for (Slot& slot : slots_) slot.deadline += overdue;
   }
 
   void attend_to(Slot& slot) {

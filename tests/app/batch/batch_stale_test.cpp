@@ -321,5 +321,20 @@ TEST_F(BatchStale, MemoryLimitsHoldForThoseThatLookForBuffers) {
   EXPECT_EQ(again, meshes_ + "/bomb.gltf.gz\tnot known what it was read from\n") << "only glTF refers to files";
 }
 
+// A terminal suspends all processes of a batch; that time is nobody's.
+TEST_F(BatchStale, SuspensionIsNoTimeOfTheMeshs) {
+  const std::string mesh = put("a.obj", triangle_soup(300));
+  std::string line = "exec setsid";  // a group of its own
+  for (const std::string& word : raycone_command(words({mesh}, out_, {"--resolution", "100", "--timeout", "4"}))) {
+    line += " '" + word + "'";
+  }
+  Command command({"/bin/sh", "-c", line});
+  EXPECT_TRUE(becomes_true([this] { return fs::exists(out_ + "/batch-state.csv"); }));
+  kill(-command.process(), SIGSTOP);
+  std::this_thread::sleep_for(milliseconds(6000));
+  kill(-command.process(), SIGCONT);
+  EXPECT_EQ(command.wait().status, 0);
+}
+
 }  // namespace
 }  // namespace raycone::test

@@ -92,13 +92,14 @@ class DirectorySearch {
 };
 
 // A file or directory on the command line or in a list.
-void add_path(const std::string& path, std::vector<BatchMesh>& meshes) {
+void add_path(const std::string& path, FoundMeshes& found) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
-    std::vector<BatchMesh> found = DirectorySearch(path).meshes();
-    meshes.insert(meshes.end(), found.begin(), found.end());
+    const std::vector<BatchMesh> meshes = DirectorySearch(path).meshes();
+    found.meshes.insert(found.meshes.end(), meshes.begin(), meshes.end());
+    found.directories.push_back(path);
   } else {
-    meshes.push_back({path, own_name(path), "", stamp_of(path)});
+    found.meshes.push_back({path, own_name(path), "", stamp_of(path)});
   }
 }
 
@@ -114,18 +115,18 @@ void refuse_missing_directory(const std::string& path) {
   }
 }
 
-void add_operand(const std::string& operand, bool nul_separated_lists, std::vector<BatchMesh>& meshes) {
+void add_operand(const std::string& operand, bool nul_separated_lists, FoundMeshes& found) {
   if (operand.empty() || operand == "@")
     throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
   if (operand.starts_with('@') || operand == "-") {
     const std::string list = operand == "-" ? operand : operand.substr(1);
     constexpr const char* kHint = "; -0 reads lists whose paths end with NUL";
     for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists, kHint)) {
-      add_path(path, meshes);
+      add_path(path == "-" ? "./-" : path, found);  // a file, not standard input
     }
   } else {
     refuse_missing_directory(operand);
-    add_path(operand, meshes);
+    add_path(operand, found);
   }
 }
 
@@ -177,20 +178,29 @@ bool same_file(const BatchMesh& a, const BatchMesh& b) {
 
 }  // namespace
 
-std::vector<BatchMesh> find_meshes(const MeshSearch& search) {
-  std::vector<BatchMesh> meshes;
-  for (const std::string& operand : search.operands) add_operand(operand, search.nul_separated_lists, meshes);
+FoundMeshes find_meshes(const MeshSearch& search) {
+  FoundMeshes found;
+  std::vector<BatchMesh>& meshes = found.meshes;
+  for (const std::string& operand : search.operands) add_operand(operand, search.nul_separated_lists, found);
   std::ranges::stable_sort(meshes, {}, &BatchMesh::name);
   meshes.erase(std::unique(meshes.begin(), meshes.end(), same_file), meshes.end());
   for (BatchMesh& mesh : meshes) mesh.output = output_name(mesh.name, search);
   refuse_collisions(meshes);
-  return meshes;
+  return found;
 }
 
 std::string path_from_root(const BatchMesh& mesh) {
   std::error_code error;
   const fs::path path = fs::absolute(mesh.path, error);
   return error ? mesh.path : path.string();
+}
+
+bool is_within(const std::string& path, const std::string& directory) {
+  std::error_code error;
+  const auto normal = [&error](const std::string& name) {
+    return (fs::absolute(name, error) / "").lexically_normal().string();
+  };
+  return normal(path).starts_with(normal(directory)) && !error;
 }
 
 }  // namespace raycone

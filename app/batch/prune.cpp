@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 namespace raycone {
 namespace {
@@ -12,6 +14,13 @@ namespace {
 bool path_is_missing(const std::string& path) {
   struct stat status {};
   return stat(path.c_str(), &status) != 0 && (errno == ENOENT || errno == ENOTDIR);
+}
+
+// A directory is no mesh: of rows about one the names end with a slash.
+bool is_gone(const std::string& name, const std::string& path) {
+  std::error_code error;
+  const bool became_directory = !name.ends_with('/') && std::filesystem::is_directory(path, error);
+  return became_directory || path_is_missing(path);
 }
 
 }  // namespace
@@ -28,7 +37,7 @@ GoneMeshes gone_meshes(const BatchRecords& records, const std::vector<BatchMesh>
   for (const auto& [name, record] : records) {
     if (present.contains(name)) continue;
     const std::string path = record.origin ? record.origin->path : "";
-    if (path.empty() ? all_seen : path_is_missing(path)) gone.emplace(name, path.empty() ? name : path);
+    if (path.empty() ? all_seen : is_gone(name, path)) gone.emplace(name, path.empty() ? name : path);
   }
   return gone;
 }

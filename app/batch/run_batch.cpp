@@ -95,14 +95,15 @@ void refuse_to_replace(const BatchCommand& command, const std::vector<BatchMesh>
   }
 }
 
-std::vector<BatchMesh> all_meshes_of(const BatchCommand& command) {
-  std::vector<BatchMesh> all = find_meshes(command.search);
-  if (all.empty()) warn(command, std::string("no meshes found") + (command.prune ? ", no rows removed" : ""));
-  for (const BatchMesh& mesh : all) {
-    if (!command.writes || !is_results_file(mesh.output)) continue;
-    throw UsageError(mesh.path + ": its output would replace the results in " + mesh.output);
+FoundMeshes all_meshes_of(const BatchCommand& command) {
+  FoundMeshes all = find_meshes(command.search);
+  if (all.meshes.empty()) warn(command, std::string("no meshes found") + (command.prune ? ", no rows removed" : ""));
+  for (const BatchMesh& mesh : all.meshes) {
+    if (!command.writes || !is_results_file(fs::path(mesh.output).filename().string())) continue;
+    throw UsageError(mesh.path + ": its output " + mesh.output +
+                     " would have the name of a table of results; --full-names keeps them apart");
   }
-  if (command.writes) refuse_to_replace(command, all);
+  if (command.writes) refuse_to_replace(command, all.meshes);
   return all;
 }
 
@@ -182,8 +183,11 @@ void make_directory(const std::string& path) {
 // One batch run, from its plan to its results.
 class BatchRun {
  public:
-  BatchRun(const BatchCommand& command, Plan plan, GoneMeshes gone, const PlanOptions& options)
+  // `directories`: those that were searched.
+  BatchRun(const BatchCommand& command, const std::vector<std::string>& directories, Plan plan, GoneMeshes gone,
+           const PlanOptions& options)
       : command_(command),
+        directories_(directories),
         plan_(std::move(plan)),
         gone_(std::move(gone)),
         options_(options),
@@ -238,10 +242,17 @@ class BatchRun {
     }
     for (const std::string& directory : directories) remove_abandoned_files(directory);
     for (const auto& [name, record] : results_.read()) {
-      const bool was_unreadable_directory = name.ends_with('/');
-      if (was_unreadable_directory && !plan_.kept.contains(name)) starts_.emplace(name, time_after(finished(record)));
+      const bool is_of_directory = name.ends_with('/') && !plan_.kept.contains(name);
+      if (is_of_directory && was_searched(record)) starts_.emplace(name, time_after(finished(record)));
     }
     results_.forget(starts_);
+  }
+
+  // Whether a directory that could not be read then is one of ours; who else it is of will look there again.
+  [[nodiscard]] bool was_searched(const BatchRecord& record) const {
+    return !record.origin || std::ranges::any_of(directories_, [&record](const std::string& directory) {
+      return is_within(record.origin->path, directory);
+    });
   }
 
   [[nodiscard]] std::string path_of_output(const BatchMesh& mesh) const {
@@ -307,6 +318,7 @@ class BatchRun {
   }
 
   const BatchCommand& command_;
+  const std::vector<std::string>& directories_;
   Plan plan_;
   GoneMeshes gone_;
   const PlanOptions& options_;
@@ -320,20 +332,20 @@ class BatchRun {
 }  // namespace
 
 ExitCode run_batch(const BatchCommand& command) {
-  const std::vector<BatchMesh> all = all_meshes_of(command);
-  std::vector<BatchMesh> meshes = meshes_of(command.shard, all);
+  const FoundMeshes all = all_meshes_of(command);
+  std::vector<BatchMesh> meshes = meshes_of(command.shard, all.meshes);
   if (command.prune) leave_out_missing(command, meshes);
   const SupervisorOptions limits = supervisor_options(command);
   const PlanOptions options = plan_options(command, limits);
   const BatchRecords records = read_all_results(command.directory);
   Plan plan = make_plan(meshes, records, options);
-  GoneMeshes gone = gone_from(command, records, all);
+  GoneMeshes gone = gone_from(command, records, all.meshes);
   if (command.dry_run) {
     print_plan(plan, gone);
     return ExitCode::kDone;
   }
   make_directory(command.directory);
-  BatchRun run(command, std::move(plan), std::move(gone), options);
+  BatchRun run(command, all.directories, std::move(plan), std::move(gone), options);
   if (const int signal = run.run(limits)) raise(signal);
   if (!command.run.quiet) print_message(summary_line(run.outcome()));
   return run.outcome().any_failed() && !command.exit_zero ? ExitCode::kBatch : ExitCode::kDone;

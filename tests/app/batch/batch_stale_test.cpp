@@ -321,6 +321,51 @@ TEST_F(BatchStale, MemoryLimitsHoldForThoseThatLookForBuffers) {
   EXPECT_EQ(again, meshes_ + "/bomb.gltf.gz\tnot known what it was read from\n") << "only glTF refers to files";
 }
 
+TEST_F(BatchStale, TablesOfBatchesBelowAreNotReplaced) {
+  put("sub/results.obj");
+  const CommandResult result = run_on({meshes_});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("sub/results.csv would have the name of a table of results"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(run_on({meshes_}, {"--full-names"}).status, 0);
+}
+
+TEST_F(BatchStale, AFileThatIsCalledMinusIsNoStandardInput) {
+  put("a.gltf", gltf_of("-"));
+  put("-", corners(1));
+  write_text(meshes_ + "/list", "-\na.gltf\n");
+  std::string line = "cd '" + meshes_ + "' && exec";
+  for (const std::string& word : raycone_command(words({"@list"}, out_))) line += " '" + word + "'";
+  const auto run_there = [&line](const std::string& more) {
+    Command command({"/bin/sh", "-c", line + more});  // with a standard input that does not end
+    return command.wait();
+  };
+  EXPECT_EQ(run_there("").status, 5) << "the file is no mesh";
+  EXPECT_EQ(statuses(rows()), (Statuses{{"-", "invalid"}, {"a.gltf", "ok"}}));
+  EXPECT_EQ(run_there(" --dry-run").out, "");
+}
+
+TEST_F(BatchStale, RowsOfDirectoriesOfOtherCommandsStay) {
+  const std::string mesh = put("a.obj");
+  const std::string list = dir_ / "list";
+  write_text(list, meshes_ + "/later/\n");
+  EXPECT_EQ(run_on({'@' + list}).status, 5);
+  ASSERT_EQ(run_on({mesh}).status, 0);
+  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"}, {"later/", "invalid"}}));
+  put("later/b.obj");
+  EXPECT_EQ(run_on({'@' + list}).status, 0);
+  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"}, {"b.obj", "ok"}}));
+}
+
+TEST_F(BatchStale, MeshesThatBecameDirectoriesArePruned) {
+  put("a.obj");
+  const std::string mesh = put("b.obj");
+  ASSERT_EQ(run_on({meshes_}).status, 0);
+  fs::remove(mesh);
+  fs::create_directory(mesh);
+  EXPECT_EQ(planned({meshes_}, {"--prune"}), mesh + "\tgone\n");
+}
+
 // A terminal suspends all processes of a batch; that time is nobody's.
 TEST_F(BatchStale, SuspensionIsNoTimeOfTheMeshs) {
   const std::string mesh = put("a.obj", triangle_soup(300));

@@ -78,9 +78,9 @@ std::string reason_to_repeat(const BatchMesh& mesh, const ResultRow& row, const 
 std::string reason_to_evaluate(const BatchMesh& mesh, BatchRecord& record, const PlanOptions& options) {
   if (!record.origin || record.origin->superseded) return "not known how it was made";
   if (record.origin->version != options.version) return "another version";
-  if (record.origin->options != options.options) return "options changed";
   const bool inputs_are_known = !record.origin->stamp.recent || !record.row.sha256.empty();
   if (!inputs_are_known) return "not known what it was read from";
+  if (record.origin->options != options.options) return "options changed";
   if (mesh_changed(mesh, record)) return "mesh changed";
   if (buffers_changed(mesh, *record.origin)) return "a file that the mesh refers to changed";
   return reason_to_repeat(mesh, record.row, *record.origin, options);

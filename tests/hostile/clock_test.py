@@ -2,7 +2,8 @@
 
 libfaketime tells runs another date, and lets it pass a hundred thousand times faster, or backwards. Values stay the same,
 a batch's second run finds all its outputs up to date, and times that are told are those of the steady clock, which no
-system sets. Status 77 where libfaketime is missing, or RAYCONE is built with a sanitizer, which must be loaded first.
+system sets. Times of files are as they are: the library would tell each process others. Status 77 where libfaketime is
+missing, or RAYCONE is built with a sanitizer, which must be loaded first.
 """
 
 import glob
@@ -19,7 +20,7 @@ CLOCKS = ["@1969-12-31 23:59:59", "@2200-01-01 00:00:00", "+0 x100000", "-1000d 
 
 
 def under(clock, *arguments):
-    environment = dict(os.environ, LD_PRELOAD=LIBRARIES[0], FAKETIME=clock, FAKETIME_DONT_FAKE_MONOTONIC="1")
+    environment = dict(os.environ, LD_PRELOAD=LIBRARIES[0], FAKETIME=clock, FAKETIME_DONT_FAKE_MONOTONIC="1", NO_FAKE_STAT="1")
     result = subprocess.run([RAYCONE, *arguments, "--threads", "2"], env=environment, capture_output=True, timeout=300)
     if result.returncode != 0:
         fail("%s under the clock %s" % (arguments[0], clock), result.returncode, result.stderr)

@@ -404,8 +404,6 @@ MUTANTS = [
         ("core/far/cover.cpp", "kOfAny = std::numbers::pi / 2", "kOfAny = 1e-3 * std::numbers::pi / 2")]),
     Mutant("gaps_are_from_lines_alone", "no gap is more than the distance", [
         ("core/far/triangle_extent.cpp", "least - reach", "least - 0.5 * reach")]),
-    Mutant("rough_factors_are_exact", "rough factors are off by more", [
-        ("core/evaluation/rough_sums.cpp", "doubt_ + kRoughness * doubt_of_factors(", "doubt_ + 0 * doubt_of_factors(")]),
     Mutant("nodes_without_expansion_are_nothing", "a node without expansion has no bounds", [
         ("core/far/source_tree.cpp", "if (node.order == 0) return std::nullopt;", "if (node.order < 0) return std::nullopt;")]),
     Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [

@@ -119,7 +119,7 @@ class BlockValues {
     int doubtful = 0;  // no least distance, whose comparisons compilers do not put into lanes
     for (std::size_t i = 0; i < sums.size(); ++i) {
       values[i] = whole + sums[i];
-      doubtful |= static_cast<int>(distance_to_half_integer(values[i]) <= doubt_);
+      doubtful |= static_cast<int>(!(distance_to_half_integer(values[i]) > doubt_));  // or NaN
     }
     if (doubtful != 0) sum_doubtful(values, sample, static_cast<std::int64_t>(crossings));
   }

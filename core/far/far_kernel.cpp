@@ -133,9 +133,14 @@ HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, c
                            const LanesOfPoints& r) {
   const Lanes scale = hn::Set(d, 1 / node.unit);
   const LanesOfPoints s{hn::Mul(r.x, scale), hn::Mul(r.y, scale), hn::Mul(r.z, scale)};
-  const Lanes inverse = hn::Div(hn::Set(d, 1.0), square_of(s));
-  Expansion sum{node,    coefficients, degrees,    hn::Mul(s.x, inverse), hn::Mul(s.y, inverse), hn::Mul(s.z, inverse),
-                inverse, hn::Zero(d),  hn::Zero(d)};
+  // From beyond, where units of distance may be infinitely many, nothing is seen of it.
+  constexpr double kFarthest = 0x1p1000;
+  const Lanes square = square_of(s);
+  const auto visible = hn::Lt(square, hn::Set(d, kFarthest));
+  const Lanes inverse = hn::IfThenElseZero(visible, hn::Div(hn::Set(d, 1.0), square));
+  const auto inverted = [&](Lanes v) { return hn::IfThenElseZero(visible, hn::Mul(v, inverse)); };
+  Expansion sum{node,          coefficients, degrees,     inverted(s.x), inverted(s.y),
+                inverted(s.z), inverse,      hn::Zero(d), hn::Zero(d)};
   // As many together as there are registers for. What they leave over is of the highest orders, the shortest ones.
   constexpr int kTogether = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
   int m = degrees.most;

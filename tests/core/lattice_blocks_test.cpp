@@ -433,5 +433,23 @@ TEST(LatticeBlocksTest, AreasWhoseSquaresUnderflowAreNotNothing) {
   }
 }
 
+// The same, from so far away that its size is no double in units of the distance, nor the distance in units of it.
+TEST(LatticeBlocksTest, WhatIsTooFarAwayToBeSeenIsNothing) {
+  const Lattice near = cube_lattice(24);
+  for (const int exponent : {-33, -100}) {
+    const double unit = std::ldexp(1.0, exponent);
+    const TriangleMesh mesh =
+        test::joined(test::moved(sieve(), {unit, unit, unit}, {}), test::box_mesh({0.5, 0.5, 0.5}, {1, 1, 1}));
+    for (const double away : {1e280, 1e296, 1e299, 1e306}) {
+      const Lattice far{away * near.origin, away * near.spacing, near.index_min, near.counts};
+      for (const Summation summation : {Summation::kBlocks, Summation::kFarField}) {
+        std::vector<double> values(24 * 24 * 24);
+        WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {1e-9}}).evaluate(far, whole(far), values);
+        for (const double value : values) ASSERT_LE(std::abs(value), 1e-9) << away << " or NaN";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raycone

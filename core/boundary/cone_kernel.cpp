@@ -73,7 +73,7 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
                                      const SampleTile& samples, std::size_t i, const ChunkView<Rays>& view,
                                      const EdgeRange& block, std::uint64_t trusted) {
   for (std::size_t n = block.begin; n < block.end; ++n) {
-    if (chunk.orientation[n] == 0.0) continue;
+    if (rays.is_without_factor(n, i)) continue;
     const EdgeFactors factors = factors_of(rays, view, n);
     const auto in_range = hn::And(hn::Gt(magnitude(factors), hn::Set(d, kSmallestFactor)),
                                   hn::Lt(magnitude(factors), hn::Set(d, kLargestFactor)));
@@ -104,7 +104,7 @@ HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const 
   auto trusted = hn::Eq(z.re, z.re);  // all
   for (std::size_t n = block.begin; n < block.end; ++n) {
     next_view.set_vertex(chunk, rays, samples, n + 1, next);
-    if (chunk.orientation[n] == 0.0) continue;
+    if (rays.is_without_factor(n, i)) continue;
     const EdgeFactors factors = factors_of(rays, view, n);
     trusted = hn::And(trusted, is_not_near(factors));
     z = times(z, factors.re, factors.im, factors.direction);

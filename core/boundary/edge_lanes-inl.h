@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "core/boundary/chain.h"
@@ -61,6 +62,17 @@ HWY_INLINE ProjectedEdge project(const ProjectedVertex& a, const ProjectedVertex
   const Lanes im = hn::Mul(determinant, orientation);
   return {hn::Add(hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)), hn::IfThenElse(sure, im, hn::NaN(d)),
           hn::CopySignToAbs(hn::Set(d, 1.0), im)};
+}
+
+// Where an edge is level with a ray as a whole and does not meet its line: it is a tie without a factor, as in
+// unscaled_tied_factor(). Flat meshes have many of these in their plane.
+HWY_INLINE hn::Mask<Doubles> is_level_beside(Lanes a_y, Lanes a_z, Lanes b_y, Lanes b_z) {
+  const auto is_zero = [](Lanes v, Lanes w) { return hn::And(hn::Eq(v, hn::Zero(d)), hn::Eq(w, hn::Zero(d))); };
+  const auto same_side = [](Lanes v, Lanes w) {
+    return hn::Or(hn::And(hn::Gt(v, hn::Zero(d)), hn::Gt(w, hn::Zero(d))),
+                  hn::And(hn::Lt(v, hn::Zero(d)), hn::Lt(w, hn::Zero(d))));
+  };
+  return hn::Or(hn::And(is_zero(a_z, b_z), same_side(a_y, b_y)), hn::And(is_zero(a_y, b_y), same_side(a_z, b_z)));
 }
 
 // Steps that are taken together, sample by sample: edge n leads from vertex n to vertex n + 1. What is kept of them for
@@ -128,10 +140,15 @@ class EdgesOfOneRay {
       hn::StoreU(edge.direction, d, &direction_[n]);
     }
     for (n = 0; n < chunk.edges; ++n) {
-      if (chunk.orientation[n] != 0.0 && std::isnan(im_[n]))
-        sides_[n] = side_of(chunk, n, {samples.x[0], samples.y[0], samples.z[0]});
+      without_factor_[n] = chunk.orientation[n] == 0.0;
+      if (without_factor_[n] || !std::isnan(im_[n])) continue;
+      without_factor_[n] = is_level_beside(n);
+      if (!without_factor_[n]) sides_[n] = side_of(chunk, n, {samples.x[0], samples.y[0], samples.z[0]});
     }
   }
+
+  // Whether there is no edge n, or it has no factor at any of the samples from i on.
+  [[nodiscard]] bool is_without_factor(std::size_t n, std::size_t) const { return without_factor_[n]; }
 
   // The projections of vertices for a group of samples, beyond what all samples share.
   struct Projections {};
@@ -151,9 +168,15 @@ class EdgesOfOneRay {
     return {hn::LoadU(d, &y_[n]), hn::LoadU(d, &z_[n]), hn::LoadU(d, &square_[n])};
   }
 
+  [[nodiscard]] bool is_level_beside(std::size_t n) const {
+    const auto all = [](double v) { return hn::Set(d, v); };
+    return hn::AllTrue(d, HWY_NAMESPACE::is_level_beside(all(y_[n]), all(z_[n]), all(y_[n + 1]), all(z_[n + 1])));
+  }
+
   const Chunk& chunk_;
   Column y_, z_, square_;
   Column re_, im_, direction_;
+  std::array<bool, kEdgesPerChunk> without_factor_;
   std::array<EdgeSide, kEdgesPerChunk> sides_;  // where Im z is NaN
 };
 
@@ -161,6 +184,8 @@ class EdgesOfOneRay {
 class EdgesOfRays {
  public:
   EdgesOfRays(const Chunk& chunk, const SampleTile& samples) : chunk_(chunk), samples_(samples) {}
+
+  [[nodiscard]] bool is_without_factor(std::size_t n, std::size_t) const { return chunk_.orientation[n] == 0.0; }
 
   struct Projections {
     alignas(64) LaneColumn y, z, square;
@@ -197,6 +222,10 @@ class EdgesOfRows {
     }
   }
 
+  [[nodiscard]] bool is_without_factor(std::size_t n, std::size_t i) const {
+    return ((without_factor_[n] >> (i / 8)) & 1U) != 0;
+  }
+
   // The row that is looked at.
   struct Projections {
     std::size_t row;
@@ -228,6 +257,10 @@ class EdgesOfRows {
       hn::Store(to.square, d, &square_[8 * (n + 1) + row]);
       hn::Store(edge.re, d, &re_[8 * n + row]);
       hn::Store(edge.im, d, &im_[8 * n + row]);
+      const auto none =
+          chunk_.orientation[n] == 0.0 ? hn::FirstN(d, hn::Lanes(d)) : is_level_beside(from.y, from.z, to.y, to.z);
+      if (row == 0) without_factor_[n] = 0;
+      without_factor_[n] = static_cast<std::uint8_t>(without_factor_[n] | bits_of(none) << row);
       from = to;
     }
   }
@@ -235,6 +268,7 @@ class EdgesOfRows {
   const Chunk& chunk_;
   alignas(64) std::array<double, 8 * (kEdgesPerChunk + 1)> square_;  // row by row of each vertex
   alignas(64) std::array<double, 8 * kEdgesPerChunk> re_, im_;       // likewise of each edge
+  std::array<std::uint8_t, kEdgesPerChunk> without_factor_;          // a bit for each row
 };
 
 }  // namespace

@@ -140,6 +140,9 @@ MUTANTS = [
         ("core/boundary/edge_factor.cpp", "return square > kSmallest && square < kLargest && std::abs(x) < kLargestX;",
          "return true;")]),
 
+    Mutant("all_level_edges_are_beside", "an edge that meets the ray's line has a factor", [
+        ("core/boundary/edge_lanes-inl.h", "hn::And(is_zero(a_z, b_z), same_side(a_y, b_y))", "is_zero(a_z, b_z)")]),
+
     # --- The sum over triangles ---
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
         ("core/boundary/triangle_lanes-inl.h", "hn::Gt(hn::Abs(im), doubt)", "hn::Ge(hn::Abs(im), hn::Sub(doubt, doubt))")]),

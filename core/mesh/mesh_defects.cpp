@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "core/data/box.h"
 #include "core/exact/predicates.h"
 #include "core/exact/volume_sign.h"
 #include "core/machine/floating_point.h"
@@ -225,18 +226,30 @@ class ClosedComponents {
   // Removes those that lie in another closed component: whose winding number at their point is not 0.
   void drop_surrounded(std::vector<Candidate>& candidates) const {
     std::vector<std::uint8_t> surrounded(candidates.size(), 0);
-    note_surrounded(candidates, surrounded);
+    note_surrounded(candidates, boxes_of_closed(), surrounded);
     auto flag = surrounded.begin();
     std::erase_if(candidates, [&](const Candidate&) { return *flag++ != 0; });
   }
 
+  // By component.
+  [[nodiscard]] std::vector<Box> boxes_of_closed() const {
+    std::vector<Box> boxes(components_.count, empty_box());
+    for (const Triangle& t : mesh_.triangles) {
+      const std::uint32_t component = component_of(t);
+      if (open_[component]) continue;
+      for (const std::uint32_t v : t) extend(boxes[component], mesh_.vertices[v]);
+    }
+    return boxes;
+  }
+
   // Of many shells within each other, all cross all rays: the candidates are halved until that fits into memory.
-  void note_surrounded(std::span<const Candidate> candidates, std::span<std::uint8_t> surrounded) const {
-    std::optional<std::vector<Hit>> hits = hits_of(candidates);
+  void note_surrounded(std::span<const Candidate> candidates, std::span<const Box> boxes,
+                       std::span<std::uint8_t> surrounded) const {
+    std::optional<std::vector<Hit>> hits = hits_of(candidates, boxes);
     if (!hits) {
       const std::size_t half = candidates.size() / 2;
-      note_surrounded(candidates.first(half), surrounded.first(half));
-      return note_surrounded(candidates.subspan(half), surrounded.subspan(half));
+      note_surrounded(candidates.first(half), boxes, surrounded.first(half));
+      return note_surrounded(candidates.subspan(half), boxes, surrounded.subspan(half));
     }
     std::ranges::sort(*hits, {}, [](const Hit& hit) { return std::pair(hit.candidate, hit.component); });
     for (auto it = hits->begin(); it != hits->end();) {
@@ -249,8 +262,10 @@ class ClosedComponents {
     }
   }
 
-  // Nothing where there are too many of several candidates.
-  [[nodiscard]] std::optional<std::vector<Hit>> hits_of(std::span<const Candidate> candidates) const {
+  // Of components whose box has the candidate's point, as others do not surround it. Nothing where there are too many
+  // of several candidates.
+  [[nodiscard]] std::optional<std::vector<Hit>> hits_of(std::span<const Candidate> candidates,
+                                                        std::span<const Box> boxes) const {
     constexpr std::size_t kMost = std::size_t{1} << 18;
     std::vector<Vec3> points;
     for (const Candidate& candidate : candidates) points.push_back(candidate.point);
@@ -259,8 +274,10 @@ class ClosedComponents {
     for (const Triangle& t : mesh_.triangles) {
       const std::uint32_t component = component_of(t);
       if (open_[component]) continue;
-      grid.for_each_ray(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], [&](std::size_t i) {
-        if (candidates[i].component == component) return;
+      const Box& box = boxes[component];
+      const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+      grid.for_each_ray(a, b, c, box.lower.x, [&](std::size_t i) {
+        if (candidates[i].component == component || square_of_gap(box, points[i]) > 0.0) return;
         if (const int sign = crossing(t, points[i])) hits.push_back({static_cast<std::uint32_t>(i), component, sign});
       });
       if (hits.size() > kMost && candidates.size() > 1) return {};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace raycone {
 
@@ -24,7 +25,10 @@ RayGrid::RayGrid(std::span<const Vec3> points) : points_(points) {
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   rays_.resize(points.size());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t i = 0; i < points.size(); ++i) rays_[next[cell(points[i])]++] = i;
+  std::vector<std::size_t> by_x(points.size());
+  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+  std::ranges::sort(by_x, {}, [points](std::size_t i) { return points[i].x; });
+  for (const std::size_t i : by_x) rays_[next[cell(points[i])]++] = i;
 }
 
 double RayGrid::cells_per_half(double lower, double upper) const {

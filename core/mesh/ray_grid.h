@@ -16,10 +16,10 @@ class RayGrid {
   // Precondition: they are finite. They must outlive this.
   explicit RayGrid(std::span<const Vec3> points);
 
-  // Calls visit(i) for each point i whose ray may meet the closed triangle: it lies in the shadow of its box.
-  // Thread-safe.
+  // Calls visit(i) for each point i, from x on, whose ray may meet the closed triangle: it lies in the shadow of its
+  // box. Thread-safe.
   template <class Visit>
-  void for_each_ray(const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) const {
+  void for_each_ray(const Vec3& a, const Vec3& b, const Vec3& c, double x, const Visit& visit) const {
     // Not of lists, whose loops branch as in a coin toss.
     const double y0 = std::min(std::min(a.y, b.y), c.y), y1 = std::max(std::max(a.y, b.y), c.y);
     const double z0 = std::min(std::min(a.z, b.z), c.z), z1 = std::max(std::max(a.z, b.z), c.z);
@@ -28,15 +28,23 @@ class RayGrid {
     const std::size_t last_y = place(y1, lower_y_, per_y_), last_z = place(z1, lower_z_, per_z_);
     for (std::size_t z = place(z0, lower_z_, per_z_); z <= last_z; ++z) {
       for (std::size_t y = place(y0, lower_y_, per_y_); y <= last_y; ++y) {
-        for (std::size_t i = begin_[z * side_ + y]; i < begin_[z * side_ + y + 1]; ++i) {
-          const Vec3& q = points_[rays_[i]];
-          if (q.x <= x1 && q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(rays_[i]);
+        for (const std::size_t i : from(x, z * side_ + y)) {
+          const Vec3& q = points_[i];
+          if (q.x > x1) break;
+          if (q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(i);
         }
       }
     }
   }
 
  private:
+  // The points of a cell from x on.
+  [[nodiscard]] std::span<const std::size_t> from(double x, std::size_t cell) const {
+    const auto end = rays_.begin() + static_cast<std::ptrdiff_t>(begin_[cell + 1]);
+    return {std::ranges::lower_bound(rays_.begin() + static_cast<std::ptrdiff_t>(begin_[cell]), end, x, {},
+                                     [this](std::size_t i) { return points_[i].x; }),
+            end};
+  }
   // Monotone in the coordinate: a point within an interval lies in a cell between those of its ends. By halves, whose
   // differences do not overflow.
   [[nodiscard]] std::size_t place(double coordinate, double lower, double per_half) const {
@@ -53,7 +61,7 @@ class RayGrid {
   double per_y_ = 0.0, per_z_ = 0.0;  // cells per half of a unit
   std::size_t side_;
   std::vector<std::size_t> begin_;  // per cell, and the end
-  std::vector<std::size_t> rays_;   // by cell
+  std::vector<std::size_t> rays_;   // by cell, and by x
 };
 
 }  // namespace raycone

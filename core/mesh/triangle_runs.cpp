@@ -115,7 +115,7 @@ class RunOrder {
 
  private:
   static constexpr std::size_t kWorthATask = 4096;
-  static constexpr double kNoSize = 1e-300;  // what is shorter is a point: its inverse could overflow
+  static constexpr double kNoSize = 1e-290;  // what is shorter is a point: kUnits over it could overflow
 
   // A quarter of the mesh's box, as quarters of middles are in it.
   static Box quarter_of_box(const TriangleMesh& mesh) {

@@ -1,11 +1,13 @@
 #include "core/orientation/nesting.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "core/data/box.h"
 #include "core/machine/threads.h"
 #include "core/orientation/ray_sums.h"
 
@@ -19,16 +21,31 @@ bool holds_box(const Box& outer, const Box& inner) {
   return true;
 }
 
-// For each box those that hold it: a sweep along x.
+// That along which the fewest boxes lie beside each other: of all parts in a plane, one within it.
+int axis_to_sweep(const std::vector<Box>& boxes) {
+  Box all = empty_box();
+  for (const Box& box : boxes) extend(all, box);
+  std::array<double, 3> beside{};  // their extents in all, in units of that of all together
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto half_extent = [n = static_cast<int>(axis)](const Box& box) {  // by halves, which do not overflow
+      return box.upper[n] / 2 - box.lower[n] / 2;
+    };
+    for (const Box& box : boxes)
+      beside[axis] += half_extent(box) < half_extent(all) ? half_extent(box) / half_extent(all) : 1.0;
+  }
+  return static_cast<int>(std::ranges::min_element(beside) - beside.begin());
+}
+
+// For each box those that hold it.
 std::vector<std::vector<std::uint32_t>> boxes_around(const std::vector<Box>& boxes) {
+  const int axis = axis_to_sweep(boxes);
   std::vector<std::uint32_t> order(boxes.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lower.x < boxes[b].lower.x; });
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(boxes[i].lower[axis], i); });
   std::vector<std::vector<std::uint32_t>> around(boxes.size());
   std::vector<std::uint32_t> met;
   for (const std::uint32_t i : order) {
-    std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper.x < boxes[i].lower.x; });
+    std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper[axis] < boxes[i].lower[axis]; });
     for (const std::uint32_t j : met) {
       if (holds_box(boxes[j], boxes[i])) around[i].push_back(j);
       if (holds_box(boxes[i], boxes[j])) around[j].push_back(i);
@@ -71,8 +88,12 @@ class NestingCandidates {
     parallel_for_each(surfaces_.size(), [&](std::size_t outer) {
       if (!within[outer].empty()) dropped[outer] = not_within(outer, within[outer], used, most);
     });
+    std::vector<std::vector<std::uint32_t>> not_around(surfaces_.size());  // ascending
     for (std::uint32_t outer = 0; outer < surfaces_.size(); ++outer) {
-      for (const std::uint32_t i : dropped[outer]) std::erase(around_[i], outer);
+      for (const std::uint32_t i : dropped[outer]) not_around[i].push_back(outer);
+    }
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      std::erase_if(around_[i], [&](std::uint32_t outer) { return std::ranges::binary_search(not_around[i], outer); });
     }
   }
 

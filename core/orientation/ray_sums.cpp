@@ -1,5 +1,6 @@
 #include "core/orientation/ray_sums.h"
 
+#include <limits>
 #include <mutex>
 
 #include "core/crossings/crossings.h"
@@ -29,7 +30,7 @@ std::vector<RaySum> ray_sums(const std::vector<Triangle>& faces, const std::vect
     std::vector<RayHit> hits;
     for (std::size_t n = begin; n < end; ++n) {
       const Vec3 &a = vertices[faces[n][0]], &b = vertices[faces[n][1]], &c = vertices[faces[n][2]];
-      grid.for_each_ray(a, b, c, [&](std::size_t i) {
+      grid.for_each_ray(a, b, c, -std::numeric_limits<double>::infinity(), [&](std::size_t i) {
         const Vec3& q = points[i];
         const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}, 0.0}, nullptr);
         const bool on_surface = crossing.on_begin < crossing.on_end;

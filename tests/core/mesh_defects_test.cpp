@@ -187,6 +187,21 @@ TEST(MeshDefects, OfManySolidsAreCountedOneByOne) {
   EXPECT_EQ(reversed_in(mesh), expected);
 }
 
+// Minutes, if each looked at all others that its ray passes.
+TEST(MeshDefects, RowsOfReversedSolidsTakeNoLongTime) {
+  constexpr std::uint32_t kCount = 40'000;
+  TriangleMesh row;
+  for (std::uint32_t n = 0; n < kCount; ++n) {
+    const double x = n;
+    row.vertices.insert(row.vertices.end(), {{x, 0, 0}, {x + 0.5, 0, 0}, {x, 0.5, 0}, {x, 0, 0.5}});
+    const std::uint32_t v = 4 * n;
+    row.triangles.insert(row.triangles.end(),
+                         {{v, v + 1, v + 2}, {v, v + 2, v + 3}, {v, v + 3, v + 1}, {v + 1, v + 3, v + 2}});
+  }
+  EXPECT_EQ(reversed_in(row), kCount);
+  EXPECT_EQ(reversed_in(reversed(row)), 0U);
+}
+
 TEST(MeshDefects, OfSolidsAtBothEndsOfDoublePrecisionAreCounted) {
   TriangleMesh mesh;
   for (const double at : {-1.5e308, 0.0, 1.5e308}) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPiecesAlong = 64.0;  // the longest side of the caps' box
 constexpr double kMostPieces = 128.0;  // of an edge
+constexpr double kOfCaps = 0x1p15;     // pieces of all caps, about, where these lie one over the other
 constexpr double kFiner = 4.0;
 constexpr int kMostCuts = 14;  // of a cap, one after the other
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -50,12 +51,21 @@ void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& 
   cut(middle, b, c, size, visit, cuts + 1);
 }
 
+double area_of(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+    const auto [a, b, c] = corners(mesh, n);
+    area += safe_norm(cross(b - a, c - a)) / 2;
+  }
+  return area;
+}
+
 }  // namespace
 
 ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_kernel(level)) {
   if (caps.mesh.triangles.empty()) return;  // edges there and back, which add nothing
   const Box box = bounding_box(caps.mesh);
-  piece_ = longest_side(box) / kPiecesAlong;
+  piece_ = std::max(longest_side(box) / kPiecesAlong, std::sqrt(area_of(caps.mesh) / kOfCaps));
   place_error_ = kPlaceError * largest_coordinate(box);
   add_edges(caps.wide_loops);
   add_narrow(caps);

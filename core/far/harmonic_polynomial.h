@@ -44,7 +44,7 @@ inline constexpr CoefficientRows kRows;
 // Of a function on a cube; coordinates of Chebyshev polynomials are those from its centre, in half sides.
 using Coefficients = std::array<double, kRows.size()>;
 
-// The same polynomial on a cube within the other, but for rounding.
+// The same polynomial on another cube, but for rounding. Where that is not within the first one, coefficients grow.
 [[nodiscard]] Coefficients on_cube(const Coefficients& polynomial, const Cube& from, const Cube& to,
                                    const MatrixKernel& kernel);
 

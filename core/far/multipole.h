@@ -39,7 +39,7 @@ struct Multipole {
                                      double radius, const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
 // Adds an expansion that is about a centre that lies `shift` away, in units of the sum, and whose unit is `ratio` such
-// units, a power of two. |shift| <= 1. The result does not depend on the kernel.
+// units, a power of two. The result does not depend on the kernel.
 void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio,
                  const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 

@@ -14,8 +14,8 @@ struct ClosedSurface {
 };
 
 // For each surface the others around it, by number: those whose box holds its box and within which all of its vertices
-// lie (winding number not 0). Vertices on the other's surface do not count, as long as one is not. Exact. Uses the
-// threads that ThreadLimit allows.
+// lie (winding number not 0). Vertices on the other's surface do not count, as long as one is not. Exact. Takes n^2 time
+// and memory for n boxes within each other. Uses the threads that ThreadLimit allows.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<const ClosedSurface*>& surfaces,
                                                                       const std::vector<Vec3>& vertices);
 

@@ -22,7 +22,9 @@ struct Pieces {
 // `vote`: per face, how it is stored (core/orientation/unique_faces.h). Patches whose faces all agree as stored, and
 // that have no boundary together as they are stored, keep their relations; faces that are stored as often either way
 // cancel there. Others are joined as edges wish; where wishes contradict each other, they are not. The result does not
-// depend on the order of faces, but for the numbers of pieces and for which of the two orientations is 1.
+// depend on the order of faces, but for the numbers of pieces and for which of the two orientations is 1. Takes the time
+// of all edges once for each round in which patches are joined: few, but for chains of patches of which each decides
+// about the next.
 [[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceEdges& edges, const std::vector<std::int8_t>& vote);
 
 }  // namespace raycone

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <system_error>
@@ -32,13 +31,12 @@ std::string hash_of_content(const std::string& path) {
 }  // namespace
 
 FileStamp stamp_of(const std::string& path) {
-  const auto now =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch());
+  const std::int64_t now = nanoseconds_now();  // before, so that a wait in between makes nothing look old
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return {};
   const std::int64_t modified = nanoseconds(status.st_mtim);
   const std::int64_t changed = nanoseconds(status.st_ctim);
-  const bool recent = std::max(modified, changed) > now.count() - kCoarsestTime;
+  const bool recent = std::max(modified, changed) > now - kCoarsestTime;
   return {static_cast<std::uint64_t>(status.st_size), modified, changed, status.st_ino,
           S_ISREG(status.st_mode) && recent};
 }

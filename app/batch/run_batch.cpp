@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -33,6 +32,7 @@
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
+#include "io/files/file_time.h"
 #include "io/files/output_file.h"
 #include "io/files/read_file.h"
 #include "io/files/temporary_file.h"
@@ -312,10 +312,7 @@ class BatchRun {
   }
 
   // Now, or where clocks differ or are set back at least later than `earlier`: nanoseconds since 1970.
-  static std::int64_t time_after(std::int64_t earlier) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), earlier + 1);
-  }
+  static std::int64_t time_after(std::int64_t earlier) { return std::max(nanoseconds_now(), earlier + 1); }
 
   const BatchCommand& command_;
   const std::vector<std::string>& directories_;

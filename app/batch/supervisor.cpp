@@ -23,6 +23,7 @@
 #include "app/process/limits.h"
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
+#include "io/files/file_time.h"
 #include "io/files/temporary_file.h"
 #include "io/mesh/read_mesh.h"
 
@@ -60,12 +61,6 @@ const ReadMeshOptions& reading_of(const MeshCommand& command) {
 Clock::duration seconds(double count) {
   constexpr double kMost = 1e9;  // 30 years: what clocks can add
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(count, kMost)));
-}
-
-// Nanoseconds since 1970.
-std::int64_t now_by_calendar() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
 // Throws LimitError where so few are left that another worker would take those of the tables of results.
@@ -133,7 +128,7 @@ class Supervisor {
       if (!slot.worker && !none_runs()) require_descriptors();
       ask(slot, to_message(command_for(jobs_[start.mesh], start.threads, options_)));
       slot.running = start;
-      slot.started = now_by_calendar();
+      slot.started = nanoseconds_now();
       slot.deadline = Clock::now() + seconds(options_.timeout);
     } catch (const LimitError&) {
       if (none_runs()) throw;

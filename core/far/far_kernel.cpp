@@ -133,7 +133,7 @@ HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, c
                            const LanesOfPoints& r) {
   const Lanes scale = hn::Set(d, 1 / node.unit);
   const LanesOfPoints s{hn::Mul(r.x, scale), hn::Mul(r.y, scale), hn::Mul(r.z, scale)};
-  // From beyond, where units of distance may be infinitely many, nothing is seen of it.
+  // So many units away that products may overflow, the node adds nothing that counts.
   constexpr double kFarthest = 0x1p1000;
   const Lanes square = square_of(s);
   const auto visible = hn::Lt(square, hn::Set(d, kFarthest));

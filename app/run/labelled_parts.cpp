@@ -63,22 +63,18 @@ void LabelledParts::note(const MeshToEvaluate& part) {
   defects_.reversed_components += part.defects.reversed_components;
   // Of several parts, each is a component more.
   if (part.defects.negative_volume && part.defects.reversed_components == 0) ++defects_.reversed_components;
-  cut_edges_ += part.orientation.cut_edges;
-  if (whole_ == WholeMesh::kEvaluated) return;
-  OrientationCounts& counts = run_.report.orientation;
-  counts.flipped_faces += part.orientation.flipped_faces;
-  counts.dropped_duplicates += part.orientation.dropped_duplicates;
-  counts.patches += part.orientation.patches;
+  turned_ += part.orientation;
+  if (whole_ != WholeMesh::kEvaluated) run_.report.orientation += part.orientation;
 }
 
 // Where the meshes are one mesh, too, the warnings are about that.
 void LabelledParts::warn_about_file() {
-  if (cut_edges_ > 0) warnings_.push_back(unorientable(cut_edges_));
-  for (const Warning& warning : warnings_about(defects_, mesh_.orient)) warnings_.push_back(warning);
+  std::ranges::move(warnings_about(turned_), std::back_inserter(warnings_));
+  std::ranges::move(warnings_about(defects_, mesh_.orient), std::back_inserter(warnings_));
   if (whole_ != WholeMesh::kEvaluated) run_.warn_about(parts_.files()[parts_.file_of(next_ - 1)].read.path, warnings_);
   warnings_.clear();
   defects_ = {};
-  cut_edges_ = 0;
+  turned_ = {};
 }
 
 void LabelledParts::found(bool inside, bool expected) {

@@ -12,6 +12,7 @@
 #include "app/run/mesh_run.h"
 #include "app/run/part_evaluator.h"
 #include "core/mesh/mesh_defects.h"
+#include "core/orientation/orient.h"
 
 namespace raycone {
 
@@ -58,7 +59,7 @@ class LabelledParts {
   // Of the parts of the file at hand.
   std::vector<Warning> warnings_;
   MeshDefects defects_;
-  std::uint64_t cut_edges_ = 0;
+  OrientationCounts turned_;
   // What the report is told when all has been evaluated.
   Terms terms_;
 };

@@ -102,7 +102,7 @@ MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options) {
 
 MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options, std::vector<Warning>& warnings) {
   MeshToEvaluate result = oriented_mesh(welded_mesh(std::move(as_read), options, warnings), options);
-  if (const std::uint64_t cut = result.orientation.cut_edges) warnings.push_back(unorientable(cut));
+  std::ranges::move(warnings_about(result.orientation), std::back_inserter(warnings));
   std::ranges::move(warnings_about(result.defects, options.orient), std::back_inserter(warnings));
   return result;
 }

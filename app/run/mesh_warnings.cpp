@@ -40,10 +40,11 @@ std::vector<Warning> warnings_about(const MeshDefects& defects, Orient orient) {
                                             help(orient, "turns faces to agree")});
   }
   if (const std::uint64_t pairs = defects.cancelling_pairs) {
-    warnings.push_back({"opposite-duplicates", counted_as(pairs, "pair", "pairs") +
-                                                   " of faces with the same corners and opposite orientations, which "
-                                                   "cancel" +
-                                                   help(orient, "keeps one of each")});
+    warnings.push_back({"opposite-duplicates",
+                        counted_as(pairs, "pair", "pairs") +
+                            " of faces with the same corners and opposite orientations, which "
+                            "cancel" +
+                            help(orient, "keeps one of each, which is right unless they are walls between cells")});
   }
   return warnings;
 }
@@ -55,9 +56,19 @@ std::uint64_t triangles_with_corners(const TriangleMesh& mesh) {
   }));
 }
 
-Warning unorientable(std::uint64_t edges) {
-  return {"unorientable",
-          counted_as(edges, "edge was", "edges were") + " cut, because no orientation makes all faces agree"};
+std::vector<Warning> warnings_about(const OrientationCounts& counts) {
+  std::vector<Warning> warnings;
+  if (const std::uint64_t edges = counts.cut_edges) {
+    warnings.push_back({"unorientable", counted_as(edges, "edge was", "edges were") +
+                                            " cut, because no orientation makes all faces agree"});
+  }
+  if (const std::uint64_t edges = counts.wall_edges) {
+    warnings.push_back({"walls", counted_as(edges, "edge", "edges") +
+                                     " where faces stored in both orientations meet a surface that is closed without "
+                                     "them; --orient auto keeps one of each two, which bends the winding number "
+                                     "nearby; --orient keep is right for walls between cells"});
+  }
+  return warnings;
 }
 
 Warning weld_collapsed(std::uint64_t faces, double distance) {

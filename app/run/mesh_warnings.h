@@ -24,8 +24,8 @@ namespace raycone {
 // `weld-collapsed`: `faces` (not 0) lost their area to `distance`.
 [[nodiscard]] Warning weld_collapsed(std::uint64_t faces, double distance);
 
-// `unorientable`: no orientation makes all faces agree, so `edges` (not 0) were cut.
-[[nodiscard]] Warning unorientable(std::uint64_t edges);
+// `unorientable`, `walls`, in this order, those that apply to meshes that were turned: of several, the counts added up.
+[[nodiscard]] std::vector<Warning> warnings_about(const OrientationCounts& counts);
 
 // Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
 // own, is not flat), and the lattice reaches around it but for a voxel.

@@ -26,7 +26,9 @@ void reverse(Triangle& t) { std::swap(t[1], t[2]); }
 OrientedMesh flipped(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) reverse(t);
   const std::uint64_t faces = mesh.triangles.size();
-  return {std::move(mesh), {.flipped_faces = faces, .dropped_duplicates = 0, .patches = 0, .cut_edges = 0}};
+  OrientationCounts counts;
+  counts.flipped_faces = faces;
+  return {std::move(mesh), counts};
 }
 
 // The faces of each piece, turned to agree.
@@ -189,6 +191,22 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
   return {std::move(mesh), counts, std::move(places)};
 }
 
+// As OrientationCounts says. `turn` as for fates().
+std::uint64_t wall_edges(const UniqueFaces& unique, const FaceEdges& edges, const std::vector<std::int8_t>& turn) {
+  std::uint64_t count = 0;
+  for (const UnpairedEdge& edge : edges.unpaired()) {
+    bool has_others = false;
+    int walls = 0, others = 0;
+    for (const FaceAtEdge& at : edge.faces) {
+      const bool is_wall = unique.vote[at.face] == 0;
+      (is_wall ? walls : others) += at.direction * turn[at.face];
+      has_others |= !is_wall;
+    }
+    count += has_others && others == 0 && walls != 0;
+  }
+  return count;
+}
+
 // For each vertex the first one at its position.
 std::vector<std::uint32_t> positions(const TriangleMesh& mesh, bool is_welded) {
   if (!is_welded) return first_equal_vertices(mesh.vertices);
@@ -214,6 +232,7 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   OrientedMesh result = with_fates(std::move(mesh), fate);
   result.counts.patches = patches.size();
   result.counts.cut_edges = patches.cut_edges;
+  result.counts.wall_edges = wall_edges(unique, edges, turn);
   return result;
 }
 

@@ -43,6 +43,7 @@ def obj(triangles):
 
 CUBE = box(0.0, 1.0)
 SPIKE = [((0.0, 0.0, 0.0), (1e-6, 0.0, 0.0), (0.0, 1e-6, 0.0))]
+CELLS = CUBE + [tuple((x + 1.0, y, z) for x, y, z in t) for t in CUBE]  # two, with a wall between them
 CASES = {  # name: (triangles, options, warnings)
     "good": (CUBE, [], []),
     "hollow": (box(0.0, 9.0) + box(4.0, 5.0, True), [], []),
@@ -53,6 +54,10 @@ CASES = {  # name: (triangles, options, warnings)
     "double": (CUBE + box(0.0, 1.0, True), [], ["opposite-duplicates", "empty"]),
     "twice": (CUBE + CUBE, [], []),
     "wall": (CUBE + [CUBE[3][::-1], CUBE[3]], [], ["opposite-duplicates"]),
+    "cells": (CELLS, [], ["opposite-duplicates"]),
+    "cells kept once": (CELLS, ["--orient", "auto"], ["walls"]),
+    "double, kept once": (CUBE + box(0.0, 1.0, True), ["--orient", "auto"], []),
+    "face and back": (CUBE + [CUBE[3][::-1]], ["--orient", "auto"], []),
     "collapsed": (CUBE + SPIKE, ["--weld", "1e-3"], ["weld-collapsed"]),
     "kept": (CUBE + SPIKE, ["--weld", "1e-9"], []),
     "bubble": (box(0.0, 9.0, False, (0, 1)) + box(4.0, 5.0, True), [], ["reversed"]),

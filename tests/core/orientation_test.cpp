@@ -516,6 +516,35 @@ TEST(Orient, CountsWhatItDid) {
   EXPECT_EQ(orient(welded(doubled(sphere_of(1), random)), Orient::kAuto).counts.flipped_faces, 0U);
 }
 
+// Cubes that share walls, each stored by both.
+TriangleMesh cells(int count) {
+  TriangleMesh mesh;
+  for (int x = 0; x < count; ++x) {
+    for (int y = 0; y < count; ++y) {
+      const Vec3 lower{static_cast<double>(x), static_cast<double>(y), 0.0};
+      mesh = joined(mesh, box_mesh(lower, lower + Vec3{1, 1, 1}));
+    }
+  }
+  return welded(mesh);
+}
+
+TEST(Orient, CountsWhereWallsEnd) {
+  Random random(7);
+  EXPECT_EQ(orient(cells(1), Orient::kAuto).counts.wall_edges, 0U);
+  // Of each of four walls, all edges but the one in the middle, where only walls meet.
+  EXPECT_EQ(orient(cells(2), Orient::kAuto).counts.wall_edges, 12U);
+  EXPECT_EQ(orient(test::shuffled(cells(2), random), Orient::kAuto).counts.wall_edges, 12U);
+  EXPECT_EQ(orient(cells(2), Orient::kKeep).counts.wall_edges, 0U);
+  // No face of these has an opinion: they are double-sided.
+  EXPECT_EQ(orient(welded(doubled(sphere_of(1), random)), Orient::kAuto).counts.wall_edges, 0U);
+  EXPECT_EQ(orient(welded(doubled(sphere_with_a_hole(1), random)), Orient::kAuto).counts.wall_edges, 0U);
+  // One face that is double-sided, of a ball.
+  TriangleMesh ball = sphere_of(1);
+  ball.triangles.push_back(ball.triangles[3]);
+  reverse(ball.triangles.back());
+  EXPECT_EQ(orient(ball, Orient::kAuto).counts.wall_edges, 0U);
+}
+
 // ---- Any mesh ----
 
 // Closed and open ones, some beside it, turned at random.

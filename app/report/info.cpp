@@ -22,7 +22,7 @@ std::string readable_seconds(double seconds) {
   if (seconds < 0.1) {
     std::snprintf(text, sizeof text, "less than 0.1 s");
   } else if (seconds < 120.0) {
-    std::snprintf(text, sizeof text, "about %.2g s", seconds);
+    std::snprintf(text, sizeof text, seconds < 99.5 ? "about %.2g s" : "about %.0f s", seconds);
   } else if (seconds < 7200.0) {
     std::snprintf(text, sizeof text, "about %.0f minutes", seconds / 60.0);
   } else {

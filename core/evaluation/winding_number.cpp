@@ -62,7 +62,7 @@ double WindingNumberEvaluator::accuracy() const {
 // Each face is scanned once, and each sample written once.
 WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const Lattice& lattice) const {
   constexpr double kPerFace = 25e-9, kPerSample = 3e-9;
-  constexpr double kMany = 8192;  // sources
+  constexpr double kMany = 1 << 17;  // sources
   const DefaultFloatingPoint guard;
   const ScaledMesh& mesh = implementation_->scaled();
   double samples = 1.0;

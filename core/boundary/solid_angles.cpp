@@ -8,6 +8,7 @@
 
 #include "core/exact/exact_determinant.h"
 #include "core/exact/predicates.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
@@ -57,24 +58,53 @@ std::strong_ordering order(const SolidTriangle& s, const SolidTriangle& t) {
   return lexicographic_order(s.c, t.c);
 }
 
+// A solid triangle, and what mostly decides about its place in their order.
+struct Filed {
+  double first;
+  std::size_t number;
+};
+
+// In their order. Collinear corners have no orientation.
+std::vector<Filed> filed(const std::vector<SolidTriangle>& all) {
+  std::vector<Filed> filed;
+  filed.reserve(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].orientation != 0.0) filed.push_back({all[i].a.x, i});
+  }
+  std::sort(filed.begin(), filed.end(), [&](const Filed& s, const Filed& t) {
+    return s.first != t.first ? s.first < t.first : order(all[s.number], all[t.number]) < 0;
+  });
+  return filed;
+}
+
+std::vector<SolidTriangle> solid_triangles(const TriangleMesh& mesh) {
+  constexpr std::size_t kPerTask = 4096;
+  std::vector<SolidTriangle> all(mesh.triangles.size());
+  parallel_for(all.size(), kPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle& t = mesh.triangles[i];
+      const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+      all[i] = collinear(a, b, c) ? SolidTriangle{a, b, c, {}, 0.0} : with_sorted_corners(a, b, c);
+    }
+  });
+  return all;
+}
+
 }  // namespace
 
 SolidFaces solid_faces(const TriangleMesh& mesh) {
-  std::vector<SolidTriangle> all;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    if (!collinear(a, b, c)) all.push_back(with_sorted_corners(a, b, c));
-  }
-  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });
+  const std::vector<SolidTriangle> all = solid_triangles(mesh);
+  const std::vector<Filed> in_order = filed(all);
   SolidFaces faces;
-  for (auto begin = all.begin(); begin != all.end();) {
-    const auto end = std::find_if(begin, all.end(), [&](const auto& t) { return order(*begin, t) != 0; });
+  faces.triangles.reserve(in_order.size());
+  for (auto begin = in_order.begin(); begin != in_order.end();) {
+    SolidTriangle face = all[begin->number];
     double net = 0.0;
-    for (auto it = begin; it != end; ++it) net += it->orientation;
-    begin->orientation = std::copysign(1.0, net);
+    for (; begin != in_order.end() && order(face, all[begin->number]) == 0; ++begin)
+      net += all[begin->number].orientation;
+    face.orientation = std::copysign(1.0, net);
     faces.has_repeated_faces = faces.has_repeated_faces || std::abs(net) > kManyCopies;
-    faces.triangles.insert(faces.triangles.end(), static_cast<std::size_t>(std::abs(net)), *begin);
-    begin = end;
+    faces.triangles.insert(faces.triangles.end(), static_cast<std::size_t>(std::abs(net)), face);
   }
   return faces;
 }

@@ -20,7 +20,7 @@ struct SolidFaces {
   std::vector<SolidTriangle> triangles;
   bool has_repeated_faces = false;  // one is there so often that its error, multiplied, would show
 };
-// Needs DefaultFloatingPoint.
+// Needs DefaultFloatingPoint. Uses the threads that ThreadLimit allows.
 [[nodiscard]] SolidFaces solid_faces(const TriangleMesh& mesh);
 
 // Rounding errors of some u per triangle.

@@ -228,7 +228,7 @@ struct Walk {
       hn::Store(hn::IfThenElse(accepted, next, hn::Load(d, &until[i])), d, &until[i]);
       far.add(accepted, i);
     }
-    const double* coefficients = tree.coefficients().data() + node.first_coefficient;
+    const double* coefficients = tree.coefficients() + node.first_coefficient;
     for (std::size_t n = 0; n < far.count; n += hn::Lanes(d)) {
       const LanesOfPoints r = seen_from(node.centre, far.points(samples, n));
       far.add_to(result.far, n, multipole(node, coefficients, degrees_at(node, square_of(r)), r));
@@ -271,7 +271,7 @@ void sum_here(const SourceTree& tree, const SampleTile& samples, FarTile& result
 
 void add_multipole_here(const SourceTree& tree, std::uint32_t number, int p, const SampleTile& samples, Tile& values) {
   const SourceNode& node = tree.nodes()[number];
-  const double* coefficients = tree.coefficients().data() + node.first_coefficient;
+  const double* coefficients = tree.coefficients() + node.first_coefficient;
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
     const Lanes value =
         multipole(node, coefficients, {p, p, hn::Zero(d)}, seen_from(node.centre, points_at(samples, i)));

@@ -9,6 +9,7 @@
 #include "core/boundary/sample_tile.h"
 #include "core/far/harmonic_error.h"
 #include "core/far/harmonic_fit.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
@@ -118,28 +119,36 @@ Box LatticeBlocksWalk::box_of(const std::array<std::size_t, 3>& first, const std
 LatticeBlocksWalk::Division LatticeBlocksWalk::whole() const {
   std::vector<std::uint32_t> triangles(blocks_.sources_.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = static_cast<std::uint32_t>(i);
-  Division division;
-  add_child(lattice(), triangles, division);
-  return division;
+  return divided_into({lattice()}, triangles);
 }
 
 LatticeBlocksWalk::Division LatticeBlocksWalk::divide(const SampleBlock& block) const {
-  Division division;
-  if (block.near.empty() ? block.size() <= kLargestBlock : block.size() < kSmallBlock) return division;
-  for (SampleBlock& child : halves(block)) add_child(std::move(child), block.near, division);
+  if (block.near.empty() ? block.size() <= kLargestBlock : block.size() < kSmallBlock) return {};
+  return divided_into(halves(block), block.near);
+}
+
+LatticeBlocksWalk::Division LatticeBlocksWalk::divided_into(std::vector<SampleBlock> children,
+                                                            std::span<const std::uint32_t> triangles) const {
+  constexpr std::size_t kMany = 1 << 12;
+  Division division{std::move(children), {}};
+  division.far.resize(division.children.size());
+  const auto share_out = [&](std::size_t n) { division.far[n] = far_of(division.children[n], triangles); };
+  if (triangles.size() >= kMany) {
+    parallel_for_each(division.children.size(), share_out);
+  } else {
+    for (std::size_t n = 0; n < division.children.size(); ++n) share_out(n);
+  }
   return division;
 }
 
-void LatticeBlocksWalk::add_child(SampleBlock block, std::span<const std::uint32_t> triangles,
-                                  Division& division) const {
+Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const {
   block.cube = cube_around(block);
   std::vector<std::uint32_t> far = far_triangles(block, triangles);
   Cover cover = cover_at_nodes(far, block.cube);
   if (making_cost(cover.cost, false) > static_cast<double>(far.size()) * block.size()) far.clear(), cover = {};
   std::ranges::set_difference(triangles, far, std::back_inserter(block.near));
   block.near_cost = cover_at(block, block.first, block.last).cost;
-  division.far.push_back(std::move(cover));
-  division.children.push_back(std::move(block));
+  return cover;
 }
 
 // As many as the budget allows, the most harmless first; ascending. A block that is deeper than the largest ones ever
@@ -222,14 +231,19 @@ double LatticeBlocksWalk::estimate(const SampleBlock& block) const {
   constexpr std::size_t kDeep = 4;
   const Division division = divide(block);
   if (!pays(block, division)) return near_cost(block);
-  double making = 0.0, inside = 0.0, looked_at = 0.0;
-  for (std::size_t n = 0; n < division.children.size(); ++n) {
+  const std::uint32_t looked_at = block.level < kDeep ? kSome[block.level % 2] : kFew;
+  std::vector<double> estimates(division.children.size(), 0.0);
+  parallel_for_each(estimates.size(), [&](std::size_t n) {
+    if ((looked_at >> n) % 2 != 0) estimates[n] = estimate(division.children[n]);
+  });
+  double making = 0.0, inside = 0.0, samples = 0.0;
+  for (std::size_t n = 0; n < estimates.size(); ++n) {
     making += making_cost(division.far[n].cost, true);
-    if (((block.level < kDeep ? kSome[block.level % 2] : kFew) >> n) % 2 == 0) continue;
-    inside += estimate(division.children[n]);
-    looked_at += division.children[n].size();
+    if ((looked_at >> n) % 2 == 0) continue;
+    inside += estimates[n];
+    samples += division.children[n].size();
   }
-  return making + inside * (block.size() / looked_at);
+  return making + inside * (block.size() / samples);
 }
 
 // ---- Fields ----------------------------------------------------------------------------------------------------

@@ -106,7 +106,11 @@ class LatticeBlocksWalk {
   [[nodiscard]] Box box_of(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last) const;
   [[nodiscard]] double estimate(const SampleBlock& block) const;
 
-  void add_child(SampleBlock block, std::span<const std::uint32_t> triangles, Division& division) const;
+  // Of the parent's near triangles, or all, those that are far from a child go to the polynomials.
+  [[nodiscard]] Division divided_into(std::vector<SampleBlock> children,
+                                      std::span<const std::uint32_t> triangles) const;
+  // What is far from the block; the others become its near ones.
+  [[nodiscard]] Cover far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const;
   [[nodiscard]] std::vector<std::uint32_t> far_triangles(const SampleBlock& block,
                                                          std::span<const std::uint32_t> triangles) const;
   static double error_of(const TriangleExtent& source, const Cube& cube);

@@ -26,6 +26,9 @@ Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 
 double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c - t.a)) / 2; }
 
+// Of the coefficients up to this degree.
+std::size_t numbers_of(int order) { return 2 * (multipole_index(order, order, order) + 1); }
+
 // The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
 // terms.
 int worthwhile_order(std::size_t triangles) {
@@ -74,15 +77,21 @@ struct SourceTree::PlacedTriangle {
   std::uint32_t number;
 };
 
-// Along the axis along which the middles of their boxes are farthest apart.
+// Along the axis along which the middles of their boxes are farthest apart; of many, only so far that the first half
+// comes first.
 void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
+  constexpr std::size_t kMany = 4 * kLeaf;
   Box middles = empty_box();
   for (const PlacedTriangle& t : placed) extend(middles, middle(t.box));
   const int axis = longest_axis(middles);
   std::vector<std::pair<double, std::uint32_t>> order;
   order.reserve(placed.size());
   for (std::uint32_t i = 0; i < placed.size(); ++i) order.emplace_back(middle(placed[i].box, axis), i);
-  std::sort(order.begin(), order.end());
+  if (placed.size() > kMany) {
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(placed.size() / 2), order.end());
+  } else {
+    std::sort(order.begin(), order.end());
+  }
   std::vector<PlacedTriangle> sorted;
   sorted.reserve(placed.size());
   for (const auto& [at, i] : order) sorted.push_back(placed[i]);
@@ -111,15 +120,18 @@ void SourceTree::build() {
   triangles_ = std::move(ordered);
   std::size_t coefficients = 0;
   corners_ = SharedCorners(triangles_);
+  constexpr std::size_t kPerTask = 64;  // nodes
+  parallel_for(nodes_.size(), kPerTask, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) measure(nodes_[n]);
+  });
   for (SourceNode& node : nodes_) {
-    measure(node);
     node.first_chunk = static_cast<std::uint32_t>(corners_.chunks());
     corners_.add_group(node.own_end - node.begin);
     node.last_chunk = static_cast<std::uint32_t>(corners_.chunks());
     node.first_coefficient = coefficients;
-    if (node.order > 0) coefficients += 2 * (multipole_index(node.order, node.order, node.order) + 1);
+    if (node.order > 0) coefficients += numbers_of(node.order);
   }
-  coefficients_.resize(coefficients);
+  coefficients_ = std::make_unique_for_overwrite<double[]>(coefficients);
 }
 
 // Triangles that are large beside the node stay with it; the others are halved by their middles.
@@ -220,8 +232,7 @@ Multipole SourceTree::expansion_of(const SourceNode& node) const {
 void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
   if (node.order == 0) return;
   node.bounds = bounds_of(multipole);
-  const std::span all(coefficients_);
-  set_coefficients(multipole, node.order, all.subspan(node.first_coefficient));
+  set_coefficients(multipole, node.order, {&coefficients_[node.first_coefficient], numbers_of(node.order)});
   const double of_triangles = static_cast<double>(node.triangles()) / static_cast<double>(triangles_.size());
   const double share = tolerance_ / 2 * (node.area / area() + of_triangles) * (1 - 4 * kSumRounding);
   const auto ratios = largest_ratios(node, share);

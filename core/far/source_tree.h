@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,7 +50,7 @@ class SourceTree {
   [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any
   [[nodiscard]] std::span<const SolidTriangle> triangles() const { return triangles_; }
   [[nodiscard]] const SharedCorners& corners() const { return corners_; }
-  [[nodiscard]] std::span<const double> coefficients() const { return coefficients_; }  // set_coefficients()
+  [[nodiscard]] const double* coefficients() const { return coefficients_.get(); }  // set_coefficients()
   [[nodiscard]] double area() const { return nodes_.empty() ? 0.0 : nodes_.front().area; }
 
   // How far the expansion of `node` cut off behind degree p is off at most at a distance from its centre.
@@ -81,7 +82,7 @@ class SourceTree {
   double tolerance_;
   MomentKernel moments_;
   std::vector<SourceNode> nodes_;
-  std::vector<double> coefficients_;
+  std::unique_ptr<double[]> coefficients_;  // tens of megabytes, first touched by the threads that set them
 };
 
 }  // namespace raycone

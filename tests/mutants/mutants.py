@@ -152,7 +152,9 @@ MUTANTS = [
     Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
         ("core/boundary/triangle_lanes-inl.h", "if (crossing.crossed > 0) products", "if (false) products")]),
     Mutant("triangles_as_they_come", "the order of faces changes no bit", [
-        ("core/boundary/solid_angles.cpp", "  std::sort(all.begin(), all.end(), [](const auto& s, const auto& t) { return order(s, t) < 0; });\n", "")]),
+        ("core/boundary/solid_angles.cpp",
+         "return s.first != t.first ? s.first < t.first : order(all[s.number], all[t.number]) < 0;",
+         "return s.number < t.number;")]),
 
     # --- The product ---
     Mutant("turns_by_comparison", "turns are told by sign bits: -0 is below the axis", [

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/machine/threads.h"
+
 namespace raycone {
 namespace {
 
@@ -74,6 +76,7 @@ ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_ker
     throw std::length_error("raycone: more than 4294967295 pieces of exterior edges and caps");
   }
   if (sources_.empty()) return;
+  sort_by_halves(sources_);
   nodes_.emplace_back();
   build(0, {sources_});
   sources_ = {};
@@ -125,21 +128,34 @@ ChangeBound::Source ChangeBound::seen_from_afar(const Source& cluster) {
   return moved.length < cluster.length / 2 ? moved : cluster;
 }
 
-// Into two, so often, along the longest side of what there is.
-void ChangeBound::halve(std::span<Source> sources, int times, std::vector<std::span<Source>>& parts) {
-  if (times == 0 || sources.size() < 2) return parts.push_back(sources);
+// Two halves, along the longest side of what there is, and each of them likewise.
+void ChangeBound::sort_by_halves(std::span<Source> sources) {
+  constexpr std::size_t kMany = 1 << 12;
+  if (sources.size() < 2) return;
   Box box = sources.front().box;
   for (const Source& source : sources) extend(box, source.box);
   const int axis = longest_axis(box);
   const std::size_t half = sources.size() / 2;
   std::nth_element(sources.begin(), sources.begin() + static_cast<std::ptrdiff_t>(half), sources.end(),
                    [&](const Source& a, const Source& b) { return middle(a.box, axis) < middle(b.box, axis); });
+  const std::array halves{sources.first(half), sources.subspan(half)};
+  if (sources.size() >= kMany) {
+    parallel_for_each(halves.size(), [&](std::size_t n) { sort_by_halves(halves[n]); });
+  } else {
+    for (const std::span<Source> part : halves) sort_by_halves(part);
+  }
+}
+
+// The halves, so often.
+void ChangeBound::halve(std::span<const Source> sources, int times, std::vector<std::span<const Source>>& parts) {
+  if (times == 0 || sources.size() < 2) return parts.push_back(sources);
+  const std::size_t half = sources.size() / 2;
   halve(sources.first(half), times - 1, parts);
   halve(sources.subspan(half), times - 1, parts);
 }
 
 // `parts`, eight at most, are below the node.
-void ChangeBound::build(std::uint32_t node, const std::vector<std::span<Source>>& parts) {
+void ChangeBound::build(std::uint32_t node, const std::vector<std::span<const Source>>& parts) {
   for (std::size_t n = 0; n < nodes_[node].length.size(); ++n) {
     Source sum{{{kInfinity, kInfinity, kInfinity}, {kInfinity, kInfinity, kInfinity}}, 0.0, 0.0, {}};
     double far_square = -1.0;
@@ -154,7 +170,7 @@ void ChangeBound::build(std::uint32_t node, const std::vector<std::span<Source>>
         sum = seen_from_afar(sum);
         child = static_cast<std::uint32_t>(nodes_.size());
         nodes_.emplace_back();
-        std::vector<std::span<Source>> below;
+        std::vector<std::span<const Source>> below;
         halve(parts[n], 3, below);
         build(child, below);
       }

@@ -21,7 +21,7 @@ namespace raycone {
 // that lead there and back cancel but for how far they are apart. Thread-safe.
 class ChangeBound {
  public:
-  // Of a mesh in scale: coordinates of at most 1, lest squares overflow.
+  // Of a mesh in scale: coordinates of at most 1, lest squares overflow. Uses the threads that ThreadLimit allows.
   explicit ChangeBound(const Caps& caps, SimdLevel level = SimdLevel::kBest);
 
   // The length of the gradient in the closed box is at most this, turns per unit. Infinite where the box comes too
@@ -45,8 +45,9 @@ class ChangeBound {
   void add_narrow(const Caps& caps);
   void add_wide(const Caps& caps);
   static Source seen_from_afar(const Source& cluster);
-  void halve(std::span<Source> sources, int times, std::vector<std::span<Source>>& parts);
-  void build(std::uint32_t node, const std::vector<std::span<Source>>& parts);
+  static void sort_by_halves(std::span<Source> sources);
+  static void halve(std::span<const Source> sources, int times, std::vector<std::span<const Source>>& parts);
+  void build(std::uint32_t node, const std::vector<std::span<const Source>>& parts);
 
   double piece_ = 0, place_error_ = 0;  // length of pieces, and how far they may be from where they are, at most
   std::vector<Source> sources_;

@@ -31,6 +31,7 @@
 #include "app/process/signals.h"
 #include "app/process/usage_error.h"
 #include "app/report/run_report.h"
+#include "app/run/mesh_input.h"
 #include "app/run/run_lattice.h"
 #include "app/run/run_limits.h"
 #include "app/run/run_points.h"
@@ -217,6 +218,8 @@ JobResult failure_of(const std::string& mesh) {
     result.row.status = MeshStatus::kUnwritable;
   } catch (const UnreadableError&) {
     result.knows_inputs = false;
+  } catch (const StrictWarning& warning) {
+    result.row.warnings = warning.name();
   } catch (...) {
   }
   return result;

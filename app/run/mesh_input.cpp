@@ -110,7 +110,7 @@ MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh) {
   for (const Warning& warning : warnings) {
     const std::string line = mesh + ": " + line_of(warning);
-    if (options.strict) throw InputError(line + " (an error because of --strict)");
+    if (options.strict) throw StrictWarning(line + " (an error because of --strict)", warning);
     if (!options.quiet) print_message("warning: " + line);
   }
 }

@@ -13,6 +13,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_defects.h"
 #include "core/orientation/orient.h"
+#include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
@@ -51,7 +52,18 @@ struct MeshToEvaluate {
                                        std::vector<Warning>& warnings);
 [[nodiscard]] MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options);
 
-// Prints `warnings` about `mesh`; throws the first of them as InputError with --strict.
+// A warning that --strict makes an error.
+class StrictWarning : public InputError {
+ public:
+  StrictWarning(const std::string& message, const Warning& warning) : InputError(message), name_(warning.name) {}
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
+// Prints `warnings` about `mesh`; throws the first of them as StrictWarning with --strict.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);
 
 }  // namespace raycone

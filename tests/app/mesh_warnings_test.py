@@ -103,6 +103,12 @@ def check_case(name, triangles, options, expected, directory):
     with open(os.path.join(directory, "out-" + name, "results.csv"), encoding="utf-8") as file:
         row = next(csv.DictReader(file))
     expect(row["warnings"].split() == expected, name, f"results.csv: {row['warnings']}")
+    strict = run("batch", path, "--out-dir", os.path.join(directory, "strict-" + name), *DEFAULT_RULE, *options,
+                 "--format", "npy", "--strict")
+    expect(strict.returncode == (5 if expected else 0), name, f"batch --strict: {strict.returncode} {strict.stderr}")
+    with open(os.path.join(directory, "strict-" + name, "results.csv"), encoding="utf-8") as file:
+        row = next(csv.DictReader(file))
+    expect(row["warnings"].split() == expected[:1], name, f"results.csv, --strict: {row['warnings']}")
 
 
 def check_empty(directory):

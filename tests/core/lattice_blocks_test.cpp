@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -381,6 +383,24 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
     for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
     EXPECT_LT(largest, tolerance);
     EXPECT_GT(largest, tolerance * 1e-5);
+  }
+}
+
+TEST(LatticeBlocksTest, SamplesAreDoneOnce) {
+  const TriangleMesh mesh = sieve();
+  const Lattice lattice = cube_lattice(24);
+  const auto count = static_cast<std::size_t>(whole(lattice).size());
+  std::vector<double> values(count), bounds(count);
+  std::vector<std::int64_t> crossings(count), degenerate(count);
+  std::vector<std::uint8_t> on_surface(count);
+  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
+  for (const Summation summation : {Summation::kBlocks, Summation::kFarField, Summation::kCone}) {
+    const WindingNumberEvaluator evaluator(mesh, {.summation = summation, .accuracy = {1e-5}});
+    for (const Diagnostics* const with : {static_cast<const Diagnostics*>(nullptr), &diagnostics}) {
+      std::atomic<std::uint64_t> done = 0;
+      evaluator.evaluate(lattice, whole(lattice), values, &done, with);
+      EXPECT_EQ(done, count);
+    }
   }
 }
 

@@ -65,9 +65,10 @@ OptionGroup field_group() {
   return {
       "Field",
       {{"--field", "winding|inside|density|sdf|solid|gradient|label[,...]",
-        "Winding number (default), inside mask, winding number clamped to 0..1, signed distance to the faces, signed "
-        "distance to the surface that raycone surface makes, gradient of the winding number, number of the part that a "
-        "sample is inside of",
+        "winding: winding number (default); inside: mask; density: winding number clamped to 0..1; sdf: signed "
+        "distance "
+        "to the faces; solid: signed distance to the surface that raycone surface makes; gradient: of the winding "
+        "number; label: number of the part that a sample is in",
         true},
        parts_option(),
        priority_option(),
@@ -84,7 +85,7 @@ OptionGroup field_group() {
 
 OptionSpec parts_option() {
   return {"--parts", "file|group|component",
-          "What label tells apart: several MESH operands (default), groups of one mesh, or what is not joined"};
+          "What a part is, for label: a MESH (default), a group of one, or a connected component"};
 }
 
 OptionSpec priority_option() {
@@ -97,8 +98,8 @@ OptionGroup points_field_group() {
   OptionSpec& field = group.options.front();
   field.value = "winding|inside|density|sdf|gradient|label[,...]";
   field.description =
-      "Winding number (default), inside mask, winding number clamped to 0..1, signed distance to the faces, gradient "
-      "of the winding number, number of the part that a point is inside of";
+      "winding: winding number (default); inside: mask; density: winding number clamped to 0..1; sdf: signed distance "
+      "to the faces; gradient: of the winding number; label: number of the part that a point is in";
   return group;
 }
 
@@ -109,7 +110,8 @@ void refuse_solid() {
 }
 
 OptionSpec tolerance_option() {
-  return {"--tolerance", "T", "Winding numbers are off by T at most (default: 1e-10); 0: nothing is left out"};
+  return {"--tolerance", "T",
+          "Leave out at most T of a winding number (default: 1e-10); 0: nothing. Rounding comes on top"};
 }
 
 double parse_tolerance(const Values& values) {

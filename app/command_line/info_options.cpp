@@ -70,7 +70,7 @@ CommandSpec info_spec() {
                        {"--intersections", "", "Count pairs of faces that intersect"},
                        {"--require", "closed|oriented|outward|manifold|embedded|no-duplicates[,...]",
                         "Exit with 2 unless all of these hold for all meshes"},
-                       {"--mark", "FILE.ply", "Write the mesh with its flaws in colour"},
+                       {"--mark", "FILE.ply", "Write the mesh with intersecting faces and bad edges in colour"},
                        {"--no-clobber", "", "Never replace an existing file (--mark)"}}},
                      run_group()},
           .examples = {"raycone info bunny.obj", "raycone info bunny.obj --json | jq .exterior_edges",

@@ -160,13 +160,13 @@ std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& 
 CommandSpec lattice_spec() {
   OptionGroup output = output_group("vdb|csv|npy|npz|vti|nrrd|nii|nii.gz");
   output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in all formats but CSV (default: f32)"});
-  output.options.push_back({"--double", "", "64-bit values"});
-  output.options.push_back({"--half", "", "16-bit values in VDB"});
+  output.options.push_back({"--double", "", "The same as --dtype f64"});
+  output.options.push_back({"--half", "", "The same as --dtype f16 (VDB only)"});
   output.options.push_back(pack_bits_option());
   output.options.push_back({"--compress", "", "Compress NRRD by gzip"});
   output.options.push_back({"--grid-name", "NAME", "Name of the grid in VDB (default: the field's)"});
   return {.name = "lattice",
-          .description = "Evaluate a mesh on a regular lattice",
+          .description = "Sample a mesh on a regular grid, the lattice, and write a volume",
           .operands = {meshes_operand()},
           .groups = {mesh_group(), lattice_group(), field_group(), output, run_group()},
           .examples = {"raycone lattice bunny.obj -o bunny.vdb                     64 samples along the longest side",

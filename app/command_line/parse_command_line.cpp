@@ -2,6 +2,9 @@
 // stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
 #include "app/command_line/parse_command_line.h"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -18,6 +21,7 @@
 #include "app/command_line/values.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
+#include "app/text/wrapped_help.h"
 
 namespace raycone {
 namespace {
@@ -58,7 +62,7 @@ void declare(CLI::App& app, const CommandSpec& spec) {
 
 void declare_all(CLI::App& root) {
   root.require_subcommand(1);
-  root.get_formatter()->column_width(36);
+  root.get_formatter()->column_width(kHelpColumn);
   root.get_formatter()->label("Positionals", "Operands");
   root.get_formatter()->label("SUBCOMMAND", "COMMAND");
   declare(root, program_spec());
@@ -67,11 +71,18 @@ void declare_all(CLI::App& root) {
   }
 }
 
-// CLI11's formatter leaves two blank lines between groups and none below the description.
+// Of the terminal on standard output; 0: there is none.
+std::size_t terminal_width() {
+  winsize size{};
+  return isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+// CLI11's formatter leaves two blank lines between groups and none below the description. Programs that read the help
+// get a line for each option.
 std::string formatted_help(const CLI::App& app, const std::string& program) {
   std::string text = app.help(program);
   for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) text.erase(at, 1);
-  return text.insert(text.find("\nUsage:"), 1, '\n');
+  return wrapped_help(text.insert(text.find("\nUsage:"), 1, '\n'), terminal_width());
 }
 
 // `arguments` in a form that CLI11 cannot take for anything else. It only counts the operands: "[a,b]" would be a list

@@ -5,6 +5,7 @@ to a terminal.
 """
 
 import csv
+import fcntl
 import gzip
 import json
 import os
@@ -12,8 +13,10 @@ import pty
 import re
 import select
 import shutil
+import struct
 import subprocess
 import tempfile
+import termios
 import time
 import unittest
 
@@ -328,9 +331,10 @@ class Pipes(Contract):
 
 
 class Terminals(Contract):
-    def on_terminal(self, words):
+    def on_terminal(self, words, width=0):
         """Exit status and what a terminal shows of standard output, and standard error."""
         ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
         process = subprocess.Popen([RAYCONE, *words], stdin=subprocess.DEVNULL, stdout=theirs, stderr=subprocess.PIPE)
         os.close(theirs)
         shown = b""
@@ -343,6 +347,17 @@ class Terminals(Contract):
         messages = process.communicate(timeout=PATIENCE)[1]
         os.close(ours)
         return process.returncode, shown, messages.decode()
+
+    def test_help_fits_the_terminal(self):
+        piped = self.works(["lattice", "--help"]).stdout
+        self.assertGreater(max(map(len, piped.splitlines())), 80)
+        for width in (0, 80, 100):
+            status, shown, messages = self.on_terminal(["lattice", "--help"], width)
+            self.assertEqual((status, messages), (0, ""))
+            text = shown.decode()
+            self.assertEqual(text.split(), piped.split())
+            lines = [line for line in text.splitlines() if not line.startswith("  raycone ")]
+            self.assertEqual(max(map(len, lines)) <= width, width > 0)
 
     def test_what_is_no_text_is_refused(self):
         lattice = ["lattice", CUBE, "--resolution", "3", "-o"]

@@ -25,7 +25,8 @@ def seen(path):
         bpy.context.view_layer.update()
         return {"grids": {grid.name: grid.data_type for grid in grids}, "box": box_of(bpy.context.object)}
     if path.endswith(".ply"):
-        bpy.ops.import_mesh.ply(filepath=path)
+        import_ply = bpy.ops.wm.ply_import if bpy.app.version >= (4, 0, 0) else bpy.ops.import_mesh.ply
+        import_ply(filepath=path)
         colours = bpy.context.object.data.color_attributes["Col"].data
         names = (" ".join(str(round(255 * part)) for part in colour.color_srgb[:3]) for colour in colours)
         return {"colours": collections.Counter(names), "box": box_of(bpy.context.object)}

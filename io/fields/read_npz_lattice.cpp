@@ -32,11 +32,13 @@ const ZipReader::Member& find_array(const ZipReader& archive, const std::string&
   return *member;
 }
 
-// An array of `kCount` numbers of type `descriptor`, whatever its shape.
+// An array of `kCount` numbers of type `descriptor`, whatever its shape; in C order.
 template <typename Number, std::size_t kCount>
 std::array<Number, kCount> read_numbers(const ZipReader& archive, const std::string& path, const std::string& name,
                                         std::string_view descriptor) {
+  constexpr std::uint64_t kMostBytes = 1 << 20;  // with the head
   const ZipReader::Member& member = find_array(archive, path, name);
+  if (member.size > kMostBytes) fail(archive.name_of(member), "expected " + std::to_string(kCount) + " numbers");
   InputBuffer input(archive.name_of(member), archive.open_checked(member));
   const NpyHead head = read_npy_head(input);
   std::uint64_t count = 1;
@@ -48,7 +50,11 @@ std::array<Number, kCount> read_numbers(const ZipReader& archive, const std::str
   require_bytes(input, sizeof numbers, "the array");
   std::memcpy(numbers.data(), input.pending().data(), sizeof numbers);
   input.check_rest();
-  return numbers;
+  if (!head.fortran_order || head.shape.size() != 2) return numbers;
+  const std::size_t rows = head.shape[0], columns = head.shape[1];
+  std::array<Number, kCount> in_c_order{};
+  for (std::size_t n = 0; n < kCount; ++n) in_c_order[n] = numbers[n / columns + n % columns * rows];
+  return in_c_order;
 }
 
 // Of the first field, which may be packed.

@@ -37,15 +37,16 @@ VolumeFacts npz_facts(const std::string& path) {
   const ZipReader archive(path);
   VolumeFacts facts;
   facts.format = "NPZ";
+  const ZipReader::Member* const text = archive.find("raycone.npy");
   for (const ZipReader::Member& member : archive.members()) {
     if (!member.name.ends_with(kNpy)) continue;
-    const bool is_text = member.name == "raycone.npy";
+    const bool is_text = &member == text && std::max(member.size, member.packed_size) <= kMostText;
     InputBuffer input(archive.name_of(member), is_text ? archive.open_checked(member) : archive.open(member));
     const NpyHead head = read_npy_head(input);
     facts.arrays.push_back({member.name.substr(0, member.name.size() - kNpy.size()), head.type, head.shape});
     if (!is_text) continue;
-    while (input.pending().size() < kMostText && input.fill()) continue;
-    facts.made_json = input.pending().substr(0, kMostText);
+    while (input.fill()) continue;
+    facts.made_json = input.pending();
     input.check_rest();
   }
   if (facts.arrays.empty()) throw InputError(path + ": has no arrays, expected an NPZ archive");

@@ -182,8 +182,8 @@ void ZipReader::read_directory(const ByteSource& file) {
 }
 
 const ZipReader::Member* ZipReader::find(const std::string& name) const {
-  const auto found = std::ranges::find(members_, name, &Member::name);
-  return found == members_.end() ? nullptr : &*found;
+  const auto found = std::find_if(members_.rbegin(), members_.rend(), [&](const Member& m) { return m.name == name; });
+  return found == members_.rend() ? nullptr : &*found;
 }
 
 // 4.3.7: name and extra field of the local header may differ from the directory's in length.

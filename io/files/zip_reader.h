@@ -31,7 +31,7 @@ class ZipReader {
   ZipReader(std::string_view bytes, const std::string& name);
 
   [[nodiscard]] const std::vector<Member>& members() const { return members_; }
-  // Null where there is none.
+  // The last one of that name, which replaces others in archives that were appended to. Null where there is none.
   [[nodiscard]] const Member* find(const std::string& name) const;
 
   // The unpacked bytes of a member. Messages about them call it "PATH(NAME)".

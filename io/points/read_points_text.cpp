@@ -12,6 +12,7 @@
 #include "io/files/text_scanner.h"
 #include "io/points/point_readers.h"
 #include "io/points/table_fields.h"
+#include "io/points/table_layout.h"
 #include "io/points/table_lines.h"
 
 namespace raycone {
@@ -32,35 +33,22 @@ bool has_letter(std::string_view field) {
   });
 }
 
-using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
-
-// The columns that a header names as coordinates.
-std::optional<Columns> named_columns(const std::vector<std::string_view>& names) {
-  static constexpr std::array<std::array<std::string_view, 3>, 3> kNames{
-      {{"x", "y", "z"}, {"X", "Y", "Z"}, {"Points:0", "Points:1", "Points:2"}}};
-  for (const auto& wanted : kNames) {
-    Columns columns{};
-    std::size_t found = 0;
-    for (; found < 3; ++found) {
-      const auto name = std::find(names.begin(), names.end(), wanted[found]);
-      if (name == names.end()) break;
-      columns[found] = static_cast<std::size_t>(name - names.begin());
-    }
-    if (found == 3) return columns;
-  }
-  return std::nullopt;
+// What programs write for a value that is missing.
+bool stands_for_nothing(std::string_view field) {
+  constexpr std::array<std::string_view, 5> kWords{"NA", "N/A", "null", "NULL", "None"};
+  return std::ranges::find(kWords, field) != kWords.end();
 }
 
 class TextPointReader : public PointReader {
  public:
-  TextPointReader(std::unique_ptr<InputBuffer> input, const ReadPointsOptions& options)
-      : lines_(std::move(input)), columns_are_given_(options.columns) {
+  TextPointReader(std::unique_ptr<InputBuffer> input, const ReadPointsOptions& options) : lines_(std::move(input)) {
     if (!options.columns) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int column = (*options.columns)[axis];
       if (column < 1) throw InputError("column " + std::to_string(column) + " of points, expected 1 or more");
       columns_[axis] = static_cast<std::size_t>(column) - 1;
     }
+    given_ = columns_;
   }
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
@@ -81,20 +69,17 @@ class TextPointReader : public PointReader {
 
  private:
   // Whether the first line is a header, which it is if no coordinate in it is a number, or looks like one, and one of
-  // them is a name. Takes the columns from it.
+  // them is a name.
   bool take_header(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
-    std::vector<std::string_view> names;
-    TableFields fields(line, delimiter_of(line));
-    while (const auto field = fields.next()) names.push_back(*field);
+    const std::vector<std::string_view> names = fields_of(line, delimiter_of(line));
     for (const std::size_t column : columns_) {
       if (column < names.size() && number_of(names[column])) return false;
     }
     const std::size_t last = *std::max_element(columns_.begin(), columns_.end());
     if (last >= names.size() && std::any_of(names.begin(), names.end(), number_of)) return false;
-    const std::optional<Columns> named = named_columns(names);
-    if (!named && !has_names(names)) return false;
-    if (named && !columns_are_given_) columns_ = *named;
+    if (!named_columns(names) && !has_names(names)) return false;
+    header_ = line;
     return true;
   }
 
@@ -103,13 +88,20 @@ class TextPointReader : public PointReader {
     for (const std::size_t column : columns_) {
       if (column >= fields.size()) continue;
       if (starts_like_number(fields[column])) return false;
-      found = found || has_letter(fields[column]);
+      found = found || (has_letter(fields[column]) && !stands_for_nothing(fields[column]));
     }
     return found || std::none_of(columns_.begin(), columns_.end(), [&](std::size_t c) { return c < fields.size(); });
   }
 
+  void find_layout(std::string_view line) {
+    const TableLayout layout = layout_of(header_, line, given_);
+    if (!layout.fault.empty()) lines_.fail(layout.fault);
+    delimiter_ = layout.delimiter;
+    columns_ = layout.columns;
+  }
+
   Vec3 parse(std::string_view line) {
-    if (!delimiter_) delimiter_ = delimiter_of(line);
+    if (!delimiter_) find_layout(line);
     TableFields fields(line, *delimiter_);
     const std::size_t last = *std::max_element(columns_.begin(), columns_.end());
     Vec3 point;
@@ -136,9 +128,10 @@ class TextPointReader : public PointReader {
   }
 
   TableLines lines_;
+  std::optional<Columns> given_;
   Columns columns_{0, 1, 2};
-  bool columns_are_given_;
   bool started_ = false;
+  std::optional<std::string> header_;
   std::optional<char> delimiter_;  // of the data, known from their first line on
 };
 

@@ -59,9 +59,15 @@ class TableFields {
       size += rest_[size] == '"' ? 2 : 1;
     }
     const std::string_view field = rest_.substr(1, std::min(size, rest_.size()) - 1);
-    while (size < rest_.size() && !ends_field(rest_[size])) ++size;
-    skip_delimiter(std::min(size, rest_.size()));
-    return field;
+    const std::size_t after = std::min(size + 1, rest_.size());
+    std::size_t end = after;
+    while (end < rest_.size() && !ends_field(rest_[end])) ++end;
+    std::size_t next = after;
+    while (next < end && is_blank(rest_[next])) ++next;
+    const bool is_comment = next < end && next > after && rest_[next] == '#';
+    const std::string_view whole = rest_.substr(0, end);  // with what is glued to the quotes: no number
+    skip_delimiter(is_comment ? rest_.size() : end);
+    return next == end || is_comment ? field : whole;
   }
 
   // Moves behind the delimiter at `position`; at the line's end or at a comment there is none.

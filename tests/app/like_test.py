@@ -9,7 +9,9 @@ import itertools
 import json
 import os
 import sys
+import warnings
 import xml.etree.ElementTree
+import zipfile
 
 from command_case import CommandCase, mesh, numpy_or_skip, read, run, run_tests
 
@@ -230,6 +232,26 @@ class Files(Like):
             self.assertTrue(numpy.allclose(a["direction"] * a["spacing"], steps.T, rtol=1e-15, atol=1e-16))
             # Lengths and unit vectors are rounded: some units of the last place of the origin.
             self.assertLess(abs(self.like("a.npz") - points).max(), 1e-13)
+            ours = self.like("a.npz")
+            arrays = dict(a)
+            # Saved by others: in columns, and again behind the first ones, as zip -u and zipfile's "a" do.
+            numpy.savez("f.npz", **{**arrays, "direction": numpy.asfortranarray(arrays["direction"])})
+            self.assertTrue((self.like("f.npz") == ours).all())
+            numpy.savez("t.npz", **{**arrays, "origin": arrays["origin"] + 5.0})
+            with zipfile.ZipFile("t.npz", "a") as twice, warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of the second one
+                with zipfile.ZipFile("a.npz") as first:
+                    twice.writestr("origin.npy", first.read("origin.npy"))
+            self.assertTrue((self.like("t.npz") == ours).all())
+
+    def test_npz_of_endless_text(self):
+        self.works("lattice %s --resolution 3 -o a.npz" % CUBE)
+        text = numpy.array("x" * (1 << 25))
+        numpy.savez_compressed("long.npz", **{**dict(numpy.load("a.npz")), "raycone": text})
+        facts = json.loads(self.works("info long.npz --json"))
+        self.assertEqual(facts["lattice"], json.loads(self.works("info a.npz --json"))["lattice"])
+        numpy.savez_compressed("long.npz", **{**dict(numpy.load("a.npz")), "origin": numpy.zeros(1 << 20)})
+        self.refused("lattice %s --like long.npz -o b.npz" % CUBE, 2, "origin.npy)")
 
     def test_vti_and_report(self):
         indices = places((0, 0, 0), numpy.eye(3), (0, 0, 0), self.counts)

@@ -102,6 +102,58 @@ TEST_F(ReadPoints, HeaderNamesTheColumnsWhereverTheyStand) {
   EXPECT_EQ(read("\"w\",\"Points:0\",\"Points:1\",\"Points:2\"\n9,1,2,3\n9,-4,.5,6e-3\n"), kTwo);
 }
 
+TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
+  EXPECT_EQ(read("Nr;x;y;z;Bemerkung, kurz\n7;1;2;3;a\n7;-4;.5;6e-3;b\n"), kTwo);
+  EXPECT_EQ(read("time, s\tx\ty\tz\n0.5\t1\t2\t3\n0.7\t-4\t.5\t6e-3\n"), kTwo);
+  EXPECT_EQ(read("x\ty\tz\tnote\n1\t2\t3\ta, b\n-4\t.5\t6e-3\t\n"), kTwo);
+  EXPECT_EQ(read("x;y;z;note\n1;2;3;a, b\n-4;.5;6e-3;\n"), kTwo);
+  EXPECT_EQ(read("1,2,3,a;b\n-4,.5,6e-3,c\td\n"), kTwo);
+  EXPECT_EQ(read("z,y,x\n3 2 1\n6e-3 .5 -4\n"), kTwo);
+  ReadPointsOptions options;
+  options.columns = {2, 3, 4};
+  EXPECT_EQ(read("5;1;2;3;a,7,8,9\n6;-4;.5;6e-3;\n", options), kTwo);
+  // No other character decides that what is not a number is one.
+  for (const char* const line : {"10 5\t-4\t1.25", "10,5 -4,0 1,25", "10,5\t-4,0\t1,25", "1,5;2;3", "1\t2,5\t3"}) {
+    EXPECT_NE(error_of(std::string(line) + "\n").find("expected a"), std::string::npos) << line;
+  }
+}
+
+// Where names and fields are not as many, fields may be those of other columns.
+TEST_F(ReadPoints, HeaderThatNamesColumnsHasAsManyAsTheRows) {
+  for (const char* const table :
+       {"\"x\" \"y\" \"z\"\n\"1\" 10.5 -4 1.25\n", "\"x\",\"y\",\"z\"\n\"1\",10.5,-4,1.25\n",
+        " x y z\n0 10.5 -4 1.25\n", "% x y z w\n10.5 -4 1.25 5\n", "Node number x y z\n7 10.5 -4 1.25 1 2\n",
+        "x,y,z\n10,5,-4,0,1,25\n", "x y z note\n1 2 3\n"}) {
+    EXPECT_NE(error_of(table).find("pts:2: the header has "), std::string::npos) << table;
+  }
+  EXPECT_EQ(error_of("x,y,z\n7,1,2,3\n"),
+            "pts:2: the header has 3 columns, and the first row 4, expected as many, or --columns");
+  ReadPointsOptions options;
+  options.columns = {2, 3, 4};
+  EXPECT_EQ(read("x,y,z\n7,1,2,3\n8,-4,.5,6e-3\n", options), kTwo);
+  EXPECT_EQ(read("x,y,z\n1,2,3,\n-4,.5,6e-3,\n"), kTwo) << "delimiters at the end";
+  EXPECT_EQ(read("x,y,z,\n1,2,3\n-4,.5,6e-3\n"), kTwo);
+  EXPECT_EQ(read("x,y,z,note\n1,2,3\n-4,.5,6e-3,a\n"), kTwo) << "the last fields of a row are missing";
+  EXPECT_EQ(read("x,y,z,note\n1,2,3 # a, b\n-4,.5,\"6e-3\" # a, b\n"), kTwo) << "comments";
+}
+
+TEST_F(ReadPoints, ColumnOfRowNumbersIsNotX) {
+  EXPECT_EQ(error_of(",px,py,pz\n0,10.5,-4,1.25\n"),
+            "pts:2: the first column has no name, expected columns x, y and z, or --columns");
+  EXPECT_EQ(read("\"Point ID\",\"s\",\"Points_0\",\"Points_1\",\"Points_2\"\n0,3,1,2,3\n1,3,-4,.5,6e-3\n"), kTwo);
+}
+
+TEST_F(ReadPoints, MissingValuesAreNoHeader) {
+  EXPECT_EQ(error_of("NA,NA,NA\n1,2,3\n"), "pts:1: column 1 is 'NA', expected a finite number");
+  EXPECT_EQ(error_of("null;null;null\n1;2;3\n"), "pts:1: column 1 is 'null', expected a finite number");
+}
+
+TEST_F(ReadPoints, TextGluedToQuotesIsNoNumber) {
+  EXPECT_EQ(error_of("\"10\".5,-4,1.25\n"), "pts:1: column 1 is '\"10\".5', expected a finite number");
+  EXPECT_EQ(error_of("\"10.5\"9 -4 1.25\n"), "pts:1: column 1 is '\"10.5\"9', expected a finite number");
+  EXPECT_EQ(read("\"1\" , \"2\" ,3\n-4,.5,\"6e-3\" \n"), kTwo);
+}
+
 TEST_F(ReadPoints, HeaderOfOtherNamesMeansTheFirstThreeColumns) {
   EXPECT_EQ(read("//X Y Z\n1 2 3\n-4 .5 6e-3\n"), kTwo);
   EXPECT_EQ(read("some title\n1,2,3\n-4,.5,6e-3\n"), kTwo);

@@ -1,0 +1,33 @@
+// Which fields of a table are coordinates, and what is between them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace raycone {
+
+using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
+
+struct TableLayout {
+  char delimiter = ' ';
+  Columns columns{0, 1, 2};
+  std::string fault;  // why the header does not fit the line; empty where it does
+};
+
+[[nodiscard]] std::vector<std::string_view> fields_of(std::string_view line, char delimiter);
+
+// The columns that a header names as coordinates.
+[[nodiscard]] std::optional<Columns> named_columns(const std::vector<std::string_view>& names);
+
+// Of a table whose first line of data is `line`. The delimiter is the first of tab, semicolon and comma for which the
+// coordinates are numbers; where there is none of these characters, a blank. `given`: the columns, whatever the header
+// names. A header that names coordinates must have as many fields as the line: else they may be those of other columns,
+// as where rows have names, or names have blanks.
+[[nodiscard]] TableLayout layout_of(const std::optional<std::string>& header, std::string_view line,
+                                    const std::optional<Columns>& given);
+
+}  // namespace raycone

@@ -76,16 +76,33 @@ Directory large_directory(const ByteSource& file, const std::string& path, std::
   return directory;
 }
 
+// Where the record of the directory begins. Its comment may hold what looks like another one, and bytes may follow it.
+std::size_t last_record(const std::string& tail, const std::string& path) {
+  constexpr std::string_view kMark = "PK\x05\x06";
+  constexpr std::size_t kRecord = 22, kComment = 20;
+  std::optional<std::size_t> last;
+  for (std::size_t at = tail.rfind(kMark); at != std::string::npos; at = at == 0 ? at - 1 : tail.rfind(kMark, at - 1)) {
+    if (tail.size() - at < kRecord) continue;
+    Fields fields(std::string_view(tail).substr(at + kComment), path);
+    if (at + kRecord + fields.number(2) == tail.size()) return at;
+    if (!last) last = at;
+  }
+  if (!last) fail(path, "no directory at its end");
+  return *last;
+}
+
 // 4.3.16
 Directory find_directory(const ByteSource& file, const std::string& path) {
   constexpr std::uint64_t kRecord = 22;
   const std::uint64_t size = file.size().value_or(0);
   const std::uint64_t window = std::min(size, kRecord + kLargest16);  // a comment may stand behind
   const std::string tail = bytes_at(file, path, size - window, window);
-  const std::size_t found = tail.rfind("PK\x05\x06");
-  if (found == std::string::npos || tail.size() - found < kRecord) fail(path, "no directory at its end");
+  const std::size_t found = last_record(tail, path);
   Fields fields(std::string_view(tail).substr(found + 4), path);
-  if (fields.number(2) != 0 || fields.number(2) != 0) fail(path, "it is in several parts");
+  const std::uint64_t disk = fields.number(2), first_disk = fields.number(2);
+  if ((disk != 0 && disk != kLargest16) || (first_disk != 0 && first_disk != kLargest16)) {
+    fail(path, "it is in several parts");
+  }
   (void)fields.number(2);
   Directory directory{};
   directory.entries = fields.number(2);

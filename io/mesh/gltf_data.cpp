@@ -129,6 +129,16 @@ void GltfData::spend(std::uint64_t count, std::uint64_t factor) {
   spent_ += count * factor;
 }
 
+// Many primitives may name the same bytes, which may take long to decode though they hold few faces.
+void GltfData::spend_draco(std::uint64_t bytes) {
+  constexpr std::uint64_t kFree = std::uint64_t{1} << 24;
+  constexpr std::uint64_t kTimes = 8;
+  draco_bytes_ += bytes;
+  if (draco_bytes_ > std::max(kFree, kTimes * bytes_)) {
+    throw LimitError(source_.name + ": primitives share Draco data, which would be decoded more than 8 times");
+  }
+}
+
 std::string_view GltfData::load(std::size_t index) {
   const GltfBuffer& buffer = buffers_[index];
   std::string_view bytes;
@@ -293,6 +303,7 @@ std::optional<DracoMesh> GltfData::decompressed(const tinygltf::Primitive& primi
   const tinygltf::Value& draco = primitive.extensions.at(kGltfDraco);
   const std::string_view bytes = view(to_size(draco.Get("bufferView").GetNumberAsInt()));
   const int attribute = draco.Get("attributes").Get("POSITION").GetNumberAsInt();
+  spend_draco(bytes.size());
   DracoMesh mesh = decode_draco(bytes, attribute, accessor.componentType, place);
   const auto check = [&](const char* what, std::size_t count, std::size_t expected) {
     if (count == expected) return;

@@ -50,6 +50,7 @@ class GltfData {
   // harm.
   [[nodiscard]] std::string_view view(std::size_t index);
   [[nodiscard]] std::string_view load(std::size_t buffer);
+  void spend_draco(std::uint64_t bytes);
   void check_positions(std::size_t accessor) const;
   void check_indices(std::size_t accessor) const;
   [[nodiscard]] bool is_compressed(const tinygltf::Primitive& primitive, const std::string& place) const;
@@ -71,6 +72,7 @@ class GltfData {
   std::deque<std::string> owned_;                        // keeps its elements where they are
   std::uint64_t bytes_ = 0;                              // of the buffers loaded
   std::uint64_t spent_ = 0;
+  std::uint64_t draco_bytes_ = 0;  // decoded so far, those of several primitives each time
 };
 
 // The largest number of the accessor's index type, which asks graphics hardware to restart the primitive.

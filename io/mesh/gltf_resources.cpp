@@ -11,6 +11,7 @@
 #include "io/files/byte_order.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
+#include "io/files/percent_encoding.h"
 #include "io/files/read_file.h"
 #include "io/mesh/mesh_error.h"
 
@@ -42,34 +43,17 @@ Chunk next_chunk(const NamedBytes& source, std::string_view glb, std::size_t& of
   return {type, data, glb.substr(data, length)};
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-// A percent sign without two digits stands for itself: exporters often leave file names unencoded.
-std::string percent_decoded(std::string_view text) {
-  std::string decoded;
-  decoded.reserve(text.size());
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool encoded =
-        text[i] == '%' && text.size() - i > 2 && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0;
-    if (!encoded) {
-      decoded += text[i];
-    } else {
-      decoded += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
-      i += 2;
-    }
-  }
-  return decoded;
-}
-
 // Both words of a data URI are case-insensitive (RFC 3986, section 3.1; RFC 2397, whose literals are).
 bool is_data_uri(std::string_view uri) { return is_word(uri.substr(0, 5), "data:"); }
 
-bool announces_base64(std::string_view head) { return ends_with_word(head, ";base64"); }
+// Browsers pass over blanks before the word.
+bool announces_base64(std::string_view head) {
+  constexpr std::string_view kWord = "base64";
+  if (!ends_with_word(head, kWord)) return false;
+  head.remove_suffix(kWord.size());
+  while (head.ends_with(' ')) head.remove_suffix(1);
+  return head.ends_with(';');
+}
 
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');

@@ -1,9 +1,13 @@
 // 3MF: the triangles of what is to be built.
 // Format: 3MF Core Specification 1.3; io/mesh/three_mf_model.cpp reads the parts of a package.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +16,7 @@
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/zip_reader.h"
+#include "io/mesh/affine_map.h"
 #include "io/mesh/append_placed.h"
 #include "io/mesh/face_groups.h"
 #include "io/mesh/read_mesh.h"
@@ -19,6 +24,13 @@
 
 namespace raycone {
 namespace {
+
+std::optional<double> micrometres_of(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
+      {{"micron", 1}, {"millimeter", 1e3}, {"centimeter", 1e4}, {"inch", 25'400}, {"foot", 304'800}, {"meter", 1e6}}};
+  const auto found = std::ranges::find(kUnits, unit, &std::pair<std::string_view, double>::first);
+  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
+}
 
 // An object with triangles, and where it stands.
 struct Instance {
@@ -31,8 +43,8 @@ class ThreeMfPackage {
   explicit ThreeMfPackage(const NamedBytes& source) : file_(source.name), parts_(source.bytes, source.name) {}
 
   ParsedMesh build() {
-    const ThreeMfModel& root = model(parts_.root());
-    for (const ThreeMfUse& item : root.items) place(item, {});
+    const ThreeMfModel& root = model(std::make_shared<const std::string>(parts_.root()));
+    for (const ThreeMfUse& item : root.items) place(item, {}, root.unit);
     std::ranges::stable_sort(instances_, {}, [&](const Instance& i) { return first_use_.at(i.object); });
     for (auto it = instances_.begin(); it != instances_.end(); ++it) {
       if (it == instances_.begin() || it->object != std::prev(it)->object) {
@@ -55,8 +67,13 @@ class ThreeMfPackage {
   }
 
  private:
-  const ThreeMfModel& model(const std::string& part) {
-    const ZipReader::Member& member = parts_.find(part);
+  const ThreeMfModel& model(const std::shared_ptr<const std::string>& part) {
+    const auto [known, is_new] = by_name_.try_emplace(part);
+    if (is_new) known->second = &model_of(parts_.find(*part));
+    return *known->second;
+  }
+
+  const ThreeMfModel& model_of(const ZipReader::Member& member) {
     const auto [known, is_new] = models_.try_emplace(&member);
     if (!is_new) return known->second;
     known->second = parts_.read_model(member);
@@ -70,21 +87,35 @@ class ThreeMfPackage {
     const ThreeMfModel& from = model(use.part);
     const auto found = from.objects.find(use.object);
     if (found != from.objects.end()) return found->second;
-    throw InputError(file_ + '(' + excerpt(use.part) + "): no object " + std::to_string(use.object) +
+    throw InputError(file_ + '(' + excerpt(*use.part) + "): no object " + std::to_string(use.object) +
                      ", which a component or an item of the build names");
   }
 
+  // Coordinates are in the unit of their own part (core specification, 3.4).
+  [[nodiscard]] AffineMap to_unit(const std::string& unit, const std::string& part, const std::string& of_part) const {
+    const std::optional<double> from = micrometres_of(of_part), to = micrometres_of(unit);
+    if (!from || !to) {
+      throw InputError(file_ + '(' + excerpt(part) + "): is in the unit " + excerpt(of_part) + ", its place in " +
+                       excerpt(unit) + ", expected units of 3MF");
+    }
+    const double factor = *from / *to;
+    return affine_map_of_parts({}, std::array{0.0, 0.0, 0.0, 1.0}, {factor, factor, factor});
+  }
+
   // Notes the object and its components. Deeper than any assembly there may only be a cycle.
-  void place(const ThreeMfUse& use, const AffineMap& outer) {
+  void place(const ThreeMfUse& use, const AffineMap& outer, const std::string& outer_unit) {
     constexpr std::size_t kDeepest = 256;
     constexpr std::size_t kMostUses = std::size_t{1} << 20;  // components of components may multiply without bound
     if (++uses_ > kMostUses) throw LimitError(file_ + ": components make more than 1048576 copies of objects");
     if (depth_ == kDeepest) throw InputError(file_ + ": components within components, more than 256 deep");
     const ThreeMfObject& placed = object(use);
-    const AffineMap placement = composed(outer, use.placement);
-    if (placed.is_coarse) {
-      throw InputError(file_ + ": object " + std::to_string(use.object) +
-                       " has triangles of low resolution beside its slices, expected its shape in triangles");
+    const std::string& unit = model(use.part).unit;
+    const AffineMap in_outer_unit = composed(outer, use.placement);
+    const AffineMap placement =
+        unit == outer_unit ? in_outer_unit : composed(in_outer_unit, to_unit(outer_unit, *use.part, unit));
+    if (!placed.stands_for.empty()) {
+      throw InputError(file_ + ": object " + std::to_string(use.object) + " has triangles " + placed.stands_for +
+                       ", expected its shape in triangles");
     }
     if (!placed.mesh.triangles.empty()) {
       instances_.push_back({&placed, placement});
@@ -95,7 +126,7 @@ class ThreeMfPackage {
     lattices_ += placed.lattices;
     sliced_ += placed.is_sliced;
     ++depth_;
-    for (const ThreeMfUse& component : placed.components) place(component, placement);
+    for (const ThreeMfUse& component : placed.components) place(component, placement, unit);
     --depth_;
   }
 
@@ -112,6 +143,7 @@ class ThreeMfPackage {
   const std::string& file_;
   ThreeMfParts parts_;
   std::map<const ZipReader::Member*, ThreeMfModel> models_;  // of the parts read so far
+  std::map<std::shared_ptr<const std::string>, const ThreeMfModel*> by_name_;
   std::vector<Instance> instances_;
   std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
   std::size_t uses_ = 0, depth_ = 0;

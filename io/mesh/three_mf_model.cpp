@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
+#include "io/files/percent_encoding.h"
 #include "io/files/text_scanner.h"
 #include "io/mesh/face_groups.h"
 #include "io/mesh/mesh_error.h"
@@ -27,6 +29,7 @@ constexpr std::string_view kProductionPath = RAYCONE_3MF "production/2015/06|pat
 constexpr std::string_view kBeamLattice = RAYCONE_3MF "beamlattice/2017/02|beamlattice";
 constexpr std::string_view kSliceStack = RAYCONE_3MF "slice/2015/07|slicestackid";
 constexpr std::string_view kMeshResolution = RAYCONE_3MF "slice/2015/07|meshresolution";
+constexpr std::string_view kModelResolution = RAYCONE_3MF "production/alternatives/2021/04|modelresolution";
 constexpr std::string_view kModelRelation = RAYCONE_3MF "2013/01/3dmodel";
 constexpr std::string_view kEncrypted = "/encryptedfile", kKeys = "/keystore";  // ends of relations' types
 // Required extensions that leave triangles as they are, or that are read.
@@ -35,7 +38,12 @@ constexpr std::array<std::string_view, 5> kHarmless{RAYCONE_3MF "material/2015/0
                                                     RAYCONE_3MF "core/2015/02"};
 #undef RAYCONE_3MF
 
-std::string without_slash(std::string_view name) { return std::string(name.starts_with('/') ? name.substr(1) : name); }
+// The same for all names of a part: relative to the root of the package, in any case of letters (ECMA-376 part 2, 6.2).
+std::string key_of(std::string_view name) {
+  std::string decoded = percent_decoded(name);
+  std::ranges::replace(decoded, '\\', '/');  // of old writers
+  return lower_case(std::filesystem::path('/' + decoded).lexically_normal().relative_path().string());
+}
 
 // "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.
 AffineMap placement_of(const XmlAttributes& attributes) {
@@ -60,7 +68,8 @@ AffineMap placement_of(const XmlAttributes& attributes) {
 // The elements of a model part that matter; others are passed over with all that is in them.
 class ModelReader {
  public:
-  ModelReader(std::string part, const std::string& name) : part_(std::move(part)), name_(name) {}
+  ModelReader(const std::string& part, const std::string& name)
+      : part_(std::make_shared<const std::string>(part)), name_(name) {}
 
   [[nodiscard]] XmlHandler handler() {
     return {[&](std::string_view name, const XmlAttributes& attributes) { start(name, attributes); },
@@ -177,7 +186,9 @@ class ModelReader {
     object_ = &object->second;
     object_->name = cut_name(attributes.find("name").value_or(""));
     object_->is_sliced = attributes.find(kSliceStack).has_value();
-    object_->is_coarse = attributes.find(kMeshResolution) == "lowres";
+    if (attributes.find(kMeshResolution) == "lowres") object_->stands_for = "of low resolution beside its slices";
+    const std::string_view model = attributes.find(kModelResolution).value_or("fullres");
+    if (model != "fullres") object_->stands_for = "that stand for its alternatives (" + excerpt(model) + ")";
   }
 
   void add_vertex(const XmlAttributes& attributes) {
@@ -199,12 +210,19 @@ class ModelReader {
     }
   }
 
-  [[nodiscard]] ThreeMfUse use_of(const XmlAttributes& attributes) const {
-    const auto path = attributes.find(kProductionPath);
-    return {path ? without_slash(*path) : part_, attributes.index("objectid"), placement_of(attributes)};
+  [[nodiscard]] std::shared_ptr<const std::string> shared(std::string_view path) {
+    auto& name = paths_[std::string(path)];
+    if (!name) name = std::make_shared<const std::string>(path);
+    return name;
   }
 
-  std::string part_;
+  [[nodiscard]] ThreeMfUse use_of(const XmlAttributes& attributes) {
+    const auto path = attributes.find(kProductionPath);
+    return {path ? shared(*path) : part_, attributes.index("objectid"), placement_of(attributes)};
+  }
+
+  std::shared_ptr<const std::string> part_;
+  std::map<std::string, std::shared_ptr<const std::string>> paths_;
   const std::string& name_;  // "FILE(PART)"
   std::map<std::string, std::string> prefixes_;
   std::vector<Element> open_;
@@ -218,7 +236,7 @@ class ModelReader {
 // Names of parts do not depend on the case of letters.
 ThreeMfParts::ThreeMfParts(std::string_view bytes, const std::string& file)
     : file_(file), size_(bytes.size()), archive_(bytes, file) {
-  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(lower_case(member.name), &member);
+  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(key_of(member.name), &member);
 }
 
 std::string ThreeMfParts::root() {
@@ -229,7 +247,7 @@ std::string ThreeMfParts::root() {
     if (type.ends_with(kEncrypted) || type.ends_with(kKeys)) {
       throw InputError(file_ + ": is encrypted, expected a 3MF that can be read");
     }
-    if (type == kModelRelation && root.empty()) root = without_slash(attributes.text("Target"));
+    if (type == kModelRelation && root.empty()) root = attributes.text("Target");
   };
   read(find("_rels/.rels"), {note, [](std::string_view) {}, {}});
   if (root.empty()) throw InputError(file_ + ": no 3D model in its relationships, expected a 3MF package");
@@ -237,9 +255,10 @@ std::string ThreeMfParts::root() {
 }
 
 const ZipReader::Member& ThreeMfParts::find(const std::string& name) const {
-  const auto found = parts_.find(lower_case(name));
+  const auto found = parts_.find(key_of(name));
   if (found != parts_.end()) return *found->second;
-  throw InputError(file_ + ": no part " + excerpt(name) + ", expected a 3MF package");
+  throw InputError(file_ + ": no part " + excerpt(name.starts_with('/') ? name.substr(1) : name) +
+                   ", expected a 3MF package");
 }
 
 ThreeMfModel ThreeMfParts::read_model(const ZipReader::Member& part) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,7 @@ namespace raycone {
 
 // An object that stands somewhere: a component of another, or an item of the build.
 struct ThreeMfUse {
-  std::string part;  // where the object is
+  std::shared_ptr<const std::string> part;  // where the object is; few names serve many uses
   std::uint32_t object = 0;
   AffineMap placement;
 };
@@ -25,8 +26,8 @@ struct ThreeMfObject {
   std::string name;  // may be empty
   TriangleMesh mesh;
   std::vector<ThreeMfUse> components;
-  bool is_sliced = false;      // it has slices, which may be all that it has,
-  bool is_coarse = false;      // and its triangles only stand for them
+  bool is_sliced = false;      // it has slices, which may be all that it has
+  std::string stands_for;      // what its triangles only stand for, and how; else empty
   std::uint64_t lattices = 0;  // of beams, which are passed over
 };
 
@@ -36,14 +37,14 @@ struct ThreeMfModel {
   std::map<std::uint32_t, ThreeMfObject> objects;
 };
 
-// The parts of a package, whose names have no leading '/'. `bytes` and `file` must outlive this; all throw InputError.
+// The parts of a package. `bytes` and `file` must outlive this; all throw InputError.
 class ThreeMfParts {
  public:
   ThreeMfParts(std::string_view bytes, const std::string& file);
 
   // The name of the root model. Throws where this is no 3MF, and where it is encrypted.
   [[nodiscard]] std::string root();
-  // By its name in any case of letters.
+  // By its name, in any case of letters and with or without percent encoding.
   [[nodiscard]] const ZipReader::Member& find(const std::string& name) const;
   // Throws where the model is invalid, damaged or needs an extension that changes shapes and is not known; and
   // LimitError. All indices of triangles are in range, all coordinates finite.
@@ -56,7 +57,7 @@ class ThreeMfParts {
   std::uint64_t size_;      // of the archive
   std::uint64_t read_ = 0;  // of it: parts that share bytes could ask for any amount of work
   ZipReader archive_;
-  std::map<std::string, const ZipReader::Member*> parts_;  // by their names in lower case
+  std::map<std::string, const ZipReader::Member*> parts_;  // by names that are the same for all that are equivalent
 };
 
 }  // namespace raycone

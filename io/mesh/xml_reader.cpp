@@ -85,10 +85,16 @@ class Document {
 
   static void started(void* self, const char* name, const char** attributes) {
     auto& document = *static_cast<Document*>(self);
-    document.keep_failure([&] { document.handler_.start(name, XmlAttributes(attributes, document.tell_place_)); });
+    document.keep_failure([&] {
+      constexpr int kDeepest = 256;  // Expat remembers each element that is open
+      if (++document.depth_ > kDeepest)
+        throw InputError(document.place() + ": elements within elements, more than 256");
+      document.handler_.start(name, XmlAttributes(attributes, document.tell_place_));
+    });
   }
   static void ended(void* self, const char* name) {
     auto& document = *static_cast<Document*>(self);
+    --document.depth_;
     document.keep_failure([&] { document.handler_.end(name); });
   }
   static void declared(void* self, const char* prefix, const char* uri) {
@@ -106,6 +112,7 @@ class Document {
   std::unique_ptr<std::remove_pointer_t<XML_Parser>, FreeParser> parser_;
   std::function<std::string()> tell_place_ = [this] { return place(); };
   std::exception_ptr failure_;
+  int depth_ = 0;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ DUMP, RAYCONE = (os.path.abspath(path) for path in sys.argv[1:3])
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 EXTENSIONS = {name: f"http://schemas.microsoft.com/3dmanufacturing/{uri}" for name, uri in
               {"p": "production/2015/06", "s": "slice/2015/07", "b": "beamlattice/2017/02", "m": "material/2015/02",
-               "sc": "securecontent/2019/04"}.items()}
+               "sc": "securecontent/2019/04", "pa": "production/alternatives/2021/04"}.items()}
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 
 
@@ -141,6 +141,46 @@ class Values(unittest.TestCase):
                  "3D/Objects/one.model": model(TETRAHEDRON)}
         self.assertEqual(len(self.read(package(parts))), 8)
 
+    def test_names_of_parts_are_resolved(self):
+        text = model(TETRAHEDRON, ITEM)
+        for target in ("/3D/3dmodel.model", "3D/3dmodel.model", "./3D/3dmodel.model", "../3D/3dmodel.model",
+                       "/3D/./a/../3dmodel.model", "/3D/3dmodel%2Emodel"):
+            self.assertEqual(len(self.read(package(text, root=relations(target)))), 4, target)
+        for name in ("my model.model", "my%20model.model", "/my model.model"):
+            for target in ("/my model.model", "/my%20model.model"):
+                self.assertEqual(len(self.read(package({name: text}, root=relations(target)))), 4, (name, target))
+
+    def test_each_part_has_its_unit(self):
+        far = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (0.0, 3.0, 0.0)]
+        move = "1 0 0 0 1 0 0 0 1 10 0 0"
+        group = ('<object id="2"><components><component objectid="1" transform="%s"/></components></object>' % move)
+        for own, factor in (("inch", 25.4), ("micron", 1e-3), ("meter", 1e3), ("millimeter", 1.0)):
+            parts = {"3D/3dmodel.model": model(group.replace("objectid", 'p:path="/a.model" objectid'),
+                                               '<item objectid="1" p:path="/a.model" transform="%s"/>'
+                                               '<item objectid="2"/><item objectid="2" p:path="/a.model"/>' % move),
+                     "a.model": model(mesh_object(1, far, [(0, 1, 2)]) + group, "", f'unit="{own}"')}
+            placed = tuple((factor * x + 10, factor * y, z) for x, y, z in far)
+            # In the third one, the part's own component is moved in its own unit.
+            third = tuple((factor * x + factor * 10, factor * y, z) for x, y, z in far)
+            self.assertEqual(self.read(package(parts)), [placed, placed, third], own)
+
+    def test_comments_of_archives_may_hold_what_looks_like_their_end(self):
+        data = package(model(TETRAHEDRON, ITEM))
+        self.assertEqual(data[-2:], b"\0\0")
+        for comment in (b"PK\5\6" + b"x" * 40, b"a" * 30 + b"PK\5\6", b"PK\5\6" * 20):
+            self.assertEqual(len(self.read(data[:-2] + len(comment).to_bytes(2, "little") + comment)), 4)
+        self.assertEqual(len(self.read(data + bytes(100))), 4)
+
+    def test_many_components_share_the_name_of_their_part(self):
+        name = "3D/" + "x" * 20000 + ".model"
+        uses = '<component objectid="1"/>' * 30000
+        resources = TETRAHEDRON + f'<object id="2"><components>{uses}</components></object>'
+        with open(self.path, "wb") as file:
+            file.write(package({name: model(resources, '<item objectid="2"/>')}, root=relations("/" + name)))
+        result = subprocess.run([RAYCONE, "info", self.path, "--json", "--memory-limit", "400M"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["faces"], 120000)
+
     def test_a_part_is_read_once_however_its_name_is_spelt(self):
         items = "".join(f'<item objectid="1" p:path="/{name}"/>' for name in ("a.MODEL", "A.model", "a.model"))
         self.assertEqual(len(self.read(package({"3D/3dmodel.model": model("", items), "a.model": model(TETRAHEDRON)}))), 12)
@@ -225,7 +265,13 @@ REFUSED = {
     "old_namespace": (package(model(TETRAHEDRON, ITEM).replace(CORE, CORE.replace("2015/02", "2013/01"))),
                       "expected http://schemas.microsoft.com/3dmanufacturing/core/2015/02|model"),
     "two_meshes": (package(model(TETRAHEDRON.replace("</mesh>", "</mesh><mesh></mesh>"), ITEM)), "a second mesh"),
-    "deep": (package(model("<x>" * 300000, ITEM)), "not well-formed"),
+    "deep": (package(model("<x>" * 300000, ITEM)), "elements within elements, more than 256"),
+    "low_resolution": (package(model(mesh_object(1, VERTICES, FACES, 'pa:modelresolution="lowres"'), ITEM)),
+                       "object 1 has triangles that stand for its alternatives (lowres), expected its shape"),
+    "obfuscated": (package(model(mesh_object(1, VERTICES, FACES, 'pa:modelresolution="obfuscated"'), ITEM)),
+                   "that stand for its alternatives (obfuscated)"),
+    "units_unknown": (package({"3D/3dmodel.model": model("", '<item objectid="1" p:path="/a.model"/>'),
+                               "a.model": model(TETRAHEDRON, "", 'unit="furlong"')}), "is in the unit furlong, its place in"),
     "no_triangles": (package(model(TETRAHEDRON, "")), "no triangles, expected at least one"),
 }
 

@@ -97,6 +97,7 @@ struct Asset {
   std::string indices = R"(,"indices":1)";
   std::string required = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
   std::string more_views;
+  std::size_t primitives = 1;
 };
 
 Asset asset_of(const TriangleMesh& mesh) {
@@ -108,14 +109,17 @@ Asset asset_of(const TriangleMesh& mesh) {
 
 std::string glb(const Asset& asset, const std::string& draco, const std::string& more = "") {
   const std::string binary = draco + more;
-  const std::string json =
-      R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"])" + asset.required +
-      R"(,"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
-      R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(draco.size()) + "}" + asset.more_views +
-      R"(],"accessors":[{)" + asset.position_accessor + R"(,"count":)" + std::to_string(asset.vertices) +
-      R"(},{"componentType":5125,"type":"SCALAR","count":)" + std::to_string(asset.corners) +
-      R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":)" + asset.mode + asset.indices +
-      R"(,"extensions":{"KHR_draco_mesh_compression":)" + asset.extension + R"(}}]}],"nodes":[{"mesh":0}]})";
+  const std::string primitive = R"({"attributes":{"POSITION":0},"mode":)" + asset.mode + asset.indices +
+                                R"(,"extensions":{"KHR_draco_mesh_compression":)" + asset.extension + "}}";
+  std::string primitives = primitive;
+  for (std::size_t n = 1; n < asset.primitives; ++n) primitives += ',' + primitive;
+  const std::string json = R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"])" +
+                           asset.required + R"(,"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
+                           R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(draco.size()) + "}" +
+                           asset.more_views + R"(],"accessors":[{)" + asset.position_accessor + R"(,"count":)" +
+                           std::to_string(asset.vertices) + R"(},{"componentType":5125,"type":"SCALAR","count":)" +
+                           std::to_string(asset.corners) + R"(}],"meshes":[{"primitives":[)" + primitives +
+                           R"(]}],"nodes":[{"mesh":0}]})";
   const std::string chunks = chunk("JSON", json, ' ') + chunk("BIN\0", binary, '\0');
   return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
@@ -301,6 +305,17 @@ TEST(ReadGltfDraco, ClaimsFarBeyondTheBytesAreALimit) {
   EXPECT_THROW(static_cast<void>(parse(glb(asset, points))), LimitError);
   const std::string seams = header + '\1' + flags + '\0' + varint(3) + varint(100'000) + "\xFF" + std::string(64, '\1');
   EXPECT_THROW(static_cast<void>(parse(glb(asset, seams))), LimitError);
+}
+
+// Bytes that hold few faces may take long to decode.
+TEST(ReadGltfDraco, DecodingTheSameBytesAgainAndAgainIsALimit) {
+  const TriangleMesh mesh = wave(2);
+  Asset asset = asset_of(mesh);
+  const std::string draco = compressed(mesh, {}) + std::string(std::size_t{3} << 20, '\0');  // behind it
+  asset.primitives = 8;
+  EXPECT_EQ(parse(glb(asset, draco)).mesh.triangles.size(), 8 * mesh.triangles.size());
+  asset.primitives = 9;
+  EXPECT_THROW(static_cast<void>(parse(glb(asset, draco))), LimitError);
 }
 
 void expect_mesh_or_error(const Asset& asset, const std::string& draco, int& accepted) {

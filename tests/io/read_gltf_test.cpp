@@ -378,7 +378,8 @@ TEST(ReadGltf, AccessorOfManyZerosIsALimit) {
 
 TEST(ReadGltf, JsonWithADataUriEqualsTheGlb) {
   Asset asset;
-  for (const char* scheme : {"data:application/octet-stream;base64,", "DATA:;base64,", "data:;BASE64,"}) {
+  for (const char* scheme :
+       {"data:application/octet-stream;base64,", "DATA:;base64,", "data:;BASE64,", "data:text/plain; base64,"}) {
     asset.buffers = R"([{"byteLength":60,"uri":")" + std::string(scheme) + base64(asset.binary) + R"("}])";
     EXPECT_EQ(triangles_of(parse(asset.json()).mesh), kSquareTriangles);
   }

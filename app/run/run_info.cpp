@@ -23,6 +23,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/intersections/self_intersections.h"
 #include "core/mesh/mesh_statistics.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
 #include "io/mesh/write_ply.h"
@@ -54,6 +55,18 @@ CostedLattices costed_lattices(const MeshToEvaluate& input, const Box& bounds) {
 // Who names a mesh format means a mesh.
 bool is_values(const MeshOptions& options) { return !options.reading.format && holds_values(options.path); }
 
+// "161 pairs of faces intersect, 160 boundary edges"
+std::string listed_flaws(std::uint64_t pairs, const MeshStatistics& statistics) {
+  std::string text = counted(pairs, "pair") + " of faces intersect" + (pairs == 1 ? "s" : "");
+  const std::pair<std::uint64_t, const char*> edges[] = {{statistics.nonmanifold_edges, "non-manifold edge"},
+                                                         {statistics.inconsistent_edges, "inconsistent edge"},
+                                                         {statistics.exterior_edges, "boundary edge"}};
+  for (const auto& [count, name] : edges) {
+    if (count > 0) text += ", " + counted(count, name);
+  }
+  return text;
+}
+
 // What is made of one mesh: printed, required, marked.
 class InfoRun {
  public:
@@ -76,6 +89,7 @@ class InfoRun {
     print(listing_.end());
     output_.commit();
     files_.commit();
+    if (!marked_.empty() && !command_.run.quiet) print_message(marked_);
   }
 
  private:
@@ -98,6 +112,10 @@ class InfoRun {
     info.statistics = mesh_statistics(mesh);
     info.opposite_duplicate_faces = input.defects.cancelling_pairs;
     const FoundIntersections intersections = find_intersections(mesh);
+    if (mark_) {
+      const std::string flaws = listed_flaws(intersections.pairs.value_or(0), info.statistics);
+      marked_ = options.path + " -> " + *command_.mark + ": " + flaws;
+    }
     if (wants_intersections()) info.intersections = {intersections.pairs};
     const bool costs = command_.format == InfoFormat::kText;
     const CostedLattices costed = costs ? costed_lattices(input, info.bounds) : CostedLattices{};
@@ -145,6 +163,7 @@ class InfoRun {
   OutputGroup files_;
   OutputFile output_;
   std::optional<OutputFile> mark_;  // appears once everything has been told
+  std::string marked_;              // what to say then
 };
 
 // Its status; what is wrong with this mesh alone is printed.

@@ -181,6 +181,10 @@ TEST_F(InfoGate, UsageErrorsNameWhatIsExpected) {
 TEST_F(InfoGate, MarksKeepTheFacesOfTheMeshInFront) {
   const std::string marks = dir_ / "marks.ply";
   const CommandResult result = run_raycone({"info", crossing_, "--mark", marks});
+  EXPECT_NE(result.err.find("raycone: " + crossing_ + " -> " + marks + ": 1 pair of faces intersects"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(run_raycone({"info", crossing_, "--mark", marks, "--json", "--quiet"}).err, "");
   EXPECT_EQ(result.status, 0) << result.err;
   const std::string bytes = read_text(marks);
   // 6 vertices of the mesh, 3 of each intersecting face, 2 and a bar's 6 of each exterior edge; 6 faces a bar.

@@ -23,6 +23,7 @@
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/output_file.h"
+#include "io/files/readable_bytes.h"
 
 namespace raycone {
 namespace {

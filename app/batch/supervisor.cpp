@@ -24,6 +24,7 @@
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
 #include "io/files/file_time.h"
+#include "io/files/readable_bytes.h"
 #include "io/files/temporary_file.h"
 #include "io/mesh/read_mesh.h"
 

@@ -60,7 +60,7 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
   if (formats.only) return *formats.only;
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
   if (named) invalid("--format", values.text("--format"), formats.listed);
-  const std::string wrong = format ? "a format that does not hold what is asked for" : "its extension names no format";
+  const std::string wrong = format ? name + " does not hold " + formats.contents : "its extension names no format";
   throw UsageError(output + ": " + wrong + ", expected " + formats.listed + ", or --format");
 }
 

@@ -28,6 +28,7 @@ struct OutputFormats {
   std::vector<FieldFormat> written;
   std::string listed;                    // for messages
   std::optional<FieldFormat> only = {};  // of --raw; the output's name may not promise another one
+  std::string contents = "lattices";     // what other formats do not hold
 };
 // Of values that go to `output`: --format, --dtype and --pack-bits.
 [[nodiscard]] FieldEncoding parse_encoding(const Values& values, const OutputFiles& output,

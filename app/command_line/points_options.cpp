@@ -39,9 +39,11 @@ std::optional<RawPrecision> parse_raw(const Values& values) {
 }
 
 OutputFormats output_formats(const PointsCommand& command) {
-  if (command.sample) return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .listed = "npz or csv"};
+  if (command.sample)
+    return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .listed = "npz or csv", .contents = "drawn points"};
   OutputFormats formats{.written = {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz},
-                        .listed = "csv, npy or npz"};
+                        .listed = "csv, npy or npz",
+                        .contents = "points"};
   if (command.reading.raw) {
     const bool single = *command.reading.raw == RawPrecision::kFloat;
     formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;

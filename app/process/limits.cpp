@@ -17,6 +17,7 @@
 #include "app/text/parse_value.h"
 #include "core/machine/threads.h"
 #include "io/files/file_error.h"
+#include "io/files/readable_bytes.h"
 
 namespace raycone {
 namespace {
@@ -192,16 +193,6 @@ void check_memory(const std::string& name, double more, std::uint64_t limit) {
   if (needed <= static_cast<double>(limit)) return;
   throw LimitError(name + ": needs about " + readable_bytes(needed) + " of memory, but the limit is " +
                    readable_bytes(static_cast<double>(limit)));
-}
-
-std::string readable_bytes(double bytes) {
-  constexpr const char* kUnits[] = {"bytes", "kB", "MB", "GB", "TB", "PB", "EB"};
-  std::size_t unit = 0;
-  for (; bytes >= 1024.0 && unit + 1 < std::size(kUnits); ++unit) bytes /= 1024.0;
-  char text[64];
-  if (bytes == 1.0 && unit == 0) return "1 byte";
-  std::snprintf(text, sizeof text, bytes < 10.0 && unit > 0 ? "%.2g %s" : "%.0f %s", bytes, kUnits[unit]);
-  return text;
 }
 
 }  // namespace raycone

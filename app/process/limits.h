@@ -33,9 +33,6 @@ void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 // concerned.
 void check_memory(const std::string& name, double more, std::uint64_t limit);
 
-// "8 GB", "34 GB", "1.5 MB": powers of 1024, as --memory-limit reads them.
-[[nodiscard]] std::string readable_bytes(double bytes);
-
 // CPUs by the tightest quota of the cgroup (v1 or v2) of this process and those above it. `root` stands in for "/".
 [[nodiscard]] std::optional<double> cgroup_cpus(const std::filesystem::path& root = "/");
 

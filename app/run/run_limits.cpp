@@ -8,6 +8,7 @@
 #include "app/process/limits.h"
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
+#include "io/files/readable_bytes.h"
 
 namespace raycone {
 namespace {

@@ -18,6 +18,7 @@
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/file_time.h"
+#include "io/files/readable_bytes.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {
@@ -80,10 +81,8 @@ struct OutputFile::State {
   }
   [[noreturn]] void fail_writing(int error) const { fail("cannot write: " + std::generic_category().message(error)); }
   [[noreturn]] void fail_reserving(std::uint64_t bytes, double room) const {
-    char text[128];
-    std::snprintf(text, sizeof text, "cannot write: No space left on device: needs %.1f MB or more, %.1f MB are free",
-                  static_cast<double>(bytes) * 1e-6, room * 1e-6);
-    fail(text);
+    fail("cannot write: No space left on device: needs " + readable_bytes(static_cast<double>(bytes)) + " or more, " +
+         readable_bytes(room) + " are free");
   }
 
   void open();

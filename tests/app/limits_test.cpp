@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "io/files/file_error.h"
+#include "io/files/readable_bytes.h"
 #include "tests/app/meshes.h"
 #include "tests/support/temporary_directory.h"
 

@@ -160,7 +160,7 @@ TEST_F(SampleOption, RefusesWhatMakesNoSense) {
   }
   const CommandResult npy = sample({"uniform=5", "-o", dir_ / "out.npy"});
   EXPECT_EQ(npy.status, 1);
-  EXPECT_NE(npy.err.find("a format that does not hold what is asked for, expected npz or csv"), std::string::npos);
+  EXPECT_NE(npy.err.find("npy does not hold drawn points, expected npz or csv"), std::string::npos);
   EXPECT_EQ(sample({"uniform=5", "--padding", "3v"}).status, 1);
   EXPECT_EQ(sample({"uniform=5", dir_ / "points.csv"}).status, 1);
   EXPECT_EQ(sample({"uniform=5", "--raw", "f64"}).status, 1);

@@ -99,6 +99,14 @@ def sweep_batch():
         failures.append("batch: neither rows nor outputs lacked room: %s" % statuses)
 
 
+def readable_bytes(count):
+    for unit in "bytes", "kB", "MB":
+        if count < 1024:
+            break
+        count /= 1024
+    return ("%.2g %s" if count < 10 and unit != "bytes" else "%.0f %s") % (count, unit)
+
+
 # What cannot fit is refused before work: as soon as the disk lacks the last byte, and with the number.
 def sweep_refusals():
     empty()
@@ -111,7 +119,7 @@ def sweep_refusals():
                              (["slice", OPEN, "--size", "500", "-o", "new.png", "--values", "values.npy"], 8 * 500**2)]:
         leave(least - 8192)
         result = run(arguments)
-        message = "needs %.1f MB or more" % (least * 1e-6)
+        message = "needs %s or more" % readable_bytes(least)
         if result.returncode != 3 or message not in result.stderr.decode() or result.stderr.count(b"\n") != 1:
             fail("%s without room for %d bytes" % (" ".join(arguments), least), result.returncode, result.stderr)
         empty()

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -20,6 +22,7 @@
 #include "app/process/version.h"
 #include "app/run/written_files.h"
 #include "app/text/html.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/output_file.h"
@@ -58,13 +61,14 @@ th, td { padding: .3rem .6rem; border-bottom: 1px solid var(--line); text-align:
 th { position: sticky; top: 0; background: var(--paper); white-space: nowrap; }
 th.sort { cursor: pointer; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.name { overflow-wrap: anywhere; min-width: 9rem; }
-td.message { overflow-wrap: anywhere; min-width: 9rem; }
+.name, .message { overflow-wrap: anywhere; min-width: 9rem; }
+td .message { color: var(--quiet); }
+code { overflow-wrap: anywhere; }
 .filter { display: flex; flex-wrap: wrap; gap: .4rem; }
 .filter button { font: inherit; font-size: 13px; color: inherit; background: var(--panel);
   border: 1px solid var(--line); border-radius: 1rem; padding: .15rem .7rem; cursor: pointer; }
 .filter button[aria-pressed=true] { color: var(--paper); background: var(--mark); border-color: var(--mark); }
-td img { display: block; width: 48px; height: 48px; object-fit: contain; image-rendering: pixelated; }
+td img { display: block; width: 64px; height: 64px; object-fit: contain; image-rendering: pixelated; }
 )";
 
 // Sorts by the column whose heading is clicked, downwards first for numbers. Shows the rows with the warning that the
@@ -73,7 +77,8 @@ constexpr const char* kScript = R"(
 for (const head of document.querySelectorAll('th.sort')) head.addEventListener('click', () => {
   const body = head.closest('table').tBodies[0], column = head.cellIndex, numeric = head.classList.contains('n');
   const up = head.dataset.up = head.dataset.up === undefined ? (numeric ? '' : '1') : head.dataset.up ? '' : '1';
-  const key = row => { const c = row.cells[column]; return numeric ? Number(c.dataset.v ?? -1) : c.textContent; };
+  const text = cell => (cell.querySelector('.name') ?? cell).textContent;
+  const key = row => { const c = row.cells[column]; return numeric ? Number(c.dataset.v ?? -1) : text(c); };
   const order = (a, b) => { const x = key(a), y = key(b); return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1); };
   body.append(...[...body.rows].sort(order));
 });
@@ -151,9 +156,47 @@ std::string row_start(const ResultRow& row) {
   return "<tr data-w=\"" + html_text(row.warnings.empty() ? kNoWarning : row.warnings) + "\">";
 }
 
-std::string warning_cells(const ResultRow& row) {
-  return "<td class=\"warnings\">" + html_text(row.warnings) + "</td><td class=\"message\">" + html_text(row.message) +
-         "</td></tr>\n";
+// The message has no column of its own: it would be cut off where the page is narrow.
+std::string mesh_cell(const std::string& mesh, const std::string& message) {
+  const std::string below = message.empty() ? "" : "<div class=\"message\">" + html_text(message) + "</div>";
+  return "<td><div class=\"name\">" + html_text(mesh) + "</div>" + below + "</td>";
+}
+
+std::string warning_cell(const ResultRow& row) { return "<td class=\"warnings\">" + html_text(row.warnings) + "</td>"; }
+
+// --- Head
+
+// "2026-11-26 23:40 UTC"
+std::string readable_date(std::int64_t nanoseconds) {
+  const auto seconds = static_cast<std::time_t>(nanoseconds / 1'000'000'000);
+  std::tm date{};
+  char text[64];
+  if (!gmtime_r(&seconds, &date) || std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &date) == 0) return "";
+  return text;
+}
+
+// When meshes were finished and by which options, as the results tell: the same results make the same page.
+std::string provenance(const BatchRecords& records) {
+  std::vector<std::int64_t> times;
+  std::map<std::string, std::size_t> meshes_by_options;
+  for (const auto& [mesh, record] : records) {
+    if (!record.origin) continue;
+    times.push_back(record.origin->finished);
+    std::string options = record.origin->options;
+    std::ranges::replace(options, '\n', ' ');
+    if (!options.empty()) ++meshes_by_options[options];
+  }
+  std::string html;
+  if (!times.empty()) {
+    const auto [first, last] = std::ranges::minmax(times);
+    const std::string begin = readable_date(first), end = readable_date(last);
+    html += "<br>\nMeshes finished " + (begin == end ? begin : begin + " to " + end);
+  }
+  for (const auto& [options, meshes] : meshes_by_options) {
+    const std::string whose = meshes_by_options.size() > 1 ? counted(meshes, "mesh") + ": " : "";
+    html += "<br>\n" + whose + "<code>" + html_text(options) + "</code>";
+  }
+  return html;
 }
 
 // --- Summary
@@ -222,7 +265,14 @@ std::string number_cell(double value, const std::string& text) {
   return std::string("<td class=\"n\" data-v=\"") + exact + "\">" + html_text(text) + "</td>";
 }
 
-std::string count_cell(std::uint64_t count) { return number_cell(static_cast<double>(count), std::to_string(count)); }
+// In groups of three, by narrow blanks where lines do not break: "1 234 567".
+std::string grouped(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, "\xE2\x80\xAF");
+  return text;
+}
+
+std::string count_cell(std::uint64_t count) { return number_cell(static_cast<double>(count), grouped(count)); }
 
 std::string time_cell(double seconds) { return number_cell(seconds, readable_quantity(seconds, Quantity::kSeconds)); }
 
@@ -243,13 +293,12 @@ std::string failures(const BatchRecords& records) {
   std::string rows;
   for (const auto& [mesh, record] : records) {
     if (is_ok(record)) continue;
-    rows += row_start(record.row) + "<td class=\"name\">" + html_text(mesh) + "</td><td class=\"bad\">" +
-            name_of(record.row.status) + "</td>" + warning_cells(record.row);
+    rows += row_start(record.row) + mesh_cell(mesh, record.row.message) + "<td class=\"bad\">" +
+            name_of(record.row.status) + "</td>" + warning_cell(record.row) + "</tr>\n";
   }
   if (rows.empty()) return "";
   return "<h2>Failures</h2>\n<div class=\"scroll\"><table><thead><tr><th class=\"sort\">mesh</th>"
-         "<th class=\"sort\">cause</th><th class=\"sort\">warnings</th><th "
-         "class=\"sort\">message</th></tr></thead><tbody>\n" +
+         "<th class=\"sort\">cause</th><th class=\"sort\">warnings</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
@@ -260,11 +309,11 @@ std::string evaluated(const BatchRecords& records) {
        {"faces", "exterior edges", "samples", "read", "prepare", "evaluate", "write", "peak memory"}) {
     html += std::string("<th class=\"n sort\">") + column + "</th>";
   }
-  html += "<th class=\"sort\">warnings</th><th class=\"sort\">message</th></tr></thead><tbody>\n";
+  html += "<th class=\"sort\">warnings</th></tr></thead><tbody>\n";
   for (const auto& [mesh, record] : records) {
     if (!is_ok(record)) continue;
-    html += row_start(record.row) + thumbnail_cell(record) + "<td class=\"name\">" + html_text(mesh) + "</td>" +
-            figure_cells(*record.row.figures) + warning_cells(record.row);
+    html += row_start(record.row) + thumbnail_cell(record) + mesh_cell(mesh, record.row.message) +
+            figure_cells(*record.row.figures) + warning_cell(record.row) + "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }
@@ -274,8 +323,8 @@ std::string page(const std::string& directory, const BatchRecords& records) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
          title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
-         "</h1>\n<div class=\"quiet\">raycone " + kVersion + "</div>\n" + tiles(records) + plots(records) +
-         warnings(records) + failures(records) + evaluated(records) + "<script>" + kScript +
+         "</h1>\n<div class=\"quiet\">raycone " + kVersion + provenance(records) + "</div>\n" + tiles(records) +
+         failures(records) + plots(records) + warnings(records) + evaluated(records) + "<script>" + kScript +
          "</script>\n</body>\n</html>\n";
 }
 

@@ -17,10 +17,12 @@ TEST_F(Report, ShowsAllMeshesOfAllShardsOnASelfContainedPage) {
   for (const char* const shard : {"1/2", "2/2"}) (void)run({"--shard", shard, "--quiet"});
   ASSERT_EQ(run_raycone({"report", out_}).status, 0);
   const std::string page = read_text(out_ + "/report.html");
-  for (const char* const expected : {"a&amp;b.obj", "c.obj", "bad.obj", "&lt;2&gt;", "<svg", "exterior edges",
-                                     "data:image/bmp;base64,Qk", "<td class=\"bad\">invalid</td>"}) {
+  for (const char* const expected :
+       {"a&amp;b.obj", "c.obj", "bad.obj", "&lt;2&gt;", "<svg", "exterior edges", "data:image/bmp;base64,Qk",
+        "<td class=\"bad\">invalid</td>", "Meshes finished 2", " UTC<br>\n<code>--format=vdb"}) {
     EXPECT_NE(page.find(expected), std::string::npos) << expected;
   }
+  EXPECT_LT(page.find("<h2>Failures"), page.find("<h2>Time against size"));
   for (const char* const reference : {"http", "src=\"/", "href", "url("}) {
     EXPECT_EQ(page.find(reference), std::string::npos) << "refers to another file: " << reference;
   }

@@ -34,7 +34,7 @@ SCRIPT = """
 {
 const seen = {}, buttons = [...document.querySelectorAll('.filter button')];
 const names = () => [...document.querySelectorAll('tr[data-w]')].filter(row => row.checkVisibility())
-  .map(row => row.querySelector('td.name').textContent).sort();
+  .map(row => row.querySelector('.name').textContent).sort();
 const order = () => [...document.querySelectorAll('table')].at(-1).tBodies[0].textContent.match(/(cube|open_box|b>)/g);
 const settled = () => new Promise(resolve => setTimeout(resolve, 50));
 (async () => {

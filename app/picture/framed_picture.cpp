@@ -19,6 +19,7 @@ constexpr double kTickLength = 0.45;
 constexpr double kTickGap = 0.4;  // between a tick and its number
 constexpr double kEdge = 0.7;     // between all that is drawn and the page's border
 constexpr double kLegendGap = 1.4;
+constexpr double kTitleLine = 1.2;  // from the page's top to what titles stand on
 
 // What a side of the plot shows.
 struct PlotAxis {
@@ -50,6 +51,7 @@ struct PageLayout {
   Ticks across, upwards;
 
   [[nodiscard]] std::int64_t right() const { return left + width; }
+  [[nodiscard]] std::int64_t legend_left() const { return right() + std::llround(kLegendGap * text); }
   [[nodiscard]] std::int64_t bottom() const { return top + height; }
 };
 
@@ -128,7 +130,8 @@ void draw_axis_across(Coverage& ink, const PageLayout& layout, const PlotAxis& a
   add_text(ink, label, std::max(left, kEdge * t), baseline + 1.7 * t, t);
 }
 
-void draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis& axis, double stroke) {
+// Returns where the label above it ends.
+double draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis& axis, double stroke) {
   const double t = layout.text;
   const auto left = static_cast<double>(layout.left);
   const double number_right = left - (kTickLength + kTickGap) * t;
@@ -139,7 +142,25 @@ void draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis& 
   }
   const std::string label = axis.name + layout.upwards.offset;
   const double label_left = layout.upwards.offset.empty() ? number_right - text_width(label, t) : kEdge * t;
-  add_text(ink, label, label_left, 1.2 * t, t);
+  add_text(ink, label, label_left, kTitleLine * t, t);
+  return label_left + text_width(label, t);
+}
+
+// Right of `end`. The legend's title begins above it, or further left where the page would end before it does.
+void draw_titles(Coverage& ink, const PageLayout& layout, const Legend& legend, std::span<const std::string> titles,
+                 double end) {
+  const double t = layout.text;
+  const double begin = std::max(static_cast<double>(layout.left), end + t);
+  const auto above_legend = static_cast<double>(layout.legend_left()) + std::max(t / 12.0, 1.0);
+  const double most = static_cast<double>(layout.page_width) - kEdge * t - text_width(legend.title, t);
+  const bool fits = std::min(most, above_legend) >= begin;
+  const double legend_left = fits ? std::min(most, above_legend) : above_legend;
+  add_text(ink, fits ? legend.title : legend.short_title, legend_left, kTitleLine * t, t);
+  for (const std::string& title : titles) {
+    if (begin + text_width(title, t) + t > legend_left) continue;
+    add_text(ink, title, begin, kTitleLine * t, t);
+    return;
+  }
 }
 
 void draw_frame(Coverage& ink, const PageLayout& layout, double stroke) {
@@ -161,7 +182,8 @@ double text_height(const PlaneView& view) {
 
 bool has_frame(const PlaneView& view) { return std::max(view.width, view.height) >= kLeastFramedSize; }
 
-Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend) {
+Image framed_picture(const Image& plot, const PlaneView& view, const Legend& legend,
+                     std::span<const std::string> titles) {
   const PlotAxis across = plot_axis(view.right, "u", view, view.width);
   const PlotAxis upwards = plot_axis(view.up, "v", view, view.height);
   const PageLayout layout = lay_out(view, across, upwards, legend);
@@ -171,9 +193,9 @@ Image framed_picture(const Image& plot, const PlaneView& view, const Legend& leg
   const double stroke = std::max(std::round(layout.text / 12.0), 1.0);
   draw_frame(ink, layout, stroke);
   draw_axis_across(ink, layout, across, stroke);
-  draw_axis_upwards(ink, layout, upwards, stroke);
+  draw_titles(ink, layout, legend, titles, draw_axis_upwards(ink, layout, upwards, stroke));
   blend(page, ink, kInk);
-  draw_legend(page, legend, layout.text, {layout.right() + std::llround(kLegendGap * layout.text), 0});
+  draw_legend(page, legend, layout.text, {layout.legend_left(), 0});
   return page;
 }
 

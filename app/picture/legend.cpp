@@ -108,7 +108,7 @@ LegendSize legend_size(const Legend& legend, double text) {
   if (legend.bar) {
     for (const Tick& number : legend.bar->numbers) widest = std::max(widest, text_width(number.text, text));
   }
-  const double width = std::max(kLabelLeft * text + widest, text_width(legend.title, text)) + 0.3 * text;
+  const double width = std::max(kLabelLeft * text + widest, text_width(legend.short_title, text)) + 0.3 * text;
   const double below = legend.bar ? kBarHeight + 1.0 : kPatchPitch * static_cast<double>(legend.patches.size());
   const double height = std::round(kBarTop * text) + below * text + 1.0;
   return {std::llround(std::ceil(width)), std::llround(std::ceil(height))};
@@ -116,9 +116,6 @@ LegendSize legend_size(const Legend& legend, double text) {
 
 void draw_legend(Image& image, const Legend& legend, double text, PixelOffset corner) {
   const LegendSize size = legend_size(legend, text);
-  Coverage title(size.width, size.height);
-  add_text(title, legend.title, std::max(text / 12.0, 1.0), 1.2 * text, text);
-  blend(image, title, kInk, 1.0, corner);
   if (legend.bar) draw_bar(image, *legend.bar, text, size, corner);
   draw_patches(image, legend.patches, text, size, corner);
 }

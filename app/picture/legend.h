@@ -29,17 +29,18 @@ struct Legend {
   std::string title;
   std::optional<LegendBar> bar;      // a bar or
   std::vector<LegendPatch> patches;  // one below the other
+  std::string short_title = {};      // where there is no room for the other one
 };
 
-// How wide and high it is with digits of the height `text`, all in pixels. What is below its title begins 2.4 * text
-// below its top.
+// How wide and high it is with digits of the height `text`, all in pixels, with its short title, for which there is
+// room above 2.4 * text below its top.
 struct LegendSize {
   std::int64_t width;
   std::int64_t height;
 };
 [[nodiscard]] LegendSize legend_size(const Legend& legend, double text);
 
-// Draws it from its top left corner. Precondition: it is within `image`.
+// Draws it, without a title, from its top left corner. Precondition: it is within `image`.
 void draw_legend(Image& image, const Legend& legend, double text, PixelOffset corner);
 
 }  // namespace raycone

@@ -53,9 +53,10 @@ struct Appearance {
 
 // A bar with the levels that are within the range; none has contours, nor has the picture, where they would hide the
 // colours.
-Appearance with_contours(const std::string& title, const ColourMap& colours, const Levels& levels) {
+Appearance with_contours(const std::string& title, const std::string& short_title, const ColourMap& colours,
+                         const Levels& levels) {
   const ColourRange& range = colours.range();
-  Appearance appearance{colours, levels, {title, LegendBar{colours, numbers_in(range), {}}, {}}};
+  Appearance appearance{colours, levels, {title, LegendBar{colours, numbers_in(range), {}}, {}, short_title}};
   const double first = std::ceil((range.least() - levels.offset) / levels.step);
   const double last = std::floor((range.most() - levels.offset) / levels.step);
   if (last - first >= kMostContours) {
@@ -67,14 +68,14 @@ Appearance with_contours(const std::string& title, const ColourMap& colours, con
 }
 
 Appearance of_winding_numbers(std::span<const double> values) {
-  return with_contours("w", ColourMap(colour_range(values)), Levels{});
+  return with_contours("winding number", "w", ColourMap(colour_range(values)), Levels{});
 }
 
 Appearance of_distances(std::span<const double> values) {
   const ColourMap colours(distance_colour_range(values));
   const std::vector<Tick> numbers = numbers_in(colours.range());
   const double step = numbers.size() < 2 ? colours.range().half_width : numbers[1].value - numbers[0].value;
-  return with_contours("sdf", colours, {0.0, step});
+  return with_contours("signed distance", "sdf", colours, {0.0, step});
 }
 
 Appearance of_inside() {
@@ -111,7 +112,7 @@ std::size_t most_patches(const PlaneView& view, Legend legend) {
 
 // The labels that the picture has, as many as there is room for.
 Appearance of_labels(const PictureValues& values, const PlaneView& view) {
-  Legend legend{"label", {}, {}};
+  Legend legend{"label", {}, {}, "label"};
   const std::size_t most = most_patches(view, legend);
   const std::set<double> present(values.values.begin(), values.values.end());
   for (const double value : present) {
@@ -169,7 +170,7 @@ Image slice_picture(const PlaneView& view, const PictureValues& values, const Tr
   Image image = coloured(view, values.values, appearance.colour);
   draw_lines(image, view, values.values, mesh, appearance.contours);
   if (!framed || !has_frame(view)) return image;
-  return framed_picture(image, view, appearance.legend);
+  return framed_picture(image, view, appearance.legend, values.titles);
 }
 
 // One after the other: the values sorted for the range of colours; the image and coverages; the image and its page.

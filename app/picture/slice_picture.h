@@ -22,7 +22,8 @@ enum class PictureField {
 struct PictureValues {
   PictureField field;
   std::span<const double> values;
-  std::span<const std::string> names = {};  // of labels, from 1
+  std::span<const std::string> names = {};   // of labels, from 1
+  std::span<const std::string> titles = {};  // the first one that there is room for is above a framed picture
 };
 
 // Their colours, with contour lines and the curve where the plane cuts `mesh`. `framed`: with axes and legend around

@@ -30,6 +30,7 @@
 #include "app/text/plain_text.h"
 #include "io/fields/write_npy.h"
 #include "io/fields/write_png.h"
+#include "io/files/counted.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -150,6 +151,13 @@ PictureField picture_field(const FieldOptions& field) {
   return field.has(Field::kDistance) ? PictureField::kDistance : PictureField::kWinding;
 }
 
+// What the picture shows, of which the first that there is room for is drawn.
+std::vector<std::string> titles_of(const RunReport& report, const Slice& slice) {
+  const std::string name = std::filesystem::path(report.mesh).filename().string();
+  const std::string mesh = report.meshes.size() > 1 ? counted(report.meshes.size(), "mesh") : name;
+  return {mesh + ", " + slice.plane, mesh + ", " + slice.short_plane, slice.plane, slice.short_plane};
+}
+
 void write_picture(OutputFile& output, const Image& image, const std::string& mesh, const std::string& what) {
   const std::string name = std::filesystem::path(mesh).filename().string();
   const PngDescription description{
@@ -203,7 +211,8 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
     evaluate_field(cut.mesh, slice, command.field, values, run);
   }
   timed(report.seconds.write, [&] {
-    const PictureValues shown{picture_field(command.field), values, cut.names};
+    const std::vector<std::string> titles = titles_of(report, slice);
+    const PictureValues shown{picture_field(command.field), values, cut.names, titles};
     const Image picture = slice_picture(slice.view, shown, cut.mesh, command.framed);
     write_picture(run.output, picture, report.mesh, described(command.field) + " at " + slice.plane);
     if (values_file) write_npy_rows(*values_file, slice.view.height, slice.view.width, values);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "app/process/usage_error.h"
@@ -100,6 +102,16 @@ PlaneView view_of(const Lattice& lattice, int axis) {
   return view;
 }
 
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string listed(const Vec3& v, std::string (*digits)(double)) {
+  return digits(v.x) + ',' + digits(v.y) + ',' + digits(v.z);
+}
+
 Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
   const double at = position_of(plane, box);
   refuse_outside(plane, at, padded);
@@ -107,6 +119,7 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
   slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + six_digits(at);
+  slice.short_plane = slice.plane;
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(plane.axis)];
   slice.is_flat = padded.lower[right] == padded.upper[right] || padded.lower[up] == padded.upper[up];
   return slice;
@@ -182,9 +195,8 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
   view.corner = origin + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
-  slice.plane = "normal " + six_digits(view.normal.x) + "," + six_digits(view.normal.y) + "," +
-                six_digits(view.normal.z) + " through " + six_digits(origin.x) + "," + six_digits(origin.y) + "," +
-                six_digits(origin.z);
+  slice.plane = "normal " + listed(view.normal, six_digits) + " through " + listed(origin, six_digits);
+  slice.short_plane = "normal " + listed(view.normal, three_digits) + " at " + listed(origin, three_digits);
   return slice;
 }
 

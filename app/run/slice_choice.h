@@ -18,6 +18,7 @@ struct Slice {
   PlaneView view;
   std::optional<Lattice> lattice;  // of the pixels' centres, where the plane is across an axis; row 0 is its last
   std::string plane;               // "z = 1.5", for readers
+  std::string short_plane;         // the same in fewer letters
   bool is_flat = false;            // the box has no width or no height in the plane
 };
 

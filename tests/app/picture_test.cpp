@@ -126,6 +126,33 @@ TEST(FramedPicture, HasTheWholePlotInOneColour) {
   EXPECT_GT(bottom - top, 500);  // of 640; the axis below takes the rest
 }
 
+// Above the plot; nothing else changes.
+TEST(FramedPicture, HasTheFirstTitleThatThereIsRoomFor) {
+  const PlaneView view = view_of(640, 480);
+  const std::vector<double> values(640 * 480, 0.25);
+  const auto with = [&](const std::vector<std::string>& titles) {
+    return slice_picture(view, {PictureField::kWinding, values, {}, titles}, {}, true);
+  };
+  const Image plain = with({}), titled = with({"teapot.obj, y = 0"});
+  ASSERT_EQ(titled.width(), plain.width());
+  ASSERT_EQ(titled.height(), plain.height());
+  std::int64_t changed = 0, lowest = 0, rightmost = 0;
+  for (std::int64_t row = 0; row < plain.height(); ++row) {
+    for (std::int64_t column = 0; column < plain.width(); ++column) {
+      if (titled.at(column, row) == plain.at(column, row)) continue;
+      ++changed;
+      lowest = std::max(lowest, row);
+      rightmost = std::max(rightmost, column);
+    }
+  }
+  EXPECT_GT(changed, 100);
+  EXPECT_LT(static_cast<double>(lowest), 2.4 * text_height(view));
+  EXPECT_LT(rightmost, 400);
+  const auto same = [](const Image& a, const Image& b) { return std::ranges::equal(a.pixels(), b.pixels()); };
+  EXPECT_TRUE(same(with({std::string(100, 'm'), "teapot.obj, y = 0", "y = 0"}), titled));
+  EXPECT_TRUE(same(with({std::string(100, 'm')}), plain));
+}
+
 TEST(ShrunkImage, HasTheMeanOfWhatPixelsCover) {
   Image image(3, 1);
   image.at(0, 0) = {255, 0, 90};

@@ -554,7 +554,7 @@ add("components_in_a_ring.3mf", package(model_3mf('<object id="1"><components><c
 add("components_that_double.3mf", package(model_3mf(OBJECT_3MF + "".join('<object id="%d"><components>%s</components></object>' % (n, '<component objectid="%d"/>' % (n - 1) * 2) for n in range(2, 41)), '<item objectid="40"/>')), 4, "components make more than 1048576 copies of objects")
 add("required_unknown.3mf", package(model_3mf(more=' xmlns:q="urn:quantum" requiredextensions="q"')), 2, "requires the extension urn:quantum, which is not supported")
 add("required_undeclared.3mf", package(model_3mf(more=' requiredextensions="q  zz"')), 2, "requires the extension q, which is not supported")
-add("deep.3mf", package(model_3mf(more=">" + "<a>" * 100000 + "</a>" * 100000 + "<b /").replace("<b />", "<b/>", 1)), 0)
+add("deep.3mf", package(model_3mf(more=">" + "<a>" * 100000 + "</a>" * 100000 + "<b /").replace("<b />", "<b/>", 1)), 2, "elements within elements, more than 256")
 add("long_tag.3mf", package(model_3mf(more=' n="%s"' % ("x" * 3000000))), 2, "a tag or comment of more than a megabyte")
 add("long_comment.3mf", package(model_3mf("<!--" + "x" * 3000000 + "-->" + OBJECT_3MF)), 2, "a tag or comment of more than a megabyte")
 add("many_attributes.3mf", package(model_3mf(more="".join(' a%d=""' % n for n in range(20000)))), 0)

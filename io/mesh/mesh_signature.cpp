@@ -25,13 +25,13 @@ bool has_exact_stl_size(std::string_view bytes) {
 }  // namespace
 
 std::optional<MeshFormat> recognise_mesh(std::string_view bytes) {
+  // First of all: a header of binary STL may say anything, but no text has this size by chance, for the count's bytes
+  // would be text too, and announce more than 10^8 triangles. PLY and GLB have text there.
+  if (has_exact_stl_size(bytes)) return MeshFormat::kStl;
   if (bytes.starts_with("glTF")) return MeshFormat::kGlb;
   if (bytes.starts_with("PK\x03\x04")) return MeshFormat::k3mf;  // a ZIP archive
   const std::string_view text = without_byte_order_mark(bytes);
   if (is_ply(text)) return MeshFormat::kPly;
-  // Before the other text formats: a header of binary STL may say anything, but no text has this size by chance, for
-  // the count's bytes would be text too, and announce more than 10^8 triangles.
-  if (has_exact_stl_size(bytes)) return MeshFormat::kStl;
   const std::string_view start = without_leading_space(text);
   if (!off_keyword(start).empty()) return MeshFormat::kOff;
   if (is_ascii_stl(bytes)) return MeshFormat::kStl;

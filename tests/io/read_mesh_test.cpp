@@ -155,6 +155,16 @@ TEST(RecogniseMesh, GoesByTheSignature) {
   EXPECT_EQ(recognise_mesh("\tSOLID\n"), MeshFormat::kStl);
 }
 
+TEST(RecogniseMesh, HeadersOfBinaryStlMaySayAnything) {
+  for (const std::string header : {"ply ", "ply\n", "glTF", "PK\3\4", "OFF ", "{}", "\xEF\xBB\xBFply\n"}) {
+    std::string stl =
+        header + std::string(80 - header.size(), ' ') + std::string("\2\0\0\0", 4) + std::string(100, '\0');
+    EXPECT_EQ(recognise_mesh(stl), MeshFormat::kStl) << header;
+    stl.pop_back();  // of another size, its first bytes decide
+    EXPECT_NE(recognise_mesh(stl), MeshFormat::kStl) << header;
+  }
+}
+
 TEST(RecogniseMesh, WordsThatOnlyStartLikeASignatureAreNone) {
   for (const char* text : {"", "plywood", "ply", "OFFICE", "offset", "STOF", "solids", "sol", "v 1 2 3"})
     EXPECT_EQ(recognise_mesh(text), std::nullopt) << text;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "io/files/ascii.h"
 #include "io/files/counted.h"
+#include "io/files/text_scanner.h"
 #include "io/points/table_fields.h"
 
 namespace raycone {

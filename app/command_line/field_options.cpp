@@ -66,9 +66,8 @@ OptionGroup field_group() {
       "Field",
       {{"--field", "winding|inside|density|sdf|solid|gradient|label[,...]",
         "winding: winding number (default); inside: mask; density: winding number clamped to 0..1; sdf: signed "
-        "distance "
-        "to the faces; solid: signed distance to the surface that raycone surface makes; gradient: of the winding "
-        "number; label: number of the part that a sample is in",
+        "distance to the faces; solid: signed distance to the surface that raycone surface makes; gradient: of the "
+        "winding number; label: number of the part that a sample is in",
         true},
        parts_option(),
        priority_option(),

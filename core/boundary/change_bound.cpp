@@ -146,7 +146,7 @@ void ChangeBound::sort_by_halves(std::span<Source> sources) {
   }
 }
 
-// The halves, so often.
+// The halves that sort_by_halves() has made, so often.
 void ChangeBound::halve(std::span<const Source> sources, int times, std::vector<std::span<const Source>>& parts) {
   if (times == 0 || sources.size() < 2) return parts.push_back(sources);
   const std::size_t half = sources.size() / 2;

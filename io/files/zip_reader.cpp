@@ -81,7 +81,8 @@ std::size_t last_record(const std::string& tail, const std::string& path) {
   constexpr std::string_view kMark = "PK\x05\x06";
   constexpr std::size_t kRecord = 22, kComment = 20;
   std::optional<std::size_t> last;
-  for (std::size_t at = tail.rfind(kMark); at != std::string::npos; at = at == 0 ? at - 1 : tail.rfind(kMark, at - 1)) {
+  for (std::size_t at = tail.rfind(kMark); at != std::string::npos;
+       at = at == 0 ? std::string::npos : tail.rfind(kMark, at - 1)) {
     if (tail.size() - at < kRecord) continue;
     Fields fields(std::string_view(tail).substr(at + kComment), path);
     if (at + kRecord + fields.number(2) == tail.size()) return at;

@@ -43,10 +43,9 @@ TableLayout layout_with(char delimiter, const std::optional<std::string>& header
     return {delimiter, *columns, fit(names, fields, of_header) ? "" : mismatch(names.size(), fields.size())};
   }
   const std::vector<std::string_view> names = fields_of(*header, delimiter);
-  const bool has_numbers = names.size() > 1 && names.front().empty();
-  return {delimiter,
-          {0, 1, 2},
-          has_numbers ? "the first column has no name, expected columns x, y and z, or --columns" : ""};
+  const bool has_index = names.size() > 1 && names.front().empty();  // as tables of R and pandas have
+  return {
+      delimiter, {0, 1, 2}, has_index ? "the first column has no name, expected columns x, y and z, or --columns" : ""};
 }
 
 }  // namespace
@@ -83,7 +82,10 @@ TableLayout layout_of(const std::optional<std::string>& header, std::string_view
     TableLayout layout = layout_with(delimiter, header, fields, given);
     if (are_numbers(fields, layout.columns)) return layout;
   }
-  return layout_with(usual, header, fields_of(line, usual), given);
+  // With none of them: what is no number is told by the header's, as a decimal comma between semicolons.
+  const bool as_header = header && line.find(delimiter_of(*header)) != std::string_view::npos;
+  const char delimiter = as_header ? delimiter_of(*header) : usual;
+  return layout_with(delimiter, header, fields_of(line, delimiter), given);
 }
 
 }  // namespace raycone

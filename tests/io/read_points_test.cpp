@@ -118,6 +118,12 @@ TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
   }
 }
 
+TEST_F(ReadPoints, DecimalCommasBelowAHeaderAreTold) {
+  EXPECT_EQ(error_of("x;y;z\n1,5;2,5;3,5\n"), "pts:2: column 1 is '1,5', expected a finite number");
+  EXPECT_EQ(error_of("x\ty\tz\n1\t2,5\t3\n"), "pts:2: column 2 is '2,5', expected a finite number");
+  EXPECT_EQ(error_of("x y z\n1 2 3,5\n"), "pts:2: column 3 is '3,5', expected a finite number");
+}
+
 // Where names and fields are not as many, fields may be those of other columns.
 TEST_F(ReadPoints, HeaderThatNamesColumnsHasAsManyAsTheRows) {
   for (const char* const table :

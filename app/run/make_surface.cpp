@@ -30,10 +30,10 @@ void check_inside(const std::string& name, const NodeSet& inside, const Rule& ru
   }
 }
 
-FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const FineAndRough& evaluators,
                            const NodeSet& inside, const SurfaceOptions& options) {
   try {
-    return closed_surface(mesh, evaluator, inside, options);
+    return closed_surface(mesh, evaluators, inside, options);
   } catch (const LatticeTooFine& error) {
     const char* const other_format = options.single_precision ? ", or write PLY" : "";
     throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
@@ -78,43 +78,44 @@ std::optional<Warning> warning_about(const ThinParts& thin) {
   return Warning{"thin-parts", text + "; see --resolution, and --thicken of half a voxel's diagonal or more"};
 }
 
+Accuracy for_points(double tolerance, double points) {
+  return {.tolerance = tolerance, .samples = points, .points = points};
+}
+
+EvaluatorOptions options_for(const Accuracy& accuracy, const std::vector<ExteriorEdge>& edges) {
+  return {.accuracy = accuracy, .edges = &edges};
+}
+
 }  // namespace
 
 MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
-  constexpr double kTolerance = 1e-10;    // moves points in holes by less than a millionth of a voxel, as a rule
-  constexpr double kPointsPerCell = 8.0;  // at most, where there are few holes
   check_memory(name, node_set_bytes(lattice), memory);
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
-  std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh,
-                                                  EvaluatorOptions{.accuracy = for_sides, .edges = &edges});
-  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done);
+  std::optional<WindingNumberEvaluator> fine, rough(std::in_place, mesh, options_for(for_sides, edges));
+  NodeSet inside = nodes_inside(*rough, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
   check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
-  if (!edges.empty()) {  // the values of a closed mesh are exact anyway
-    const auto points = kPointsPerCell * static_cast<double>(mixed_cells(inside));
-    const Accuracy for_points{.tolerance = kTolerance, .samples = points, .points = points};
-    evaluator.emplace(mesh, EvaluatorOptions{.accuracy = for_points, .edges = &edges});
+  if (!edges.empty()) {                   // the values of a closed mesh are exact anyway
+    constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
+    constexpr double kFinePerCell = 4.0, kRoughPerCell = 4.0;  // at most, where there are few holes
+    const auto cells = static_cast<double>(mixed_cells(inside));
+    fine.emplace(mesh, options_for(for_points(kTolerance, kFinePerCell * cells), edges));
+    rough.emplace(mesh, options_for(for_points(for_sides.tolerance, kRoughPerCell * cells), edges));
   }
-  FinishedSurface closed = surface_of(name, mesh, *evaluator, inside, options);
+  FinishedSurface closed = surface_of(name, mesh, fine ? FineAndRough(*fine, *rough) : *rough, inside, options);
+  fine.reset();
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
   DroppedSamples dropped(made.surface, inside, options.thickness);
   const SurfaceMeasures measures = measure_surface(made.surface, mesh, dropped);
   made.report = report_of(made.surface, measures);
   if (measures.drops) {
-    const double points = 2.0 * static_cast<double>(measures.dropped_samples);
-    // Of so many points sides take less than values, and another evaluator takes less than they do.
-    if (!edges.empty() && options.thickness == 0.0 && points > static_cast<double>(mesh.triangles.size())) {
-      const Accuracy for_points{
-          .tolerance = for_sides.tolerance, .samples = points, .sides_only = true, .points = points};
-      evaluator.emplace(mesh, EvaluatorOptions{.accuracy = for_points, .edges = &edges});
-    }
-    const ThinParts thin = thin_parts(mesh, RuleAlong(*evaluator, options.rule), dropped);
+    const ThinParts thin = thin_parts(mesh, {*rough, options.rule}, dropped);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   }
   return made;

@@ -163,10 +163,10 @@ std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_closed(const std::
   for (const OpenEdge* open : edges) {
     if (!is_last(open)) points.push_back(open->edge.point(behind_in_closed(open->hits, place)));
   }
-  const std::vector<double> values = rule_.at(points);
+  const std::vector<std::uint8_t> holds_there = rule_.holds_at(points);
   std::vector<Sides> sides;
   std::size_t next = 0;
-  for (const OpenEdge* open : edges) sides.push_back({true, !is_last(open) && values[next++] >= 0.0});
+  for (const OpenEdge* open : edges) sides.push_back({true, !is_last(open) && holds_there[next++] != 0});
   return sides;
 }
 
@@ -175,6 +175,7 @@ std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_closed(const std::
 std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_open(const std::vector<const OpenEdge*>& edges,
                                                                    std::size_t place) const {
   constexpr double kClear = 0x1p-10;  // far more than w changes by itself from just before a place to just behind it
+  const double clear = kClear + rule_.rough_doubt();
   std::vector<Vec3> points;
   for (const OpenEdge* open : edges) points.push_back(open->edge.point(before(open->hits, place)));
   const std::vector<double> w = rule_.winding_numbers(points);
@@ -184,13 +185,13 @@ std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_open(const std::ve
   for (std::size_t n = 0; n < edges.size(); ++n) {
     const double jump = edges[n]->hits[place].jump;
     const double value = jump != 0.0 ? rule_.from_threshold(w[n] + jump) : 0.0;
-    sides.push_back({rule_.from_threshold(w[n]) >= 0.0, value > 0.0});
-    if (std::abs(value) > kClear) continue;
+    sides.push_back({rule_.holds_for(w[n]), value > 0.0});
+    if (std::abs(value) > clear) continue;
     doubtful.push_back(n);
     points.push_back(edges[n]->edge.point(behind(edges[n]->hits, place)));
   }
-  const std::vector<double> values = rule_.at(points);
-  for (std::size_t i = 0; i < doubtful.size(); ++i) sides[doubtful[i]].behind = values[i] >= 0.0;
+  const std::vector<std::uint8_t> holds_behind = rule_.holds_at(points);
+  for (std::size_t i = 0; i < doubtful.size(); ++i) sides[doubtful[i]].behind = holds_behind[i] != 0;
   return sides;
 }
 
@@ -213,10 +214,9 @@ bool EdgePointFinder::decides(const OpenEdge& open, std::size_t place, const Sid
 
 }  // namespace
 
-std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const Rule& rule,
-                                   const SurfaceCells& cells, const CellTriangles& triangles,
-                                   const SurfaceMargins& margins) {
-  return EdgePointFinder(mesh, RuleAlong(evaluator, rule), cells, triangles, margins.inner).find();
+std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells,
+                                   const CellTriangles& triangles, const SurfaceMargins& margins) {
+  return EdgePointFinder(mesh, rule, cells, triangles, margins.inner).find();
 }
 
 }  // namespace raycone

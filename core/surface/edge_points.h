@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/evaluation/winding_number.h"
 #include "core/surface/cell_triangles.h"
+#include "core/surface/edge_roots.h"
 #include "core/surface/surface_cells.h"
 
 namespace raycone {
@@ -27,9 +26,9 @@ struct SurfaceMargins {
 
 // For each mixed edge the point nearest to its inside end where the rule ceases to hold: on the first triangle that
 // carries the winding number across, or where it passes a threshold by itself, as it does in holes. Positions are moved
-// by no more than the margin. The same for any number of threads. Needs evaluator, cells and triangles of this mesh.
-[[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
-                                                 const Rule& rule, const SurfaceCells& cells,
-                                                 const CellTriangles& triangles, const SurfaceMargins& margins);
+// by no more than the margin. The same for any number of threads. Needs rule, cells and triangles of this mesh.
+[[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
+                                                 const SurfaceCells& cells, const CellTriangles& triangles,
+                                                 const SurfaceMargins& margins);
 
 }  // namespace raycone

@@ -38,9 +38,10 @@ class RootSearch {
     part_ = round < kRoundsAtFirst ? part_by(before) : 0.5;
     const double part = last_.value / (last_.value - across_.value);  // NaN where both are 0
     bracket_->root = last_.at + (part >= 0.0 && part <= 1.0 ? part : 0.5) * (across_.at - last_.at);
+    meet(before);
   }
 
-  [[nodiscard]] bool is_narrow() const { return bracket_->high - bracket_->low <= kNarrow; }
+  [[nodiscard]] bool is_done() const { return is_met_ || bracket_->high - bracket_->low <= kNarrow; }
 
  private:
   static constexpr int kRoundsAtFirst = 40;
@@ -51,6 +52,19 @@ class RootSearch {
   };
 
   [[nodiscard]] double next_place() const { return last_.at + part_ * (across_.at - last_.at); }
+
+  // Where the last step came much nearer to 0, and values fall to both sides of the place about as steeply, they are as
+  // good as straight there. A root that is that near is found, though no place behind it tells.
+  void meet(const Place& before) {
+    constexpr double kMuchNearer = 0x1p-8, kAlike = 4.0, kNear = 0x1p-3 * kNarrow;
+    const double slope = (before.value - last_.value) / (before.at - last_.at);
+    const double other = (across_.value - last_.value) / (across_.at - last_.at), step = -last_.value / slope;
+    const bool is_straight = std::abs(last_.value) <= kMuchNearer * std::abs(before.value) && slope / other < kAlike &&
+                             other / slope < kAlike;  // false where there are NaN
+    if (!is_straight || !(std::abs(step) <= kNear)) return;
+    is_met_ = true;
+    bracket_->root = std::clamp(last_.at + step, bracket_->low, bracket_->high);
+  }
 
   // Of the way from the last place to the one across. A root that is nearly found is overtaken, as only places on both
   // sides of it narrow the bracket.
@@ -67,6 +81,7 @@ class RootSearch {
   Bracket* bracket_;
   Place last_, across_;
   double part_ = 0.5;
+  bool is_met_ = false;
 };
 
 // On all threads.
@@ -96,42 +111,37 @@ std::vector<double> values_of_each(const std::vector<Vec3>& points, const Values
 
 }  // namespace
 
+// Near half-integers values are settled already.
 std::vector<double> RuleAlong::winding_numbers(const std::vector<Vec3>& points) const {
   std::vector<double> values(points.size());
-  if (!points.empty()) evaluator_.evaluate(points, values);  // which prepares for points, many or none
-  return values;
-}
-
-std::vector<double> RuleAlong::at(const std::vector<Vec3>& points) const {
-  std::vector<double> values = winding_numbers(points);
-  for (double& w : values) w = from_threshold(w);
-  return values;
-}
-
-// Near half-integers values are settled already.
-std::vector<std::uint8_t> RuleAlong::holds_at(const std::vector<Vec3>& points) const {
-  std::vector<double> values = winding_numbers(points);
+  if (points.empty()) return values;  // the evaluator prepares for points, many or none
+  rough_.evaluate(points, values);
   for (const double threshold : thresholds_to_settle(rule_)) {
     std::vector<std::size_t> doubtful;
     std::vector<Vec3> there;
     std::vector<double> settled;
     for (std::size_t n = 0; n < values.size(); ++n) {
-      if (!may_be_across(values[n], threshold, evaluator_.doubt())) continue;
+      if (!may_be_across(values[n], threshold, rough_doubt())) continue;
       doubtful.push_back(n);
       there.push_back(points[n]);
       settled.push_back(values[n]);
     }
-    evaluator_.settle(there, threshold, settled);
+    rough_.settle(there, threshold, settled);
     for (std::size_t i = 0; i < doubtful.size(); ++i) values[doubtful[i]] = settled[i];
   }
+  return values;
+}
+
+std::vector<std::uint8_t> RuleAlong::holds_at(const std::vector<Vec3>& points) const {
+  const std::vector<double> values = winding_numbers(points);
   std::vector<std::uint8_t> holds_there(values.size());
-  std::ranges::transform(values, holds_there.begin(), [&](double w) { return holds(rule_, w) ? 1 : 0; });
+  std::ranges::transform(values, holds_there.begin(), [&](double w) { return holds_for(w) ? 1 : 0; });
   return holds_there;
 }
 
 std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
   std::vector<double> values(points.size());
-  if (!points.empty()) evaluator_.evaluate_unsettled(points, values);
+  if (!points.empty()) fine_.evaluate_unsettled(points, values);
   for (double& w : values) w = from_threshold(w);
   return values;
 }
@@ -148,7 +158,7 @@ void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at) {
   searches.reserve(brackets.size());
   for (std::size_t i = 0; i < brackets.size(); ++i) searches.emplace_back(brackets[i], ends[2 * i], ends[2 * i + 1]);
   for (int round = 0; round < kRounds; ++round) {
-    std::erase_if(searches, [](const RootSearch& search) { return search.is_narrow(); });
+    std::erase_if(searches, [](const RootSearch& search) { return search.is_done(); });
     if (searches.empty()) return;
     points.resize(searches.size());
     for_each(searches.size(), [&](std::size_t i) { points[i] = searches[i].next(); });

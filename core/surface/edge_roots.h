@@ -12,25 +12,38 @@
 
 namespace raycone {
 
+// Of one mesh: a fine one for places where w is a threshold, and a rough one, which is sooner, for sides.
+struct FineAndRough {
+  const WindingNumberEvaluator& fine;
+  const WindingNumberEvaluator& rough;
+
+  FineAndRough(const WindingNumberEvaluator& for_places, const WindingNumberEvaluator& for_sides)
+      : fine(for_places), rough(for_sides) {}
+  FineAndRough(const WindingNumberEvaluator& evaluator) : FineAndRough(evaluator, evaluator) {}  // NOLINT: implicit
+};
+
 // The rule along edges, a continuous function between triangles: positive inside, turns.
 class RuleAlong {
  public:
-  RuleAlong(const WindingNumberEvaluator& evaluator, const Rule& rule) : evaluator_(evaluator), rule_(rule) {}
+  RuleAlong(const FineAndRough& evaluators, const Rule& rule)
+      : fine_(evaluators.fine), rough_(evaluators.rough), rule_(rule) {}
 
-  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points) const;
-  // Whether the rule holds at points, 1, or not, 0: exactly, whatever the evaluator's tolerance is.
-  [[nodiscard]] std::vector<std::uint8_t> holds_at(const std::vector<Vec3>& points) const;
-  // The winding numbers themselves, on the side of half-integers where w is; and what such a one is, as at() has it.
+  // Rough winding numbers, off by rough_doubt() at most, but on the same side of each threshold of the rule as w.
   [[nodiscard]] std::vector<double> winding_numbers(const std::vector<Vec3>& points) const;
+  [[nodiscard]] double rough_doubt() const { return rough_.doubt(); }
+  // Whether the rule holds at points, 1, or not, 0: exactly.
+  [[nodiscard]] std::vector<std::uint8_t> holds_at(const std::vector<Vec3>& points) const;
+  [[nodiscard]] bool holds_for(double w) const { return holds(rule_, w); }
+  // What the function is where w is this.
   [[nodiscard]] double from_threshold(double w) const {
-    return holds(rule_, w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
+    return holds_for(w) ? distance_to_threshold(rule_, w) : -distance_to_threshold(rule_, w);
   }
-  // The same for the search of roots, sooner: off by rounding also where that makes it another sign.
+  // The function for the search of roots: off by rounding also where that makes it another sign.
   [[nodiscard]] std::vector<double> near(const std::vector<Vec3>& points) const;
-  [[nodiscard]] bool is_closed() const { return evaluator_.exterior_edges() == 0; }
+  [[nodiscard]] bool is_closed() const { return fine_.exterior_edges() == 0; }
 
  private:
-  const WindingNumberEvaluator& evaluator_;
+  const WindingNumberEvaluator &fine_, &rough_;
   Rule rule_;
 };
 
@@ -44,8 +57,8 @@ struct Bracket {
 // Answers for many points at once: a value for each, that does not depend on the others.
 using ValuesAt = std::function<std::vector<double>(const std::vector<Vec3>&)>;
 
-// Narrows brackets to 2^-34 of their edges (Chandrupatla 1997), and finds where values are 0 if they change evenly
-// between the ends.
+// Finds places where values are 0, each between the ends of a bracket, to 2^-34 of the edge (Chandrupatla 1997); where
+// values jump past 0, the place of the jump.
 void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at);
 
 }  // namespace raycone

@@ -36,10 +36,10 @@ void round_to_float(std::vector<Vec3>& vertices) {
 // One attempt at a surface after the other.
 class SurfaceMaker {
  public:
-  SurfaceMaker(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+  SurfaceMaker(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
                const SurfaceOptions& options)
       : mesh_(mesh),
-        evaluator_(evaluator),
+        rule_(evaluators, options.rule),
         inside_(inside),
         options_(options),
         normals_(mesh),
@@ -57,9 +57,8 @@ class SurfaceMaker {
     Attempt last;
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = options_.thickness > 0.0 ? thick_edge_points(RuleAlong(evaluator_, options_.rule), distance_,
-                                                             options_.thickness, cells_, margins)
-                                         : edge_points(mesh_, evaluator_, options_.rule, cells_, triangles_, margins);
+      points_ = options_.thickness > 0.0 ? thick_edge_points(rule_, distance_, options_.thickness, cells_, margins)
+                                         : edge_points(mesh_, rule_, cells_, triangles_, margins);
       if (may_use_polygons()) {
         const FacePoints sharp = points_of_sections(margins);
         if (Attempt first = attempt(sharp, margins, true, ContourCells::kPolygons); first.made)
@@ -221,7 +220,7 @@ class SurfaceMaker {
   }
 
   const TriangleMesh& mesh_;
-  const WindingNumberEvaluator& evaluator_;
+  RuleAlong rule_;
   const NodeSet& inside_;
   const SurfaceOptions& options_;
   TriangleNormals normals_;
@@ -292,7 +291,7 @@ double surface_margin(const Lattice& lattice, bool single_precision) {
   return std::max(kLeast, kRoundings * rounding / lattice.least_spacing());
 }
 
-FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator, const NodeSet& inside,
+FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
   constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
@@ -306,7 +305,7 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEval
   }
   if (!(margin <= kMost)) throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
   if (std::optional<FinishedSurface> surface = surface_in_scale(mesh, inside, options)) return *std::move(surface);
-  return SurfaceMaker(mesh, evaluator, inside, options).make();
+  return SurfaceMaker(mesh, evaluators, inside, options).make();
 }
 
 // Most of it is due to cells with nodes of both kinds: there are about eight triangles in each before they are merged.

@@ -6,9 +6,9 @@
 
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/evaluation/winding_number.h"
 #include "core/surface/certificate.h"
 #include "core/surface/contour.h"
+#include "core/surface/edge_roots.h"
 #include "core/surface/node_set.h"
 
 namespace raycone {
@@ -50,7 +50,7 @@ class LatticeOutOfRange : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The surface that separates `inside`, which nodes_inside() found by `evaluator` of `mesh` and the rule, and where it
+// The surface that separates `inside`, which nodes_inside() found by an evaluator of `mesh` and the rule, and where it
 // has a thickness insert_near(), from the other nodes: closed, oriented outward, 2-manifold, without
 // self-intersections; all of that has been checked, exactly, on the vertices returned. They lie on the mesh (where the
 // source is a triangle) or where the winding number passes a threshold of the rule (kHole), off by four margins of the
@@ -60,7 +60,7 @@ class LatticeOutOfRange : public std::runtime_error {
 // to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
 // `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // LatticeOutOfRange, std::length_error for more than 2^31 - 1 faces.
-[[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator,
+[[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
                                              const NodeSet& inside, const SurfaceOptions& options);
 
 // The margin that a lattice is given at first, as a fraction of a voxel.

@@ -65,7 +65,7 @@ struct Cells {
         cells(nodes),
         triangles(mesh, cells),
         creases(mesh, normals, triangles, cells),
-        points(edge_points(mesh, WindingNumberEvaluator(mesh), Rule{}, cells, triangles, kMargins)),
+        points(edge_points(mesh, {WindingNumberEvaluator(mesh), Rule{}}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
     face_points = FacePoints(cells, points, creases, tolerance, kMargins, kind);
   }

@@ -17,6 +17,7 @@ using test::Random;
 using test::uniform;
 
 constexpr double kNarrow = 0x1p-34;
+constexpr double kNothing = 0x1p-60;  // far less than winding numbers are off by
 
 // The number of values that it took to find the root of f along an edge of length 1.
 std::size_t values_for(const std::function<double(double)>& f, double root) {
@@ -28,7 +29,8 @@ std::size_t values_for(const std::function<double(double)>& f, double root) {
     count += places.size();
     return values;
   });
-  EXPECT_LE(brackets[0].high - brackets[0].low, kNarrow);
+  const double off = std::abs(brackets[0].root - root), value = f(brackets[0].root);
+  EXPECT_TRUE(off <= kNarrow || (value != 0.0 && std::abs(value) < kNothing)) << off;
   EXPECT_LE(brackets[0].low, root);
   EXPECT_GE(brackets[0].high, root);
   EXPECT_LE(brackets[0].low, brackets[0].root);
@@ -47,8 +49,8 @@ TEST(EdgeRoots, AreFoundInFewValues) {
     straight += values_for([&](double x) { return slope * (root - x) * (1 + curve * (root - x)); }, root);
     bent += values_for([&](double x) { return slope * std::atan(steep * (root - x)); }, root);
   }
-  EXPECT_LT(straight, 9 * kCount);
-  EXPECT_LT(bent, 12 * kCount);
+  EXPECT_LT(straight, 7 * kCount);
+  EXPECT_LT(bent, 11 * kCount);
 }
 
 // Where w is steep, next to a boundary edge, a bracket's middle would not do.

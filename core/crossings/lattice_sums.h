@@ -85,8 +85,8 @@ class LatticeSums {
   // For who asks for runs().
   LatticeSums(std::size_t rows, std::size_t samples, OnSurface on_surface = OnSurface::kCount);
 
-  // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up;
-  // for runs(), sizeof(double) more.
+  // Most bytes per sample that this takes beside the caller's spans: a byte, and 20 for each 16 samples, rounded up
+  // with 8 for each row; for runs(), sizeof(double) more.
   static constexpr double kBytesPerSample = 3.0;
 
   // What one thread has to say.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/crossings/row.h"
@@ -37,10 +38,15 @@ class TriangleSections {
     EdgeSection(const Vec3& a, const Vec3& b, int axis)
         : along(a[axis]),
           across(a[3 - axis]),
-          slope((b[axis] - along) / (b[3 - axis] - across)),
+          slope(slope_of(b[axis] - along, b[3 - axis] - across)),
           extent{std::min(across, b[3 - axis]), std::max(across, b[3 - axis])},
           parallel(across == b[3 - axis]),
           point(parallel && along == b[axis]) {}
+
+    // NaN where the width is beyond the doubles, as offsets are then where only the height is.
+    static double slope_of(double height, double width) {
+      return std::isfinite(width) ? height / width : std::numeric_limits<double>::quiet_NaN();
+    }
 
     // Where its line is, widened by more than the error: differences, quotient and product are each rounded once (5 u
     // of the product), the sum once more; u = 2^-53. A quotient that underflows is off by 2^-1075, and multiplied.

@@ -60,6 +60,7 @@ struct Candidate {
   double change;                            // from the sample in the middle to others at most, turns
   std::vector<SideSamples::Index> samples;  // the one in the middle, or the nodes
   std::vector<double> rest{};               // at each of them
+  double largest = 0.0;                     // magnitude of a winding number there, which was rounded
   std::optional<NodeGrid> nodes{};
 };
 
@@ -216,6 +217,7 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
   auto set = [&](std::size_t index, const Vec3&, double w) {
     const auto [code, candidate, n] = places[index];
     candidate->rest[n] = w - samples_.crossings_at(candidate->samples[n], candidate->which);
+    candidate->largest = std::max(candidate->largest, std::abs(w));
   };
   using Tile = LatticeTile<decltype(set)>;
   Tile tile(mesh_, set, Tile::Sum::kUnsettled);
@@ -228,7 +230,7 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
 bool RuleBlocks::decide(const Candidate& candidate) const {
   const double rest = candidate.rest[0];
   return samples_.decide(candidate.block.samples, candidate.which, rest,
-                         candidate.change + mesh_.doubt() + kTurnsRound * (1 + std::abs(rest)));
+                         candidate.change + mesh_.doubt() + kTurnsRound * (1 + std::abs(rest) + candidate.largest));
 }
 
 // Makes nodes the candidate's samples. Returns whether that is worth it.
@@ -245,7 +247,7 @@ bool RuleBlocks::choose_nodes(Candidate& candidate) const {
 void RuleBlocks::interpolate(const Candidate& candidate, std::vector<SampleBox>& undecided) const {
   constexpr std::array<std::size_t, 3> kPart{24, 12, 12};  // samples
   const SampleBox& box = candidate.block.samples;
-  double largest = 0.0;
+  double largest = candidate.largest;
   for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
   const double doubt = mesh_.doubt() + 32 * kTurnsRound * (1 + largest);
   const double needed = candidate.nodes->bend() + candidate.nodes->growth() * doubt;
@@ -292,8 +294,8 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
     blocks.finish(std::move(left));
     if (done) done->fetch_add(count, std::memory_order_relaxed);
   };
-  // In rounds, each of which knows all of those before it, so that the work is the same for any number of threads. They
-  // stay small until one leaves something to rough sums: what it leaves waits for their tree.
+  // In rounds, each of which knows all of those before it, so that the work is much the same for any number of threads.
+  // They stay small until one leaves something to rough sums: what it leaves waits for their tree.
   constexpr std::size_t kFirstRound = 64;
   bool is_ready = !blocks.may_need_tree();
   for (std::size_t first = 0, count = kFirstRound; first < blocks.size();

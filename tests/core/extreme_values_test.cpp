@@ -1,6 +1,7 @@
 // Values of meshes whose coordinates span the whole range of double, against direct sums that no magnitude troubles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -171,6 +172,35 @@ std::vector<double> in_slabs(const WindingNumberEvaluator& evaluator, const Latt
     }
   }
   return values;
+}
+
+// The scale stays as it is, as it would drop bits of one coordinate; differences of others are beyond the doubles.
+TEST(ExtremeValues, OfLatticesAreThoseOfPointsWhereDifferencesOverflow) {
+  Random random(5);
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  constexpr std::int64_t kHalf = 6;
+  const auto steps = [](double length) { return length / kHalf * Vec3{1, 1, 1}; };
+  int inside = 0;
+  for (int i = 0; i < 160; ++i) {
+    TriangleMesh mesh{{}, {{0, 1, 2}}};
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto huge = [&] { return kLargest * test::uniform(random, -1, 1); };
+      mesh.vertices.push_back({0.1, huge(), huge()});
+    }
+    Lattice lattice{{-1, 0, 0}, steps(0.95 * kLargest), {0, -kHalf, -kHalf}, {1, 2 * kHalf + 1, 2 * kHalf + 1}};
+    lattice.spacing[1 + i % 2] *= 0.07;  // sections are for boxes of many rows
+    std::vector<Vec3> points;
+    for (std::int64_t n = 0; n < whole(lattice).size(); ++n) {
+      points.push_back(lattice.position(whole(lattice).index_of(static_cast<std::size_t>(n))));
+    }
+    std::vector<double> at_points(points.size()), on_lattice(points.size());
+    const WindingNumberEvaluator evaluator(mesh);
+    evaluator.evaluate(points, at_points);
+    evaluator.evaluate(lattice, whole(lattice), on_lattice);
+    EXPECT_EQ(bits(on_lattice), bits(at_points)) << i;
+    inside += std::ranges::count_if(at_points, [](double w) { return w < -0.25; }) > 0 ? 1 : 0;
+  }
+  EXPECT_GT(inside, 8) << "few rays met a triangle: nothing was tested";
 }
 
 // One coordinate of the lattice is so small that scaling the mesh to 1 would drop its bits: whether a sample is

@@ -140,6 +140,27 @@ TEST(Sides, AreSettledWhereTheWindingNumberIsTheThreshold) {
   EXPECT_GT(below, 0) << "no value is rounded down: nothing was tested";
 }
 
+// In a stack of tetrahedra w is large, and rounded: nothing is left there of a triangle far away, which decides the
+// sides of all other samples.
+TEST(Sides, HoldBesideLargeWindingNumbers) {
+  constexpr std::size_t kCopies = std::size_t{1} << 17;
+  TriangleMesh mesh{{{0.3, 0.3, 0.3}, {0.9, 0.3, 0.3}, {0.3, 0.9, 0.3}, {0.3, 0.3, 0.9}}, {}};
+  for (std::size_t n = 0; n < kCopies; ++n) {
+    for (const Triangle& t : {Triangle{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) mesh.triangles.push_back(t);
+  }
+  mesh = test::joined(mesh, {{{10, 0, 0}, {10, 1.69e-4, 0}, {10, 0, 1.69e-4}}, {{0, 1, 2}}});
+  const Lattice lattice{{0, 0, 0}, {1.0 / 5600, 0.14, 0.14}, {0, 0, 0}, {5600, 8, 8}};
+  const WindingNumberEvaluator evaluator(mesh);
+  const std::vector<Vec3> corners{{0, 1, 1}, {1, 0, 0}};
+  std::vector<double> w(2);
+  evaluator.evaluate(corners, w);
+  ASSERT_GT(w[0], 1e-11);    // the least of all samples outside
+  ASSERT_LT(w[1], 0x1p-36);  // the most: half a unit of 2^17
+  std::vector<std::uint8_t> sides(static_cast<std::size_t>(whole(lattice).size()));
+  evaluator.evaluate_sides({RuleKind::kThreshold, w[0] / 2}, lattice, whole(lattice), sides);
+  EXPECT_EQ(std::ranges::count(sides, 0), 0);
+}
+
 // A sphere full of holes, where certificates decide little.
 TEST(Sides, HoldByRoughSums) {
   TriangleMesh mesh = test::sphere(30);

@@ -81,6 +81,9 @@ MUTANTS = [
         ("core/crossings/crossings.cpp", " + kUnderflow / nx * extent", "")]),
     Mutant("slope_underflow_ignored", "what underflows in a slope is multiplied by the reach", [
         ("core/crossings/triangle_sections.h", "kSlopeUnderflow * std::abs(reach) + ", "")]),
+    Mutant("sections_of_widths_beyond_doubles", "a slope over a width that overflows is not 0", [
+        ("core/crossings/triangle_sections.h", "std::isfinite(width) ? height / width : std::numeric_limits<double>::quiet_NaN()",
+         "height / width")]),
     Mutant("gradient_takes_all", "a query that scaling makes subnormal is summed unscaled", [
         ("core/evaluation/gradient.cpp", "} else if (largest_coordinate(q) < kFar && scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {",
          "} else if (true) {")]),
@@ -362,6 +365,8 @@ MUTANTS = [
     Mutant("blocks_do_not_change", "a block is decided only if the bound of the change allows it", [
         ("core/evaluation/rule_blocks.cpp", "candidate.change + mesh_.doubt()",
          "0 * candidate.change + mesh_.doubt()")]),
+    Mutant("certificate_forgets_large_values", "what is left of a large value has that value's rounding", [
+        ("core/evaluation/rule_blocks.cpp", " + candidate.largest));", "));")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
         ("core/evaluation/side_samples.cpp", "return visit(index + from, index + to, n - caps);",
          "return visit(index + from, index + to, n - 0 * caps);")]),

@@ -31,9 +31,7 @@ LabelVolume::LabelVolume(const Lattice& lattice, std::size_t parts) : lattice_(l
 }
 
 double LabelVolume::bytes(const Lattice& lattice, std::size_t parts) {
-  double samples = 1.0;  // in floating point: the number may not fit in 64 bits
-  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
-  return samples * static_cast<double>(label_bytes(parts));
+  return lattice.samples() * static_cast<double>(label_bytes(parts));
 }
 
 template <typename Visit>

@@ -30,6 +30,10 @@ struct Lattice {
     const auto a = static_cast<std::size_t>(axis);
     return index_min[a] + counts[a] - 1;
   }
+  // In floating point: the number may not fit in 64 bits.
+  [[nodiscard]] double samples() const {
+    return static_cast<double>(counts[0]) * static_cast<double>(counts[1]) * static_cast<double>(counts[2]);
+  }
   [[nodiscard]] double least_spacing() const { return std::min({spacing.x, spacing.y, spacing.z}); }
   [[nodiscard]] double largest_spacing() const { return std::max({spacing.x, spacing.y, spacing.z}); }
 

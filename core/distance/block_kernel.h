@@ -50,7 +50,10 @@ class AccurateTriangles {
   template <class Make>
   [[nodiscard]] const AccurateTriangle& at(std::size_t place, const Make& make) {
     const std::size_t n = place % kMost;
-    if (places_[n] != place) triangles_[n].emplace(make()), places_[n] = place;
+    if (places_[n] != place) {
+      triangles_[n].emplace(make());
+      places_[n] = place;
+    }
     return *triangles_[n];
   }
 

@@ -1,5 +1,6 @@
 // Unsigned distances to the triangles of a mesh. A distance is off by less than 1e-12 of itself, or by less than 4 *
-// 2^-53 times the largest coordinate of the mesh or the point (docs/method.md, "Distances").
+// 2^-53 times the largest coordinate of the mesh or the point (docs/method.md, "Distances"), or 2^-1074. One beyond the
+// doubles is the largest double.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,7 @@ class DistanceEvaluator {
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, std::span<double> distances) const;
 
   // The same of the samples in the band, in blocks: memory and time are in proportion to their number, beside a little
-  // for each block of the lattice.
+  // for each block of the lattice; in proportion to the block where a sample is 2^55 sizes of the mesh away.
   void evaluate(const Lattice& lattice, const LatticeBlock& block, double band, DistanceBlocks& distances) const;
 
   // Builds the search tree. Without this call, the first evaluation does.

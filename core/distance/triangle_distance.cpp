@@ -80,7 +80,9 @@ double TriangleDistance::squared_to_edge(std::size_t i, const Vec3& p) const {
 double TriangleDistance::squared(const Vec3& p) const {
   const Vec3 from_a = p - corners_[0];
   const double v = dot(from_a, to_v_), w = dot(from_a, to_w_);
-  const bool beyond_ab = w<0.0, beyond_bc = v + w> 1.0, beyond_ca = v < 0.0;
+  const bool beyond_ab = w < 0.0;
+  const bool beyond_bc = v + w > 1.0;
+  const bool beyond_ca = v < 0.0;
   double least = std::numeric_limits<double>::infinity();
   if (!beyond_ab && !beyond_bc && !beyond_ca && shape_ != Shape::kFlat) {
     least = square(from_a - v * edges_[0] + w * edges_[2]);

@@ -30,22 +30,17 @@ double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
 
 double far_field_cost(const ScaledMesh& mesh) { return kFarFieldCost * mesh.far_field()->cost_on_lattice(); }
 
-double samples_of(const Lattice& lattice) {
-  double samples = 1.0;
-  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
-  return samples;
-}
-
 // Whether it is worth looking at what blocks would take.
 bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
   constexpr std::int64_t kMostAlong = 1 << 20;  // samples
   constexpr std::int64_t kLeastAlong = 8;
-  if (!mesh.has_blocks()) return false;
+  const Summation summation = mesh.options().summation;
+  if (!mesh.has_blocks() || (summation != Summation::kCheapest && summation != Summation::kBlocks)) return false;
   for (const std::int64_t count : lattice.counts) {
     if (count > kMostAlong || count < kLeastAlong) return false;
   }
-  const double samples = samples_of(lattice);
-  if (mesh.options().summation == Summation::kBlocks) return true;
+  const double samples = lattice.samples();
+  if (summation == Summation::kBlocks) return true;
   const bool left_to_far_field =
       samples < kSmallLattice && (!mesh.counts_crossings() || mesh.boundary().exterior_edges() >= kManyForSmall);
   return samples >= kLeastSamples && mesh.direct_cost() * samples >= kLeastCost && !left_to_far_field;
@@ -66,7 +61,7 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   }
   if (!mesh.blocks().are_sound) return std::nullopt;
   if (mesh.options().summation == Summation::kBlocks) return axes;
-  const double samples = samples_of(lattice), direct = mesh.direct_cost();
+  const double samples = lattice.samples(), direct = mesh.direct_cost();
   const bool far = takes_far_field_on_lattice(mesh);
   const double other = far ? std::min(direct, far_field_cost(mesh)) : direct;
   // The tree is there by now.
@@ -91,7 +86,7 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
   constexpr double kSample = 1.2e-8;  // beside its edges
   constexpr double kSource = 1e-5;    // in the tree
   if (mesh.is_closed()) return 0.0;
-  const double samples = samples_of(lattice), direct = (kSample + kEdge * mesh.direct_cost()) * samples;
+  const double samples = lattice.samples(), direct = (kSample + kEdge * mesh.direct_cost()) * samples;
   if (!by_far_field) return direct;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
     return kEdge *

@@ -76,7 +76,10 @@ class RowTiles {
   // Evaluates it, now or in finish() at last.
   void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings) {
     constexpr std::size_t kAlone = 8;  // samples
-    if (here_ == 0) here_ = std::min(left_, kTile), together_ = here_ >= kAlone;
+    if (here_ == 0) {
+      here_ = std::min(left_, kTile);
+      together_ = here_ >= kAlone;
+    }
     (together_ ? along_ : across_).add(index, scaled_query, crossings);
     --left_;
     if (--here_ == 0 && together_) along_.evaluate();

@@ -47,7 +47,10 @@ std::optional<Degrees> choose_degrees(const LatticeRows& rows, const SampleBox& 
       nodes *= static_cast<double>(degrees[axis] + 1);
     }
     const double cost = nodes + undecided(bend, change, samples);
-    if (cost < least) least = cost, best = degrees;
+    if (cost < least) {
+      least = cost;
+      best = degrees;
+    }
     if (nodes > least) break;
   }
   if (!(least < samples)) return std::nullopt;

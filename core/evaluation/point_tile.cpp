@@ -52,7 +52,11 @@ void PointTile::set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
     for (std::size_t i = 0; i < count_; ++i) samples_.add(queries_[i]);
     const std::span<const std::int64_t> n(n_.data(), count_);
     const std::span<double> w(w_.data(), count_);
-    sums ? mesh.set_values(*sums, samples_, n, w, settling_) : mesh.set_values(samples_, n, w, settling_);
+    if (sums) {
+      mesh.set_values(*sums, samples_, n, w, settling_);
+    } else {
+      mesh.set_values(samples_, n, w, settling_);
+    }
   }
   for (std::size_t i = 0; i < count_; ++i) values_[indices_[i]] = w_[i];
 }

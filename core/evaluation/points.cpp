@@ -48,8 +48,7 @@ class CoherentOrder {
 
   // Whether the mesh can take all of the points.
   [[nodiscard]] bool all_taken() const { return all_taken_; }
-  // Of points in blocks of points: whether any are outside, and the groups of the others.
-  [[nodiscard]] bool any_outside() const { return any_outside_; }
+  // Of points in blocks of points.
   [[nodiscard]] std::span<const std::uint32_t> groups() const { return groups_; }
 
   // Those of one bucket, in order.
@@ -67,13 +66,11 @@ class CoherentOrder {
     std::uint32_t count;  // of those there can be
     std::vector<std::uint32_t> of_points;
     bool all_taken = true;
-    bool any_outside = false;
     std::vector<std::uint32_t> groups;
   };
 
   CoherentOrder(std::span<const Vec3> points, const Keys& keys)
       : all_taken_(keys.all_taken),
-        any_outside_(keys.any_outside),
         groups_(keys.groups),
         keys_per_bucket_(keys.count / kBuckets),
         buckets_(points.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
@@ -89,7 +86,7 @@ class CoherentOrder {
   }
 
   static Keys keys_in_blocks(const ScaledMesh& mesh, const PointBlocks& blocks, std::span<const Vec3> points) {
-    Keys keys{(blocks.groups() / std::uint32_t{kBuckets} + 1) * std::uint32_t{kBuckets}, {}, true, false, {}};
+    Keys keys{(blocks.groups() / std::uint32_t{kBuckets} + 1) * std::uint32_t{kBuckets}, {}, true, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
     constexpr std::size_t kPointsPerTask = 4096;
@@ -104,7 +101,6 @@ class CoherentOrder {
     keys.all_taken = all_taken;
     std::vector<std::uint8_t> used(std::size_t{blocks.groups()} + 1);
     for (const std::uint32_t key : keys.of_points) used[key] = 1;
-    keys.any_outside = used[kOutside] != 0;
     for (std::uint32_t group = 0; group < blocks.groups(); ++group) {
       if (used[group + 1]) keys.groups.push_back(group);
     }
@@ -115,7 +111,7 @@ class CoherentOrder {
   static Keys keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
     const bool far = mesh.has_far_field();
     constexpr unsigned kBits = 7;  // of each axis
-    Keys keys{far ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, false, {}};
+    Keys keys{far ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
     const SpaceCurve curve(bounding_box(mesh.mesh()), kBits);
@@ -137,7 +133,7 @@ class CoherentOrder {
     return keys;
   }
 
-  bool all_taken_, any_outside_;
+  bool all_taken_;
   std::vector<std::uint32_t> groups_;
   std::size_t keys_per_bucket_;
   Buckets<SortedPoint> buckets_;
@@ -327,7 +323,6 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
   const CoherentOrder order(scaled, points);
   if (!order.all_taken()) meshes.unscaled().prepare_points();
   const BlocksOfPoints* const blocks = scaled.blocks_of_points();
-  if (blocks && order.any_outside()) (void)scaled.has_far_field();
   if (blocks) blocks->sums.prepare(order.groups());
   const BatchEvaluation batch(meshes, order);
   SharedTally total;

@@ -10,7 +10,7 @@
 namespace raycone {
 
 // Sets the sides of the samples of the boxes that rough sums tell from each threshold. Adds the others to `undecided`,
-// in runs. Precondition: samples.mesh().has_blocks().
+// in runs. Other samples of the boxes' hull may be set or added, too. Precondition: samples.mesh().has_blocks().
 void set_sides_roughly(const SideSamples& samples, std::span<const SampleBox> boxes, std::vector<SampleBox>& undecided);
 
 }  // namespace raycone

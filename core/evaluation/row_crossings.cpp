@@ -48,7 +48,7 @@ void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const Lat
   if (mesh.options().ray_engine == RayEngine::kScan) {
     scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
   } else {
-    mesh.prepare_points();  // not within the loop over rows, whose threads would wait for one another
+    (void)mesh.rays();  // not within the loop over rows, whose threads would wait for one another
     cast_rays(mesh, rows, sums);
   }
   sums.arrange();

@@ -98,10 +98,9 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<do
 
 // ---- The whole -------------------------------------------------------------------------------------------------
 
-// Sets the values of rows whose crossings are known; only the crossings where the rest is left to evaluate_blocks() or
-// add_far_field(). Returns how many samples lie on the surface.
+// Sets the values of rows whose crossings are known, by the direct sum. Returns how many samples lie on the surface.
 std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
-                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, bool crossings_only) {
+                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
   std::atomic<std::uint64_t> on_surface = 0;
   const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
   parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
@@ -109,7 +108,6 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
     for (std::size_t begin = first; begin < last; begin += rows_per_task) {
       const std::size_t end = std::min(begin + rows_per_task, last);
       for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
-      if (crossings_only) continue;
       if (!mesh.is_closed()) add_boundary_term(mesh, rows, begin, end, values);
       if (diagnostics) bound_errors(mesh, rows, begin, end, values, *diagnostics);
       if (done) done->fetch_add((end - begin) * rows.xs.size(), std::memory_order_relaxed);
@@ -129,7 +127,7 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
                      : mesh.counts_crossings() ? LatticeSums(rows.size(), samples)
                                                : LatticeSums(rows.size(), samples, {}, nullptr);
   collect_crossings(mesh, lattice, block, rows, sums);
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, nullptr, diagnostics, true);
+  const std::uint64_t on_surface = finish_all(rows, sums);
   LatticeSums of_caps(rows.size(), samples, LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.blocks().caps, rows, of_caps);
   const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
@@ -154,9 +152,12 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const La
   const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
   collect_crossings(mesh, lattice, block, rows, sums);
-  const bool in_bricks = takes_far_field_on_lattice(mesh);
-  const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics, in_bricks);
-  if (in_bricks) add_far_field(mesh, rows, values, done, diagnostics);
+  if (!takes_far_field_on_lattice(mesh)) {
+    const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics);
+    return {sums.ties(), on_surface};
+  }
+  const std::uint64_t on_surface = finish_all(rows, sums);
+  add_far_field(mesh, rows, values, done, diagnostics);
   return {sums.ties(), on_surface};
 }
 

@@ -174,15 +174,15 @@ bool ScaledMesh::has_far_field() const {
 
 // Where nobody knows how many samples certificates leave, they are counted: so many take about as long as the tree.
 // This may be asked within loops, where the tree is made by one thread: others do without it meanwhile.
-bool ScaledMesh::takes_far_field(std::size_t samples) const {
+const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   constexpr std::uint64_t kEnough = 4'000;
-  const bool forced = options_.summation == Summation::kFarField;
-  if (forced) return far_field() != nullptr;
-  if (options_.accuracy.sides_only && samples_.load(std::memory_order_relaxed) < kEnough) {
+  if (options_.summation == Summation::kFarField) return far_field();
+  if (!options_.accuracy.sides_only) return has_far_field() ? far_field() : nullptr;
+  if (samples_.load(std::memory_order_relaxed) < kEnough) {
     samples_.fetch_add(samples, std::memory_order_relaxed);
-    return false;
+    return nullptr;
   }
-  return options_.accuracy.sides_only ? far_field_without_waiting() != nullptr : has_far_field();
+  return far_field_without_waiting();
 }
 
 // Whether there is one or not, which is not known before it is built.
@@ -222,16 +222,17 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
-  if (!takes_far_field(values.size())) {
+  const FarField* const far = far_field_for(values.size());
+  if (!far) {
     set_direct_values(samples, crossings, values, settling);
     return;
   }
-  if (of_closed.empty() || !far_->counts_crossings()) {
-    far_->winding_numbers(samples, crossings, values);
+  if (of_closed.empty() || !far->counts_crossings()) {
+    far->winding_numbers(samples, crossings, values);
   } else {
-    far_->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, in another order
+    far->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, in another order
   }
-  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, far_->doubt());
+  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, far->doubt());
 }
 
 void ScaledMesh::set_values(PointBlocks::Sums& sums, SampleTile& samples, std::span<const std::int64_t> crossings,

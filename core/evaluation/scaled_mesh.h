@@ -117,10 +117,10 @@ class ScaledMesh {
   // Triangles that a far field sums, at most.
   [[nodiscard]] double most_sources() const;
 
-  // Whether blocks may be evaluated. Below this tolerance fits would round too much, as they would with sources so many
-  // that no value is sure to half a turn.
+  // Whether blocks may be evaluated: not with a tolerance too small for them, nor with sources so many that no value is
+  // sure to half a turn.
   [[nodiscard]] bool has_blocks() const {
-    return term_ && is_in_scale_ && options_.accuracy.tolerance >= 1e-11 &&
+    return term_ && is_in_scale_ && options_.accuracy.tolerance >= kLeastToleranceOfBlocks &&
            LatticeBlocks::doubt(tolerance(), most_sources()) <= Boundary::kMostDoubt;
   }
 
@@ -158,7 +158,8 @@ class ScaledMesh {
   [[nodiscard]] double doubt_of_far_field() const;
   // That of the accuracy, where it is of use: more would not be settled at half-integers.
   [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
-  [[nodiscard]] bool takes_far_field(std::size_t samples) const;
+  // What so many samples take; null for the direct sum.
+  [[nodiscard]] const FarField* far_field_for(std::size_t samples) const;
   [[nodiscard]] std::unique_ptr<const FarField> make_far_field() const;
   // None where another thread is making it.
   [[nodiscard]] const FarField* far_field_without_waiting() const;

@@ -7,8 +7,8 @@
 
 namespace raycone {
 
-// First by the direct sum, which took a seventieth of the time of what decides the rest: a large tolerance leaves many
-// values to settle. Values and sums are off by an eighth of a turn at most each, so that values tell the whole turns.
+// First by the direct sum: a large tolerance leaves many values to settle, and what decides the rest takes far longer.
+// Values and sums are off by an eighth of a turn at most each, so that values tell the whole turns.
 void Settler::evaluate() {
   const std::size_t count = samples_.count;
   if (count == 0) return;

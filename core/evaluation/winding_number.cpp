@@ -65,11 +65,9 @@ WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const
   constexpr double kMany = 1 << 17;  // sources
   const DefaultFloatingPoint guard;
   const ScaledMesh& mesh = implementation_->scaled();
-  double samples = 1.0;
-  for (const std::int64_t count : lattice.counts) samples *= static_cast<double>(count);
   const bool many = !mesh.is_closed() && mesh.most_sources() > kMany;
   const double once = kPerFace * static_cast<double>(mesh.mesh().triangles.size());
-  return {once + kPerSample * samples + boundary_seconds(mesh, lattice, !many), many};
+  return {once + kPerSample * lattice.samples() + boundary_seconds(mesh, lattice, !many), many};
 }
 
 Terms WindingNumberEvaluator::terms() const { return implementation_->terms(); }

@@ -52,7 +52,8 @@ enum class Summation {
 
 struct ExteriorEdge;
 
-inline constexpr double kLeastTolerance = 1e-12;  // turns; less counts as 0
+inline constexpr double kLeastTolerance = 1e-12;          // turns; less counts as 0
+inline constexpr double kLeastToleranceOfBlocks = 1e-11;  // below, fits would round too much
 
 // How well values are to be known.
 struct Accuracy {
@@ -112,9 +113,9 @@ class WindingNumberEvaluator {
 
   // Sets the winding numbers (turns) of a block of `lattice`, x fastest. Precondition: values.size() == block.size().
   // If `done` is given, it grows by one per finished sample while the call runs. If `diagnostics` are given, they are
-  // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Values
-  // depend neither on their number, nor on the block's extent, nor on the diagnostics. Const calls may run
-  // concurrently. Throws std::length_error for more than kMaxBlockSide samples along an axis.
+  // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Unless
+  // they are for sides only, values depend neither on their number, nor on the block's extent, nor on the diagnostics.
+  // Const calls may run concurrently. Throws std::length_error for more than kMaxBlockSide samples along an axis.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 

@@ -96,7 +96,15 @@ class RuleBlocks {
 
   // Whether finish() needs a tree where certificates leave boxes; it is made on all threads outside loops.
   [[nodiscard]] bool may_need_tree() const { return has_rough_sums_; }
-  void make_tree() const { (void)takes_rough_sums(); }
+  void make_tree() const {
+    if (takes_rough_sums()) (void)mesh_.far_field();
+  }
+  // Whether certificates will leave most to rough sums: the mesh is boundary all over.
+  [[nodiscard]] bool expects_rough_sums() const {
+    constexpr double kAllOver = 0.1;  // exterior edges for each face
+    return has_rough_sums_ && static_cast<double>(mesh_.boundary().exterior_edges()) >
+                                  kAllOver * static_cast<double>(mesh_.mesh().triangles.size());
+  }
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
@@ -294,14 +302,17 @@ void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule
     blocks.finish(std::move(left));
     if (done) done->fetch_add(count, std::memory_order_relaxed);
   };
+  // Where certificates are hardly ever found, they have to show first that they are.
+  const bool in_vain = blocks.expects_rough_sums();
   // In rounds, each of which knows all of those before it, so that the work is much the same for any number of threads.
   // They stay small until one leaves something to rough sums: what it leaves waits for their tree.
   constexpr std::size_t kFirstRound = 64;
-  bool is_ready = !blocks.may_need_tree();
+  if (in_vain) blocks.make_tree();
+  bool is_ready = in_vain || !blocks.may_need_tree();
   for (std::size_t first = 0, count = kFirstRound; first < blocks.size();
        first += count, count = is_ready ? first : count) {
     count = std::min(count, blocks.size() - first);
-    const bool by_certificates = blocks.are_worth_it();
+    const bool by_certificates = first == 0 ? !in_vain : blocks.are_worth_it();
     if (is_ready) {
       parallel_for_each(count, [&](std::size_t n) { finish(blocks.certify(first + n, by_certificates)); });
       continue;

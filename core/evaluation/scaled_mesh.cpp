@@ -172,13 +172,15 @@ bool ScaledMesh::has_far_field() const {
          far_field() != nullptr;
 }
 
-// Where nobody knows how many samples certificates leave, they are counted: so many take about as long as the tree.
+// Where nobody knows how many samples certificates leave, they are counted until there is a tree: so many take about as
+// long as that.
 // This may be asked within loops, where the tree is made by one thread: others do without it meanwhile.
 const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   constexpr std::uint64_t kEnough = 4'000;
   if (options_.summation == Summation::kFarField) return far_field();
   if (!options_.accuracy.sides_only) return has_far_field() ? far_field() : nullptr;
-  if (samples_.load(std::memory_order_relaxed) < kEnough) {
+  const bool is_known = far_is_known_.load(std::memory_order_acquire);
+  if (!is_known && samples_.load(std::memory_order_relaxed) < kEnough) {
     samples_.fetch_add(samples, std::memory_order_relaxed);
     return nullptr;
   }

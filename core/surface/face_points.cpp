@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include "core/machine/first_touch.h"
@@ -10,7 +11,8 @@
 namespace raycone {
 namespace {
 
-constexpr double kVoxels = 1e-9, kDouble = 0x1p-50;  // of plane_tolerance()
+// Of plane_tolerance(). Text often has six digits.
+constexpr double kVoxels = 1e-9, kDouble = 0x1p-50, kSingle = 0x1p-22, kText = 0x1p-20;
 
 constexpr double kBorder = 16.0;  // margins: next to the border a point of an edge is as good, and there are no needles
 
@@ -146,22 +148,39 @@ double fine_tolerance(const Lattice& lattice) {
 
 double largest_margin(const SurfaceCells& cells, double margin) { return margin * cells.lattice().largest_spacing(); }
 
+bool is_single(double x) { return std::abs(x) < 0x1p127 && static_cast<double>(static_cast<float>(x)) == x; }
+
+// As text has it of numbers in single precision, or of others that it rounds.
+bool has_few_digits(double x) {
+  constexpr int kDigits = 9;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.begin(), text.end(), x, std::chars_format::scientific, kDigits - 1).ptr;
+  double same = 0.0;
+  std::from_chars(text.begin(), end, same);
+  return same == x;
+}
+
+// Of what coordinates are rounded to, relative to the largest one: what they look like who are `so_far`, and x.
+double least_rounding(double x, double so_far) {
+  if (so_far == kDouble || (so_far == kSingle && is_single(x))) return so_far;
+  return is_single(x) || has_few_digits(x) ? kText : kDouble;
+}
+
 }  // namespace
 
 double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
-  double largest = 0.0;
-  bool single = true;
+  double largest = 0.0, rounding = kSingle;
+  std::vector<bool> is_seen(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t corner : t) {
+      if (is_seen[corner]) continue;
+      is_seen[corner] = true;
       const Vec3& p = mesh.vertices[corner];
-      for (int axis = 0; axis < 3; ++axis) {
-        largest = std::max(largest, std::abs(p[axis]));
-        single = single && std::abs(p[axis]) < 0x1p127 && static_cast<double>(static_cast<float>(p[axis])) == p[axis];
-      }
+      largest = std::max(largest, largest_coordinate(p));
+      for (int axis = 0; axis < 3; ++axis) rounding = least_rounding(p[axis], rounding);
     }
   }
-  constexpr double kSingle = 0x1p-22;
-  return std::max(kVoxels * lattice.least_spacing(), (single ? kSingle : kDouble) * largest);
+  return std::max(kVoxels * lattice.least_spacing(), rounding * largest);
 }
 
 std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell, std::size_t face) {

@@ -167,8 +167,8 @@ class SurfaceMaker {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     const Lattice& lattice = inside_.lattice();
     return checked_sharpen(surface, mesh_, normals_, distance_, lattice,
-                           {kOff * margins.inner * lattice.largest_spacing(), kReach * lattice.least_spacing(),
-                            options_.single_precision, fewer});
+                           {std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
+                            kReach * lattice.least_spacing(), options_.single_precision, fewer});
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.

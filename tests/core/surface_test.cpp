@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <iterator>
@@ -590,6 +591,30 @@ TEST(Surface, KeepsEdgesOfTurnedParts) {
     EXPECT_LE(largest_distance_of(surface.mesh.vertices, mesh), 1e-8 * lattice.spacing.x);
     const double volume = mesh_statistics(mesh).signed_volume.value_or(0.0);
     EXPECT_NEAR(mesh_statistics(surface.mesh).signed_volume.value_or(0.0), volume, 1e-8 * volume);
+  }
+}
+
+// As floats are, or six or seven digits of text: triangles of one plane are no more in one plane then.
+TEST(Surface, KeepsEdgesOfPartsWithRoundedCoordinates) {
+  const auto as_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  const auto as_text = [](const char* format) {
+    return [format](double x) {
+      std::array<char, 32> text{};
+      std::snprintf(text.data(), text.size(), format, x);
+      return std::strtod(text.data(), nullptr);
+    };
+  };
+  const std::vector<std::function<double(double)>> roundings{as_float, as_text("%.6e"), as_text("%.6f"), as_text("%g")};
+  for (const auto& rounded : roundings) {
+    for (const TriangleMesh& shape : {test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}), wedge()}) {
+      TriangleMesh mesh = rotated(shape);
+      for (Vec3& v : mesh.vertices) v = {rounded(v.x), rounded(v.y), rounded(v.z)};
+      for (const int side : {17, 24, 33}) {
+        const auto [surface, lattice] = surface_of(mesh, side);
+        EXPECT_LT(largest_distance_of(points_of_edges(mesh), surface.mesh), 1e-4 * lattice.spacing.x) << side;
+        EXPECT_LT(largest_distance_of(surface.mesh.vertices, mesh), 1e-4 * lattice.spacing.x) << side;
+      }
+    }
   }
 }
 

@@ -29,7 +29,7 @@ int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real r
   const Real difference = w - static_cast<Real>(critical);
   const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
   const Real bound = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
-  const Real error = bound > Real(kIndistinguishable) ? bound : Real(kIndistinguishable);
+  const Real error = bound <= Real(kIndistinguishable) ? Real(kIndistinguishable) : bound;  // NaN tells nothing
   return static_cast<int>(difference > error) - static_cast<int>(difference < -error);
 }
 

@@ -26,7 +26,7 @@ constexpr double kBoundError = 0x1p-20;
 constexpr double kAreaError = 1e-14;
 
 constexpr double kLeastDerivative = 0x1p-700;  // less has lost bits, or loses them in what follows
-constexpr double kFar = 4.0;                   // clusters act as one from twice their size on
+constexpr double kFar = 4.0;                   // clusters act as one from twice their size on, squared
 
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
@@ -40,14 +40,32 @@ double square_of_size(const Box& box) {
 
 Box widened(const Box& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
 
-// Cuts abc at the middle of its longest side, and the parts, until the diagonals of their boxes are `size` at most, or
-// so often. visit(box, cuts) for each of the parts, all of which have had that many cuts.
+// Slices abc, whose side ab is short, across: visit(box, part of the area) for each of so many.
+template <class Visit>
+void slice(const Vec3& a, const Vec3& b, const Vec3& c, double count, double part, const Visit& visit) {
+  Box last{c, c};
+  for (double i = 1.0; i <= count; ++i) {
+    const double to = i / count;
+    const Box here = i == count ? box_of(a, b) : box_of(c + to * (a - c), c + to * (b - c));
+    visit(hull(last, here), part * (2.0 * i - 1.0) / (count * count));
+    last = here;
+  }
+}
+
+// Cuts abc into parts whose boxes have diagonals of about `size` at most, or 2^kMostCuts of them: at the middle of its
+// longest side, and the parts likewise; across where it is slender, as halves of long sides would leave others as long.
+// visit(box, part of the area) for each.
 template <class Visit>
 void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& visit, int cuts = 0) {
   const double ab = square_of_size(box_of(a, b)), bc = square_of_size(box_of(b, c)), ca = square_of_size(box_of(c, a));
-  if (cuts == kMostCuts || !(std::max({ab, bc, ca}) > size * size)) return visit(box_of(a, b, c), cuts);
+  const double part = std::ldexp(1.0, -cuts), longest = std::max({ab, bc, ca});
+  if (cuts == kMostCuts || !(longest > size * size)) return visit(box_of(a, b, c), part);
   if (bc > ab && bc >= ca) return cut(b, c, a, size, visit, cuts);
   if (ca > ab) return cut(c, a, b, size, visit, cuts);
+  const double most = std::ldexp(1.0, kMostCuts - cuts), slices = std::min(std::ceil(std::sqrt(longest) / size), most);
+  if (std::min(bc, ca) <= size * size / 4) {
+    return bc <= ca ? slice(b, c, a, slices, part, visit) : slice(c, a, b, slices, part, visit);
+  }
   const Vec3 middle = 0.5 * a + 0.5 * b;
   cut(a, middle, c, size, visit, cuts + 1);
   cut(middle, b, c, size, visit, cuts + 1);
@@ -103,8 +121,8 @@ void ChangeBound::add_narrow(const Caps& caps) {
     const auto [a, b, c] = corners(caps.mesh, n);
     const Vec3 normal = cross(b - a, c - a);
     const double twice_area = safe_norm(normal) + kAreaError * square_of_size(box_of(a, b, c));
-    cut(a, b, c, piece_, [this, of_cap = twice_area / (4 * std::numbers::pi)](const Box& box, int cuts) {
-      sources_.push_back({widened(box, place_error_), 0.0, std::ldexp(of_cap, -cuts), {}});
+    cut(a, b, c, piece_, [this, of_cap = twice_area / (4 * std::numbers::pi)](const Box& box, double part) {
+      sources_.push_back({widened(box, place_error_), 0.0, of_cap * part, {}});
     });
   }
 }
@@ -112,7 +130,7 @@ void ChangeBound::add_narrow(const Caps& caps) {
 void ChangeBound::add_wide(const Caps& caps) {
   for (std::size_t n = caps.narrow; n < caps.mesh.triangles.size(); ++n) {
     const auto [a, b, c] = corners(caps.mesh, n);
-    cut(a, b, c, 2 * piece_, [&, &a = a, &b = b, &c = c](const Box& box, int) {
+    cut(a, b, c, 2 * piece_, [&, &a = a, &b = b, &c = c](const Box& box, double) {
       wide_caps_.push_back(FlatPiece::of_triangle(a, b, c, widened(box, place_error_)));
     });
   }

@@ -54,7 +54,7 @@ Form normal_form(const QuadVertex& a, const QuadVertex& b, const QuadVec3& n) {
   const Quad abs_z = b.norm * absolute(a.p.z) + a.norm * absolute(b.p.z);
   const Quad square = n.x * n.x + n.y * n.y + n.z * n.z;
   return {square - (n.y * g_z - n.z * g_y), k * n.x,
-          square + absolute(n.y) * abs_z + absolute(n.z) * abs_y + absolute(k * n.x)};
+          square + absolute(n.y) * abs_z + absolute(n.z) * abs_y + (a.norm * b.norm + absolute(dot)) * absolute(n.x)};
 }
 
 }  // namespace

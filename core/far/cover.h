@@ -86,6 +86,8 @@ class CoverSums {
     corners_.add_group(triangles_.size() - small);
   }
 
+  CoverSums(const CoverSums&) = delete;  // corners_ refers to triangles_
+
   // Without the crossings of the triangles: these have the boundary `steps`, which is summed in their place.
   CoverSums(const SourceTree& tree, const Cover& cover, std::span<const ChainStep> steps, const CoverKernels& kernels)
       : tree_(tree), cover_(cover), kernels_(kernels), steps_(steps) {}

@@ -181,9 +181,13 @@ std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& b
 }
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.
-double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) {
+double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) const {
   constexpr double kLeastHalf = 0x1p-400;  // squares of less lose bits, as areas of sources of that size do
-  if (cube.half < kLeastHalf) return std::numeric_limits<double>::infinity();
+  // Nodes of the fit are coordinates, which rounding moves by a unit in the last place.
+  const double most_moved = std::max(0x1p-36, blocks_.tolerance_ / 128);  // half sides
+  if (!(cube.half >= kLeastHalf && most_moved * cube.half >= 0x1p-53 * largest_coordinate(cube.centre))) {
+    return std::numeric_limits<double>::infinity();
+  }
   double distance = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     distance =

@@ -113,7 +113,7 @@ class LatticeBlocksWalk {
   [[nodiscard]] Cover far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const;
   [[nodiscard]] std::vector<std::uint32_t> far_triangles(const SampleBlock& block,
                                                          std::span<const std::uint32_t> triangles) const;
-  static double error_of(const TriangleExtent& source, const Cube& cube);
+  [[nodiscard]] double error_of(const TriangleExtent& source, const Cube& cube) const;
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/boundary/near_edge.h"
+#include "core/exact/quad.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -75,6 +76,20 @@ TEST(NearEdgeFactor, KeepsItsDigitsDownToTheSmallestDistances) {
       EXPECT_NEAR(argument(distance), limit, 1e-15) << distance;
     }
     EXPECT_NEAR(argument(1e-12), limit, 1e-11);  // the first-order term of the distance
+  }
+}
+
+// Of an edge that is level with the query, the argument is half the angle between the directions to its ends, where
+// |a||b| and the product of both cancel.
+TEST(NearEdgeFactor, IsWithinItsErrorWhereAnEdgeIsLevelAndSeenAsShort) {
+  for (const double angle : {1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+    const Vec3 a{0, 1.23, 1.23 * angle}, b{0, 1.69, -0.78 * angle};
+    const NearEdgeFactor<Quad> f = near_edge_factor<Quad>(a, b, {0, 0, 0});
+    const Quad tangent = (Quad(a.y) * b.z - Quad(a.z) * b.y) / (Quad(a.y) * b.y + Quad(a.z) * b.z);
+    const Quad square = tangent * tangent;
+    const Quad of_half = tangent / 2 * (1 - square / 4 + square * square / 8);  // what follows is below 1e-36 of it
+    EXPECT_LE(absolute(f.factor.im / f.factor.re - of_half), f.error) << angle;
+    EXPECT_LT(f.error, Quad(1e-31));
   }
 }
 

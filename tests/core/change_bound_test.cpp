@@ -22,7 +22,8 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
   std::array<int, kChangeOrders> tried{};
   std::array<double, kChangeOrders> largest{};  // part of the bound that was reached
   for (int i = 0; i < 60; ++i) {
-    const TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
+    TriangleMesh mesh = i % 2 ? weld(test::soup(random, 5), {}) : test::open_box();
+    if (i % 6 == 1) mesh = test::moved(mesh, {1, 0.01, 0.01}, {0, 0.5, 0.5});  // slender ones
     const ChangeBound bound(make_caps(Boundary(mesh), i % 4 < 2 ? 0.0 : 100.0));
     for (int j = 0; j < 20; ++j) {
       const Vec3 a = test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}});
@@ -55,6 +56,15 @@ TEST(ChangeBound, HoldsBetweenAllPlaces) {
     EXPECT_GT(tried[order - 1], 50) << "order " << order;
     EXPECT_GT(largest[order - 1], 0.02) << "the bound of order " << order << " is far off";
   }
+}
+
+// Its halves are as slender, and two of three sides of theirs as long as before: halved again and again, they would be
+// some hundred.
+TEST(ChangeBound, CutsSlenderCapsIntoFewPieces) {
+  const TriangleMesh hair{{{0, 0, 0}, {1, 1, 0}, {1, 1, 1e-4}}, {{0, 1, 2}}};
+  const ChangeBound bound(make_caps(Boundary(hair), 0.0));
+  EXPECT_GT(bound.wide_caps().size(), 16U);
+  EXPECT_LT(bound.wide_caps().size(), 80U);
 }
 
 // The four edges of length 1 around an opening.

@@ -386,6 +386,31 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
   }
 }
 
+// Coordinates there tell nodes of fits apart as roughly as samples.
+TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceFarFromTheOrigin) {
+  for (const double offset : {0x1p20, 0x1p26, 0x1p32}) {
+    TriangleMesh mesh = sieve();
+    for (Vec3& v : mesh.vertices) {
+      for (int axis = 0; axis < 3; ++axis) v[axis] += offset;
+    }
+    Lattice lattice = cube_lattice(64);
+    lattice.origin = lattice.origin + Vec3{offset, offset, offset};
+    std::vector<double> direct(64 * 64 * 4), values(direct.size());
+    const LatticeBlock layers{{0, 0, 30}, {64, 64, 4}};
+    evaluator(mesh, 0.0).evaluate(lattice, layers, direct);
+    for (const double tolerance : {1e-4, 1e-10, 1e-11}) {
+      const WindingNumberEvaluator coarse = evaluator(mesh, tolerance);
+      coarse.evaluate(lattice, layers, values);
+      double largest = 0.0;
+      for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+      EXPECT_LT(largest, tolerance) << offset;
+      if (tolerance == 1e-4) {
+        EXPECT_GE(coarse.terms().far, values.size()) << "no polynomials: nothing was tested";
+      }
+    }
+  }
+}
+
 TEST(LatticeBlocksTest, SamplesAreDoneOnce) {
   const TriangleMesh mesh = sieve();
   const Lattice lattice = cube_lattice(24);

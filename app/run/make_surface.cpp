@@ -60,7 +60,8 @@ std::vector<Warning> warnings_about(const FinishedSurface& closed, const Surface
   if (closed.bound_too_small) {
     warnings.push_back({"not-simplified",
                         "--simplify left all faces: the distance is within what rounding of vertices may move, "
-                        "some billionths of a voxel, or more far from the origin and in single precision"});
+                        "some billionths of a voxel, or more far from the origin, in single precision, and where "
+                        "the mesh's coordinates are rounded"});
   } else if (!closed.simplified) {
     warnings.push_back({"not-simplified", "--simplify left all faces: " + std::to_string(options.rounds) +
                                               " tries made faces that intersect, expected a smaller distance"});

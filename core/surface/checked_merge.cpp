@@ -62,35 +62,37 @@ bool is_near(const TriangleMesh& mesh, const Triangle& t, const Lattice& lattice
 class CheckedMerger {
  public:
   CheckedMerger(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside, double margin,
-                bool single_precision, const std::function<bool()>& is_right)
+                double tolerance, bool single_precision, const std::function<bool()>& is_right)
       : surface_(surface),
         input_(input),
         inside_(inside),
         margin_(margin),
+        tolerance_(tolerance),
         single_precision_(single_precision),
         is_right_(is_right) {}
 
-  // Points of one plane are up to two margins apart across it where they are kept off nodes. If faces that are merged
-  // as well as that have faults, they are merged where they agree better. None where faults are left even so.
+  // Points of one plane are as far apart across it as the input's coordinates are rounded, and up to two margins where
+  // they are kept off nodes. If faces that are merged as well as that have faults, they are merged where they agree
+  // better. None where faults are left even so.
   std::optional<SurfaceMesh> merge(bool once) {
-    constexpr double kWell = 2.5, kBetter = 0.25;
-    static_assert(kNeedle + kWell <= kMostMerging);
-    std::optional<SurfaceMesh> result = merged_within(kWell, false);
-    if (!result && !is_wrong_ && !once) result = merged_within(kBetter, true);
+    constexpr double kBetter = 0.25;
+    const double unit = margin_ * inside_.lattice().least_spacing();
+    std::optional<SurfaceMesh> result;
+    if (tolerance_ > kNearPlane * unit) result = merged_within(tolerance_, false);
+    if (!result && !is_wrong_) result = merged_within(kNearPlane * unit, false);
+    if (!result && !is_wrong_ && !once) result = merged_within(kBetter * unit, true);
     return result;
   }
 
  private:
-  static constexpr double kNeedle = 16.0;  // margins: how far apart points at one node are at most
-
   // What merging spoils is not merged; `all`: nor is what puts more than a few nodes on the wrong side, as happens
-  // where a plane of the mesh is one of the lattice, or what only the last resort mends. `most` in margins.
+  // where a plane of the mesh is one of the lattice, or what only the last resort mends. `most`: world units.
   std::optional<SurfaceMesh> merged_within(double most, bool all) {
     const std::vector<Vec3>& vertices = surface_.mesh.vertices;
     const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
     const double unit = margin_ * inside_.lattice().least_spacing();
     kept_.assign(vertices.size(), false);
-    PlaneMerger merger(surface_, input_, inside_.lattice(), {most * unit, kNeedle * unit});
+    PlaneMerger merger(surface_, input_, inside_.lattice(), {most, kNearCorner * unit});
     RepeatedCheck check(inside_, vertices.size());
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
@@ -138,7 +140,7 @@ class CheckedMerger {
   }
 
   void move_to_corners(TriangleMesh& merged, double unit) const {
-    raycone::move_to_corners(input_, inside_.lattice(), kNeedle * unit, merged.vertices);
+    raycone::move_to_corners(input_, inside_.lattice(), kNearCorner * unit, merged.vertices);
     if (!single_precision_) return;
     for (Vec3& p : merged.vertices) p = rounded_to_float(p);
   }
@@ -233,7 +235,7 @@ class CheckedMerger {
   const SurfaceMesh& surface_;
   const TriangleMesh& input_;
   const NodeSet& inside_;
-  double margin_;
+  double margin_, tolerance_;
   bool single_precision_;
   const std::function<bool()>& is_right_;
   bool is_wrong_ = false;  // as far as is known
@@ -243,9 +245,9 @@ class CheckedMerger {
 }  // namespace
 
 std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
-                                         double margin, bool single_precision, const std::function<bool()>& is_right,
-                                         bool once) {
-  return CheckedMerger(surface, input, inside, margin, single_precision, is_right).merge(once);
+                                         double margin, double tolerance, bool single_precision,
+                                         const std::function<bool()>& is_right, bool once) {
+  return CheckedMerger(surface, input, inside, margin, tolerance, single_precision, is_right).merge(once);
 }
 
 }  // namespace raycone

@@ -1,6 +1,7 @@
 // Fewer triangles for the same surface, as far as that does no harm.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -10,17 +11,25 @@
 
 namespace raycone {
 
-// How far that moves points of a surface at most: to corners of the input, and within planes. In margins, as below.
-inline constexpr double kMostMerging = 16.0 + 2.5;
+// How near points of a surface come to count as one with a corner of the input, or as in one plane: margins.
+inline constexpr double kNearCorner = 16.0, kNearPlane = 2.5;
+
+// How far that moves points of a surface at most: to corners, and within planes. `margin` as a length; `tolerance`: of
+// planes, as below.
+[[nodiscard]] inline double most_merging(double margin, double tolerance) {
+  return kNearCorner * margin + std::max(kNearPlane * margin, tolerance);
+}
 
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
 // of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
 // fewer, vertices next to the input's are moved there. None where all that did not help. `input`: the mesh that it is
-// of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `single_precision`: vertices are
-// floats, and stay so; `is_right`: whether the surface has no faults before, asked where that matters; `once`: not
-// again within less, as who calls can make another surface. The same for any number of threads.
+// of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `tolerance`: how far apart
+// numbers of one plane may be, world units (plane_tolerance()); `single_precision`: vertices are floats, and stay so;
+// `is_right`: whether the surface has no faults before, asked where that matters; `once`: not again within less, as who
+// calls can make another surface. The same for any number of threads.
 [[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
-                                                       const NodeSet& inside, double margin, bool single_precision,
-                                                       const std::function<bool()>& is_right, bool once);
+                                                       const NodeSet& inside, double margin, double tolerance,
+                                                       bool single_precision, const std::function<bool()>& is_right,
+                                                       bool once);
 
 }  // namespace raycone

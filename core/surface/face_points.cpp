@@ -11,7 +11,7 @@
 namespace raycone {
 namespace {
 
-// Of plane_tolerance(). Text often has six digits.
+// Of plane_tolerance(). Text often has seven digits, or six behind the point.
 constexpr double kVoxels = 1e-9, kDouble = 0x1p-50, kSingle = 0x1p-22, kText = 0x1p-20;
 
 constexpr double kBorder = 16.0;  // margins: next to the border a point of an edge is as good, and there are no needles

@@ -156,8 +156,9 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
-    std::optional<SurfaceMesh> result = checked_merge(surface, mesh_, inside_, margins.inner, options_.single_precision,
-                                                      is_right_unmerged, kind == ContourCells::kPolygons);
+    std::optional<SurfaceMesh> result =
+        checked_merge(surface, mesh_, inside_, margins.inner, tolerance_, options_.single_precision, is_right_unmerged,
+                      kind == ContourCells::kPolygons);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
@@ -179,7 +180,7 @@ class SurfaceMaker {
   // What is left of `simplify` for pulls, as merging has moved points already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargin = 1.0 - 1e-6;
-    return kMargin * options_.simplify - kMostMerging * margins.inner * inside_.lattice().largest_spacing();
+    return kMargin * options_.simplify - most_merging(margins.inner * inside_.lattice().largest_spacing(), tolerance_);
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.

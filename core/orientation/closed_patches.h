@@ -19,13 +19,12 @@ struct ClosedPatch {
 
 struct ClosedTurns {
   std::vector<int> turn;                 // per patch 1 where it stays as its surface is, -1 where it is reversed
-  std::vector<std::uint32_t> outermost;  // per patch the one outside all others that it lies in; maybe itself
+  std::vector<std::uint32_t> outermost;  // per patch the one with none around it that it lies in; maybe itself
 };
 
 // Outward outside all others, and within another one as orient() says. Outward is what makes the volume positive; where
-// it is 0, the first face by coordinates decides. The innermost of those around a patch is the one that most others are
-// around; of several, the one with the first face by coordinates. Exact. Uses the threads that ThreadLimit allows;
-// needs DefaultFloatingPoint.
+// it is 0, the first face by coordinates decides. nesting_tree() tells the innermost of those around a patch. Exact.
+// Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
 [[nodiscard]] ClosedTurns turn_closed_patches(const std::vector<ClosedPatch>& patches,
                                               const std::vector<Vec3>& vertices);
 

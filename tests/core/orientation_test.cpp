@@ -16,6 +16,8 @@
 #include "core/mesh/mesh_statistics.h"
 #include "core/mesh/weld.h"
 #include "core/orientation/canonical_face.h"
+#include "core/orientation/nesting.h"
+#include "core/orientation/nesting_tree.h"
 #include "core/orientation/orient.h"
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
@@ -180,6 +182,68 @@ TEST(Orient, CountsACavityThatTouchesItsWallAsACavity) {
   const TriangleMesh oriented = automatic(with_faces_reversed(joined(box, octahedron), random, 0.5));
   EXPECT_EQ(winding(oriented, {0.05, 0.03, 0.02}), 0);
   EXPECT_EQ(winding(oriented, {0.9, 0.9, 0.8}), 1);
+}
+
+// A box with a well of square section from its top down to z = 4, around x = y = 5.
+TriangleMesh box_with_a_well(double lower, double upper, double half_width) {
+  TriangleMesh mesh;
+  const auto add_square = [&](double from, double to, double z) {
+    for (const Vec3& p : {Vec3{from, from, z}, Vec3{to, from, z}, Vec3{to, to, z}, Vec3{from, to, z}})
+      mesh.vertices.push_back(p);
+  };
+  add_square(lower, upper, lower);
+  add_square(lower, upper, upper);
+  add_square(5 - half_width, 5 + half_width, upper);
+  add_square(5 - half_width, 5 + half_width, 4);
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {12, 13, 14}, {12, 14, 15}};
+  for (std::uint32_t ring = 0; ring < 12; ring += 4) {  // from one square to the next
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t a = ring + i, b = ring + (i + 1) % 4;
+      mesh.triangles.push_back({a, b, b + 4});
+      mesh.triangles.push_back({a, b + 4, a + 4});
+    }
+  }
+  return mesh;
+}
+
+// The smallest box lies within the middle one, and that within the largest, but the smallest one in the well.
+TEST(Orient, KeepsACavityThatTheNextButOneIsNotAround) {
+  const TriangleMesh well = box_with_a_well(0, 10, 0.5), middle = box_mesh({3, 3, 3}, {7, 7, 7});
+  const TriangleMesh mesh = joined(joined(well, middle), test::reversed(box_mesh({4.9, 4.9, 4.9}, {5.1, 5.1, 5.1})));
+  EXPECT_EQ(orient(mesh, Orient::kAuto).counts.flipped_faces, 0U);
+  EXPECT_EQ(winding(automatic(test::reversed(mesh)), {5.01, 5.02, 4.98}), 0);
+}
+
+// Two with wells are around the box in which the other two are, but around none of these.
+TEST(Orient, AlternatesWithTheInnermostThoughFewAreAroundIt) {
+  const TriangleMesh wells = joined(box_with_a_well(-1, 11, 0.4), test::reversed(box_with_a_well(0, 10, 0.5)));
+  const TriangleMesh in_wells =
+      joined(test::reversed(box_mesh({4.8, 4.8, 4.8}, {5.2, 5.2, 5.2})), box_mesh({4.9, 4.9, 4.9}, {5.1, 5.1, 5.1}));
+  expect_restored(joined(joined(wells, box_mesh({3, 3, 3}, {7, 7, 7})), in_wells));
+}
+
+// Surfaces of one box: 1 in 2, 2 in 3, 3 in 1; 0 around all of them; 4 and 5 in 3, and in each other.
+TEST(NestingTree, EndsCirclesWhateverTheOrder) {
+  const std::vector<std::vector<std::uint32_t>> around{{}, {0, 2}, {0, 3}, {0, 1}, {0, 3, 5}, {0, 3, 4}};
+  const std::vector<std::uint32_t> expected{0, 0, 3, 1, 3, 3};
+  std::vector<Vec3> vertices{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0.1, 0.1, 0.1}};
+  for (double x = 0; x < 0.95; x += 0.1) vertices.push_back({x, 0.5, 0.5});
+  const std::vector<Triangle> faces{{0, 2, 5}, {0, 1, 6}, {0, 1, 7}, {0, 1, 8}, {3, 1, 9}, {3, 1, 10}};
+  std::vector<std::uint32_t> number{0, 1, 2, 3, 4, 5};
+  do {
+    std::vector<ClosedSurface> surfaces(6);
+    std::vector<const ClosedSurface*> pointers(6);
+    std::vector<std::vector<std::uint32_t>> renumbered(6);
+    for (std::size_t i = 0; i < 6; ++i) {
+      surfaces[i].faces = {faces[i]};
+      pointers[number[i]] = &surfaces[i];
+      for (const std::uint32_t outer : around[i]) renumbered[number[i]].push_back(number[outer]);
+      std::ranges::sort(renumbered[number[i]]);
+    }
+    const NestingTree tree = nesting_tree(renumbered, pointers, vertices);
+    ASSERT_EQ(tree.order.size(), 6U);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(tree.parent[number[i]], number[expected[i]]) << i;
+  } while (std::ranges::next_permutation(number).found);
 }
 
 TEST(Orient, DecidesTheVolumeExactly) {

@@ -501,8 +501,11 @@ MUTANTS = [
     Mutant("cavity_without_its_content", "what lies in a patch is turned with it", [
         ("core/orientation/open_bodies.cpp", "if (reversed[turns.outermost[i]])", "if (reversed[i])")]),
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
-        ("core/orientation/closed_patches.cpp", "*std::max_element(outer",
-         "*std::min_element(outer")]),
+        ("core/orientation/nesting_tree.cpp", "depth_[a] > depth_[b]", "depth_[a] < depth_[b]")]),
+    Mutant("nesting_of_mutual_patches", "patches that are around each other are not within each other", [
+        ("core/orientation/nesting_tree.cpp", "mutual[i].push_back(j);", "continue;")]),
+    Mutant("nesting_circles_by_order", "where circles of patches begin depends on coordinates only", [
+        ("core/orientation/nesting_tree.cpp", "places_.is_before(a, b);", "a < b;")]),
 
     # --- Surfaces ---
     Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [

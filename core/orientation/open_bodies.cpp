@@ -31,9 +31,14 @@ std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& pa
     all[n].samples = sample_surface(patches[all[n].number].surface.faces, vertices, each);
   });
   std::erase_if(all, [](const OutermostPatch& patch) { return patch.samples.empty(); });
-  std::ranges::sort(all, [](const OutermostPatch& a, const OutermostPatch& b) {
+  const auto first_face = [&](const OutermostPatch& patch) {
+    return first_canonical_face(patches[patch.number].surface.faces, vertices.exact);
+  };
+  std::ranges::sort(all, [&](const OutermostPatch& a, const OutermostPatch& b) {
     const SurfaceSample &first = a.samples.front(), &other = b.samples.front();
-    return first.weight != other.weight ? first.weight > other.weight : first.face < other.face;
+    if (first.weight != other.weight) return first.weight > other.weight;
+    if (const auto order = first.face <=> other.face; order != 0) return order < 0;
+    return first_face(a) < first_face(b);
   });
   if (all.size() > kMostPatches) all.resize(kMostPatches);
   return all;

@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kFewSurfaces = 1500;
 constexpr std::size_t kLargestSurfaces = 48;
 
-// Turned so that its first face runs around its corners by rising coordinates.
+// Turned so that its first face runs around its corners by rising coordinates; by exact ones, as all of it may be in
+// one place once it is moved.
 struct TurningSurface {
   const std::vector<Triangle>* faces;
   std::size_t number;   // among the surfaces given
@@ -65,7 +66,8 @@ class OpenSurfaceTurner::Search {
       for (std::size_t i = begin; i < end; ++i) {
         const std::vector<Triangle>& faces = surfaces[i].faces;
         TurningSurface& turning = surfaces_[i];
-        turning = {&faces, i, first_canonical_face(faces, vertices_), sample_surface(faces, numbered_, each), 0.0};
+        turning = {&faces, i, first_canonical_face(faces, numbered_.exact), sample_surface(faces, numbered_, each),
+                   0.0};
         for (SurfaceSample& sample : turning.samples) {
           sample.side *= turning.first.sign;
           sample.face.sign *= turning.first.sign;

@@ -96,7 +96,7 @@ class PieceTurner {
     ClosedTurns of_closed = turn_closed_patches(closed_, vertices_);
     if (!open_.empty()) {
       std::vector<Triangle> closed = settled(of_closed.turn);
-      const NumberedVertices moved(moved_vertices());
+      const NumberedVertices moved(moved_vertices(), vertices_);
       OpenSurfaceTurner turner(open_, moved);
       std::vector<int> of_open = turner.turn(closed);
       // What lies in a cavity may have to be turned, too.

@@ -32,6 +32,11 @@ double turns_of(const std::array<Vec3, 3>& corners, const Vec3& q) {
   return std::atan2(imaginary, real) / (2.0 * std::numbers::pi);
 }
 
+// Whether two corners are at one place, as where they were moved together.
+bool has_met_corners(const Triangle& t, const std::vector<Vec3>& vertices) {
+  return vertices[t[0]] == vertices[t[1]] || vertices[t[1]] == vertices[t[2]] || vertices[t[2]] == vertices[t[0]];
+}
+
 // A mesh of these faces. Of a small part of a mesh, without the other vertices.
 TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
   TriangleMesh mesh{{}, faces};
@@ -118,6 +123,7 @@ SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector
   }
   dipole_ = dipole_of(faces, vertices, reversed);
   for (const Triangle& t : faces) {
+    if (has_met_corners(t, vertices)) continue;  // no area, and an orientation that depends on the order of its corners
     const CanonicalFace face = canonical_face(t, vertices);
     faces_.push_back(face.corners);
     if ((face.sign < 0) != reversed) std::swap(faces_.back()[1], faces_.back()[2]);

@@ -40,28 +40,36 @@ struct RankedFace {
   double priority;
   double area;
   CanonicalFace face;
+  Triangle corners;
+};
 
-  friend bool operator<(const RankedFace& a, const RankedFace& b) {
-    return a.priority != b.priority ? a.priority > b.priority : a.face < b.face;
+// Faces that became the same by moving are told apart by where they were: they may face either way.
+struct RanksBefore {
+  const std::vector<Vec3>& exact;
+
+  bool operator()(const RankedFace& a, const RankedFace& b) const {
+    if (a.priority != b.priority) return a.priority > b.priority;
+    if (const auto order = a.face <=> b.face; order != 0) return order < 0;
+    return canonical_face(a.corners, exact) < canonical_face(b.corners, exact);
   }
 };
 
 // The first `count` of those that it was given, nearly without work for others.
 class FirstRanked {
  public:
-  explicit FirstRanked(std::size_t count) : count_(count) {}
+  FirstRanked(std::size_t count, const NumberedVertices& vertices) : count_(count), vertices_(vertices) {}
 
-  void add(const Triangle& t, const NumberedVertices& vertices) {
-    const Vec3 &p = vertices.at[t[0]], &q = vertices.at[t[1]], &r = vertices.at[t[2]];
-    const double number = number_of(t, vertices.number);
+  void add(const Triangle& t) {
+    const Vec3 &p = vertices_.at[t[0]], &q = vertices_.at[t[1]], &r = vertices_.at[t[2]];
+    const double number = number_of(t, vertices_.number);
     // What the order of corners changes is less; exactly that decides which faces come near being taken.
     constexpr double kRounding = 1e-14;
     const double most = area_of(p, q, r) + kRounding * (dot(q - p, q - p) + dot(r - p, r - p));
     if (most < least_ * number) return;
-    const CanonicalFace face = canonical_face(t, vertices.at);
+    const CanonicalFace face = canonical_face(t, vertices_.at);
     const double area = area_of(face.corners[0], face.corners[1], face.corners[2]);
     if (!(area > 0.0 && std::isfinite(area))) return;
-    ranked_.push_back({area / number, area, face});
+    ranked_.push_back({area / number, area, face, t});
     if (ranked_.size() > 4 * count_ + kSpare) cut();
   }
 
@@ -75,12 +83,14 @@ class FirstRanked {
 
   void cut() {
     if (ranked_.size() <= count_) return;
-    std::nth_element(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(count_), ranked_.end());
+    std::nth_element(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(count_), ranked_.end(),
+                     RanksBefore{vertices_.exact});
     ranked_.resize(count_);
     least_ = std::ranges::min(ranked_, {}, &RankedFace::priority).priority;
   }
 
   std::size_t count_;
+  const NumberedVertices& vertices_;
   double least_ = 0.0;  // lower priorities are not among the first
   std::vector<RankedFace> ranked_;
 };
@@ -102,7 +112,8 @@ int side_of_perturbed(const CanonicalFace& face, const Vec3& q) {
 
 }  // namespace
 
-NumberedVertices::NumberedVertices(std::vector<Vec3> vertices) : at(std::move(vertices)), number(at.size()) {
+NumberedVertices::NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact_vertices)
+    : at(std::move(moved)), number(at.size()), exact(exact_vertices) {
   constexpr std::size_t kGrain = 4096;
   parallel_for(at.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) number[v] = hash_of(at[v]);
@@ -115,13 +126,13 @@ std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, co
   std::vector<RankedFace> ranked;
   std::mutex mutex;
   parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    FirstRanked first(count + 1);
-    for (std::size_t i = begin; i < end; ++i) first.add(faces[i], vertices);
+    FirstRanked first(count + 1, vertices);
+    for (std::size_t i = begin; i < end; ++i) first.add(faces[i]);
     const std::vector<RankedFace> part = first.take();
     const std::lock_guard<std::mutex> lock(mutex);
     ranked.insert(ranked.end(), part.begin(), part.end());
   });
-  std::sort(ranked.begin(), ranked.end());
+  std::sort(ranked.begin(), ranked.end(), RanksBefore{vertices.exact});
   double least = 0.0;  // what each sample stands for at least
   if (ranked.size() > count) {
     least = ranked[count].priority;

@@ -18,16 +18,19 @@ struct SurfaceSample {
   int side = 0;         // where the perturbed point is (core/exact/predicates.h): 1 before the face, -1 behind it
 };
 
-// Vertices, each with a number of its own that its coordinates give, as if random.
+// Vertices moved to where sums are taken, each with a number that its coordinates there give, as if random. Moved,
+// small parts of a mesh may become one point; where they were tells them apart then.
 struct NumberedVertices {
-  explicit NumberedVertices(std::vector<Vec3> vertices);
+  // `exact`: the vertices as they were; must outlive this.
+  NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact);
 
   std::vector<Vec3> at;
   std::vector<std::uint64_t> number;
+  const std::vector<Vec3>& exact;
 };
 
 // At most `count` samples, the middles of faces. Larger faces are taken rather than smaller ones: those whose area,
-// divided by a number in (0, 1) that the corners' coordinates give, is largest (priority sampling; Duffield, Lund,
+// divided by a number in (0, 1] that the corners' coordinates give, is largest (priority sampling; Duffield, Lund,
 // Thorup 2007). Their order depends on coordinates only. None where all areas are 0. Uses the threads that ThreadLimit
 // allows; needs DefaultFloatingPoint.
 [[nodiscard]] std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces,

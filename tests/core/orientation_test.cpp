@@ -496,12 +496,48 @@ TEST(SurfaceField, IsFiniteNextToTheCentreOfADipole) {
   }
 }
 
+// Of a sphere with a hole, one half has become a point.
+TEST(SurfaceField, DependsOnNoOrderWhereVerticesHaveMet) {
+  const DefaultFloatingPoint guard;
+  Random random(29);
+  TriangleMesh mesh = test::moved(sphere_with_a_hole(1), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
+  for (Vec3& p : mesh.vertices) {
+    if (p.x < 0.45) p = {0.3, 0.6, 0.7};
+  }
+  std::vector<FieldPoint> points;
+  for (int i = 0; i < 200; ++i) points.push_back({test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}}), 0});
+  const std::vector<double> expected = SurfaceField(mesh.triangles, mesh.vertices, false).winding_numbers(points);
+  for (int i = 0; i < 20; ++i) {
+    const TriangleMesh other = test::shuffled(mesh, random);
+    ASSERT_EQ(SurfaceField(other.triangles, other.vertices, false).winding_numbers(points), expected) << i;
+  }
+}
+
+// Two sheets that face each other have become one.
+TEST(SurfaceSamples, TellFacesApartByWhereTheyWere) {
+  const DefaultFloatingPoint guard;
+  Random random(31);
+  TriangleMesh sheets = test::soup(random, 40);
+  for (Vec3& p : sheets.vertices) p.z = 0;
+  sheets = joined(sheets, test::moved(test::reversed(sheets), {1, 1, 1}, {0, 0, 1}));
+  const auto sides = [](const TriangleMesh& exact) {
+    std::vector<Vec3> moved = exact.vertices;
+    for (Vec3& p : moved) p.z = 0;
+    std::vector<int> result;
+    const NumberedVertices vertices(moved, exact.vertices);
+    for (const SurfaceSample& sample : sample_surface(exact.triangles, vertices, 15)) result.push_back(sample.side);
+    return result;
+  };
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(sides(test::shuffled(sheets, random)), sides(sheets));
+}
+
 TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
   const DefaultFloatingPoint guard;
   // Within the unit box; without its last faces it has a boundary.
   TriangleMesh bowl = test::moved(test::sphere(8), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
   bowl.triangles.resize(bowl.triangles.size() * 2 / 3);
-  const std::vector<SurfaceSample> samples = sample_surface(bowl.triangles, NumberedVertices(bowl.vertices), 20);
+  const std::vector<SurfaceSample> samples =
+      sample_surface(bowl.triangles, NumberedVertices(bowl.vertices, bowl.vertices), 20);
   ASSERT_EQ(samples.size(), 20U);
   std::vector<FieldPoint> points;
   for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});
@@ -643,6 +679,27 @@ TEST(Orient, DependsOnNeitherOrderNorThreads) {
       EXPECT_EQ(other.counts.dropped_duplicates, expected.counts.dropped_duplicates);
       EXPECT_EQ(other.counts.patches, expected.counts.patches);
       EXPECT_EQ(other.counts.cut_edges, expected.counts.cut_edges);
+    }
+  }
+}
+
+// Next to a triangle of size 1, these have lost much of their shape, or all of it.
+TEST(Orient, DependsOnNoOrderInPiecesThatAreTooSmall) {
+  Random random(23);
+  const TriangleMesh far{{{-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}}, {{0, 1, 2}}};
+  for (const double size : {1e-14, 1e-15, 3e-16, 1e-16, 1e-17, 1e-20}) {
+    for (const Vec3& f : {Vec3{size, size, size}, Vec3{0.5, 0.5, size}, Vec3{size, 0.5, 0.5}, Vec3{size, size, 0.5}}) {
+      TriangleMesh mesh = far;
+      for (const TriangleMesh& shape : {test::open_box(), sphere_with_a_hole(1), test::lattice_soup(random, 60, 3)}) {
+        const double x = test::uniform(random, -3, 3);
+        const TriangleMesh small = test::moved(shape, f, {x * f.x, -0.3 * f.y, 0.4 * f.z});
+        mesh = joined(mesh, with_faces_reversed(small, random, 0.3));
+      }
+      const auto expected = set_of_faces(automatic(mesh));
+      for (int i = 0; i < 5; ++i) {
+        const TriangleMesh other = test::shuffled(with_faces_reversed(mesh, random, 0.5), random);
+        ASSERT_TRUE(set_of_faces(automatic(other)) == expected) << size << " " << i;
+      }
     }
   }
 }

@@ -492,6 +492,14 @@ MUTANTS = [
     Mutant("flat_piece_depends_on_order", "the orientation of a flat piece depends on coordinates only", [
         ("core/orientation/closed_patches.cpp", "return first_canonical_face(surface.faces, vertices).sign;",
          "return 1;")]),
+    Mutant("first_face_where_it_is_moved", "pieces too small for the sums are turned by exact coordinates", [
+        ("core/orientation/open_patches.cpp", "first_canonical_face(faces, numbered_.exact)",
+         "first_canonical_face(faces, vertices_)")]),
+    Mutant("samples_of_met_faces_by_order", "faces that became the same are told apart by where they were", [
+        ("core/orientation/surface_samples.cpp", "return canonical_face(a.corners, exact) < canonical_face(b.corners, exact);",
+         "return false;")]),
+    Mutant("collapsed_faces_have_a_side", "faces of which corners have met add nothing", [
+        ("core/orientation/surface_field.cpp", "if (has_met_corners(t, vertices)) continue;", "")]),
     Mutant("no_cavities_in_open_bodies", "a closed patch in an open body is a cavity", [
         ("core/orientation/open_bodies.cpp", ": -turns.turn[i] * around[n];", ": turns.turn[i] * around[n];")]),
     Mutant("open_body_stored_is_forgotten", "a closed patch keeps its relation to an open body", [

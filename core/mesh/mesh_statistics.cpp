@@ -48,7 +48,7 @@ double signed_volume(const TriangleMesh& mesh) {
     const auto a = from_centre(t[0]), b = from_centre(t[1]), c = from_centre(t[2]);
     sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
-  return static_cast<double>(sum / 6);
+  return static_cast<double>(sum / 6) + 0.0;  // never -0, which a small volume may round to
 }
 
 // Wide for the exponents of squares. Corners are moved to the first one before they are multiplied.

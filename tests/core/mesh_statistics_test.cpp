@@ -186,6 +186,17 @@ TEST(MeshStatistics, VolumeIsThatOfItsTetrahedraAtEveryMagnitude) {
   }
 }
 
+TEST(MeshStatistics, VolumeBelowDoublesIsZeroWithoutASign) {
+  for (const double size : {1e-120, 1e-300}) {
+    const TriangleMesh box = test::box_mesh({0, 0, 0}, {size, size, size});
+    for (const TriangleMesh& mesh : {box, test::reversed(box)}) {
+      const double volume = mesh_statistics(mesh).signed_volume.value();
+      EXPECT_EQ(volume, 0.0);
+      EXPECT_FALSE(std::signbit(volume)) << size;
+    }
+  }
+}
+
 TEST(MeshStatistics, VolumeBeyondDoublesIsInfiniteWithItsSign) {
   for (const double size : {1e110, 1e200, 1e308}) {
     const TriangleMesh box = test::moved(test::box_mesh({-1, -1, -1}, {1, 1, 1}), {size, size, size}, {});

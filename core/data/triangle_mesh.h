@@ -14,6 +14,9 @@ namespace raycone {
 // Corners of a triangle as indices into TriangleMesh::vertices; the front side sees them counter-clockwise.
 using Triangle = std::array<std::uint32_t, 3>;
 
+// Whether two corners are one vertex.
+[[nodiscard]] inline bool is_collapsed(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
 // Evaluators count the triangles at an edge and along a ray in 32 bits, with a sign.
 inline constexpr std::size_t kMaxTriangles = 0x7FFFFFFF;
 

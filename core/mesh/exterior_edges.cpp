@@ -37,7 +37,7 @@ struct FromLowest {
     middle = VertexLinks::lower_of(next, last);
     highest = next ^ last ^ middle;
   }
-  [[nodiscard]] bool has_equal_corners() const { return (lowest == middle) | (middle == highest); }
+  [[nodiscard]] bool is_collapsed() const { return (lowest == middle) | (middle == highest); }
 };
 
 // Lets traversals of one edge in opposite directions cancel each other, for edges whose lower vertex is in a range: in
@@ -181,7 +181,7 @@ std::vector<ExteriorEdge> net_counts(const std::vector<Traversal>& rest) {
 
 void add(const FromLowest& t, Cancellation& cancellation, LinkNotes& notes) {
   const bool is_here = cancellation.has(t.lowest);
-  if (t.has_equal_corners()) {  // what it adds to one direction it adds to the other
+  if (t.is_collapsed()) {  // what it adds to one direction it adds to the other
     if (is_here) notes.note_collapsed(t);
     return;
   }

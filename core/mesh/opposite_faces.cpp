@@ -8,8 +8,6 @@
 namespace raycone {
 namespace {
 
-bool has_three_vertices(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
-
 // Equal for faces of the same vertices in whatever order.
 std::size_t hash_of(const Triangle& t) {
   const auto square = [](std::uint64_t v) { return v * v; };
@@ -35,7 +33,7 @@ std::vector<std::uint32_t> candidates(const TriangleMesh& mesh, const VertexLink
   }
   std::erase_if(faces, [&](std::uint32_t face) {
     const Triangle& t = mesh.triangles[face];
-    return !met_twice[hash_of(t) & mask] || !has_three_vertices(t);
+    return !met_twice[hash_of(t) & mask] || is_collapsed(t);
   });
   return faces;
 }

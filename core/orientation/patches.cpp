@@ -126,7 +126,8 @@ class PatchFinder {
     }
   }
 
-  // Turns faces at which more edges are cut than not, which shortens the cut.
+  // Turns faces at which more edges are cut than not. Each turn shortens the cut, so that this ends; the limit keeps
+  // the time in proportion.
   void turn_singly(const std::vector<std::uint32_t>& ordered) {
     constexpr int kMaxPasses = 64;  // far more than cuts take to straighten
     bool turned = true;

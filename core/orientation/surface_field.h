@@ -47,7 +47,6 @@ class SurfaceField {
   // As for dipole_of().
   SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed);
 
-  [[nodiscard]] const SurfaceDipole& dipole() const { return dipole_; }
   // Beyond this many radii from its centre a surface is a dipole: it is then off by some percent of itself.
   static constexpr double kFar = 3.0;
   [[nodiscard]] bool is_far(const Vec3& q) const;

@@ -25,8 +25,6 @@ struct FiledFace {
 
 constexpr int kVerticesPerBucketLog2 = 9;  // few enough for a bucket to stay in a cache while it is sorted
 
-bool is_collapsed(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
-
 // Whether the corners, three different numbers, are in rising order but for a rotation.
 bool rises(const Triangle& t) { return ((t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0])) == 2; }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <memory>
+#include <numeric>
 
 #include "core/machine/threads.h"
 #include "core/mesh/selection_kernel.h"
@@ -11,7 +12,7 @@
 namespace raycone {
 namespace {
 
-// The places of triangles' middles along each axis, from 0 on, in units of 2^-30 of the longest side of the mesh's box.
+// The places of triangles' middles along each axis, from 0 on, in units of 2^-30 of the longest side of a box.
 constexpr double kUnits = 0x1p30;
 
 // Of `count` triangles.
@@ -89,20 +90,10 @@ class Selection {
 // Sorts triangles into the tree's order.
 class RunOrder {
  public:
-  explicit RunOrder(const TriangleMesh& mesh) : count_(mesh.triangles.size()), columns_(count_), room_columns_(count_) {
-    const Box box = quarter_of_box(mesh);
-    const double longest = longest_side(box);
-    const double scale = longest > kNoSize ? kUnits / longest : 0.0;
-    parallel_for(count_, kWorthATask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        const auto number = static_cast<std::uint32_t>(n);
-        const Vec3 place = scale * (quarter_of_middle(box_of_triangle(mesh, number)) - box.lower);
-        for (int axis = 0; axis < 3; ++axis) {
-          triangles_.place[static_cast<std::size_t>(axis)][n] = static_cast<std::uint32_t>(place[axis]);
-        }
-        triangles_.number[n] = number;
-      }
-    });
+  explicit RunOrder(const TriangleMesh& mesh)
+      : mesh_(mesh), count_(mesh.triangles.size()), columns_(count_), room_columns_(count_) {
+    std::iota(triangles_.number, triangles_.number + count_, 0U);
+    place(0, count_, quarter_of_box());
   }
 
   // The triangles in runs of `width` that are close together, these in runs of `width` runs, and so on.
@@ -117,10 +108,34 @@ class RunOrder {
   static constexpr std::size_t kWorthATask = 4096;
   static constexpr double kNoSize = 1e-290;  // what is shorter is a point: kUnits over it could overflow
 
+  static constexpr std::uint32_t kClose = 256;  // units, of which a range of triangles has too few in all then
+
   // A quarter of the mesh's box, as quarters of middles are in it.
-  static Box quarter_of_box(const TriangleMesh& mesh) {
-    const Box all = mesh.triangles.empty() ? Box{} : bounding_box(mesh);
+  [[nodiscard]] Box quarter_of_box() const {
+    const Box all = count_ == 0 ? Box{} : bounding_box(mesh_);
     return {0.25 * all.lower, 0.25 * all.upper};
+  }
+
+  [[nodiscard]] Box box_of_quarters(std::size_t begin, std::size_t end) const {
+    Box box = empty_box();
+    for (std::size_t n = begin; n < end; ++n) {
+      extend(box, quarter_of_middle(box_of_triangle(mesh_, triangles_.number[n])));
+    }
+    return box;
+  }
+
+  // Notes where the triangles of [begin, end) are in a box that holds quarters of their middles.
+  void place(std::size_t begin, std::size_t end, const Box& quarter) {
+    const double longest = longest_side(quarter);
+    const double scale = longest > kNoSize ? kUnits / longest : 0.0;
+    parallel_for(end - begin, kWorthATask, [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = begin + first; n < begin + last; ++n) {
+        const Vec3 place = scale * (quarter_of_middle(box_of_triangle(mesh_, triangles_.number[n])) - quarter.lower);
+        for (int axis = 0; axis < 3; ++axis) {
+          triangles_.place[static_cast<std::size_t>(axis)][n] = static_cast<std::uint32_t>(place[axis]);
+        }
+      }
+    });
   }
 
   // Arranges [begin, end), the start of which is one of a run of `run`, into runs of that and of shorter ones.
@@ -129,7 +144,7 @@ class RunOrder {
     if (run < width) return;
     const std::size_t runs = (end - begin + run - 1) / run;
     const std::size_t middle = begin + (runs + 1) / 2 * run;
-    Selection(kernel_, triangles_.from(begin), room_.from(begin), end - begin, longest_axis(begin, end))
+    Selection(kernel_, triangles_.from(begin), room_.from(begin), end - begin, axis_to_split(begin, end))
         .select(middle - begin);
     if (end - begin < kWorthATask) {
       split(begin, middle, run, width);
@@ -140,8 +155,19 @@ class RunOrder {
         2, [&](std::size_t half) { half == 0 ? split(begin, middle, run, width) : split(middle, end, run, width); });
   }
 
+  // About the longest one. Triangles that are close together in the mesh, as all are in one with a stray far away, are
+  // placed anew, in units of where they are: the old ones would leave them in any order.
+  [[nodiscard]] std::size_t axis_to_split(std::size_t begin, std::size_t end) {
+    std::array<std::uint32_t, 3> sides = sides_of(begin, end);
+    if (std::ranges::max(sides) < kClose) {
+      place(begin, end, box_of_quarters(begin, end));
+      sides = sides_of(begin, end);
+    }
+    return static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
+  }
+
   // Of the middles' box; where they are many, of that of some of them.
-  [[nodiscard]] std::size_t longest_axis(std::size_t begin, std::size_t end) const {
+  [[nodiscard]] std::array<std::uint32_t, 3> sides_of(std::size_t begin, std::size_t end) const {
     constexpr std::size_t kSome = 128;
     const std::size_t step = std::max<std::size_t>((end - begin) / kSome, 1);
     std::array<std::uint32_t, 3> sides;
@@ -154,9 +180,10 @@ class RunOrder {
       }
       sides[axis] = upper - lower;
     }
-    return static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
+    return sides;
   }
 
+  const TriangleMesh& mesh_;
   std::size_t count_;
   TriangleColumns columns_, room_columns_;
   PlacedTriangles triangles_ = columns_.all(), room_ = room_columns_.all();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <numbers>
 #include <vector>
 
@@ -188,6 +189,39 @@ TEST(SelfIntersections, AreTheSameOnAnyThread) {
   for (int n = 0; n < 5; ++n) {
     EXPECT_EQ(self_intersections(mesh).first, once.first);
     EXPECT_EQ(first_self_intersection(mesh), once.first);
+  }
+}
+
+// Small triangles at both ends of a diagonal through the origin, each shorter than its distance from there.
+TriangleMesh strays(double distance) {
+  const TriangleMesh triangle{{{1, 1, 1}, {1.5, 1, 1}, {1, 1.5, 1}}, {{0, 1, 2}}};
+  const Vec3 there{distance, distance, distance};
+  return test::joined(test::moved(triangle, there, {}), test::moved(triangle, -1.0 * there, {}));
+}
+
+// In units of the whole mesh all boxes of the spheres meet: 8 * 10^8 pairs would be looked at, for a minute or more.
+TEST(SelfIntersections, TakeNoLongerBesideStrayTriangles) {
+  test::Random random(19);
+  const TriangleMesh sphere = test::shuffled(test::sphere(100), random);
+  const TriangleMesh other = test::moved(sphere, {0.1, 0.1, 0.1}, {1e8, 0, 0});
+  const double before = static_cast<double>(std::clock());
+  for (const double distance : {1e9, 1e15, 1e300}) {
+    const TriangleMesh mesh = test::joined(test::joined(sphere, other), strays(distance));
+    EXPECT_EQ(self_intersections(mesh).pairs, 0U) << distance;
+    EXPECT_EQ(first_self_intersection(mesh), std::nullopt) << distance;
+  }
+  EXPECT_LT((static_cast<double>(std::clock()) - before) / CLOCKS_PER_SEC, 20.0);  // sanitizers, busy machines included
+}
+
+TEST(SelfIntersections, AreFoundBesideStrayTriangles) {
+  test::Random random(23);
+  for (const double distance : {1e3, 1e9, 1e15, 1e300}) {
+    const TriangleMesh mesh = test::soup(random, 300);
+    const std::uint64_t pairs = self_intersections(mesh).pairs;
+    EXPECT_GT(pairs, 100U);
+    for (const SearchOrder order : {SearchOrder::kRuns, SearchOrder::kCurve}) {
+      EXPECT_EQ(self_intersections(test::joined(mesh, strays(distance)), order).pairs, pairs) << distance;
+    }
   }
 }
 

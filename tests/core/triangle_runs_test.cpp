@@ -76,6 +76,32 @@ TEST(TriangleRuns, TakeTheLowerTriangleFirstWhereAllAreAtOnePlace) {
   }
 }
 
+// All triangles of the row are at one place in units of the mesh. Strays cut it into parts of any triangles, each half
+// as large as the one before, but within these parts runs are as close together as they can be.
+TEST(TriangleRuns, AreCloseTogetherBesideStrayTriangles) {
+  constexpr std::uint32_t kRow = 8192;
+  const std::vector<std::uint32_t> position = shuffled(kRow);
+  TriangleMesh mesh = in_a_row(position, 0, 1.0);
+  for (const double at : {1e15, -1e15}) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{at, 0, 0}, {1.5 * at, 0, 0}, {at, at, 0}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const std::vector<std::uint32_t> order = triangles_in_runs(mesh, kWidth);
+  ASSERT_EQ(order.size(), kRow + 2);
+  std::uint64_t extents = 0;
+  for (std::size_t begin = 0; begin < order.size(); begin += kWidth) {
+    std::uint32_t least = kRow, most = 0;
+    for (std::size_t n = begin; n < std::min(begin + kWidth, order.size()); ++n) {
+      if (order[n] >= kRow) continue;
+      least = std::min(least, position[order[n]]);
+      most = std::max(most, position[order[n]]);
+    }
+    if (most > least) extents += most - least;
+  }
+  EXPECT_LT(extents, 20U * kRow);  // in any order, as of random positions: some 700 times as much as the row's length
+}
+
 TEST(TriangleRuns, OfNoTrianglesAreNone) { EXPECT_TRUE(triangles_in_runs({}, kWidth).empty()); }
 
 }  // namespace

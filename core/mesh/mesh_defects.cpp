@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -99,6 +100,117 @@ Volume volume_of(const TriangleMesh& mesh) {
   });
   return whole;
 }
+
+// +1 or -1 where the ray from q along +x crosses the triangle, by the sign of its normal's x.
+int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
+  const int side = edge_side(a, b, q).sign;
+  if (side == 0 || edge_side(b, c, q).sign != side || edge_side(c, a, q).sign != side) return 0;
+  return plane_side(a, b, c, q) * side < 0 ? side : 0;
+}
+
+// Winding numbers of one closed surface after the other at the same points, but for those that are settled.
+class PointSums {
+ public:
+  explicit PointSums(std::vector<Vec3> points)
+      : points_(std::move(points)), grid_(points_), sums_(points_.size(), 0), settled_(points_.size(), 0) {}
+  PointSums(const PointSums&) = delete;
+  PointSums& operator=(const PointSums&) = delete;
+
+  // Calls visit(i) for each point in a box.
+  template <class Visit>
+  void for_each_in(const Box& box, const Visit& visit) const {
+    grid_.for_each_ray(box.lower, box.upper, box.upper, box.lower.x, [&](std::size_t i) {  // as of a flat triangle
+      if (settled_[i] == 0) visit(i);
+    });
+  }
+
+  // Of a triangle of a surface that is at x and beyond: it is not around points before.
+  void add(const Vec3& a, const Vec3& b, const Vec3& c, double x) {
+    grid_.for_each_ray(a, b, c, x, [&](std::size_t i) {
+      const int sign = settled_[i] == 0 ? crossing(a, b, c, points_[i]) : 0;
+      if (sign == 0) return;
+      if (sums_[i] == 0) not_0_.push_back(i);
+      sums_[i] += sign;
+    });
+  }
+
+  // Ends a surface: calls visit(i) for each point at which the sum is not 0, in any order.
+  template <class Visit>
+  void take(const Visit& visit) {
+    for (const std::size_t i : not_0_) {
+      if (std::exchange(sums_[i], 0) != 0) visit(i);
+    }
+    not_0_.clear();
+  }
+
+  void settle(std::size_t i) {
+    settled_[i] = 1;
+    ++count_settled_;
+  }
+  [[nodiscard]] bool is_settled(std::size_t i) const { return settled_[i] != 0; }
+  // So many that it is time to go on without them.
+  [[nodiscard]] bool many_are_settled() const { return 4 * count_settled_ >= settled_.size(); }
+
+ private:
+  std::vector<Vec3> points_;
+  RayGrid grid_;
+  std::vector<std::int64_t> sums_;
+  std::vector<std::size_t> not_0_;  // all of these, and some that became 0 again
+  std::vector<std::uint8_t> settled_;
+  std::size_t count_settled_ = 0;
+};
+
+// A closed component.
+struct ClosedComponent {
+  std::uint32_t component;
+  Box box;
+  std::span<const std::uint32_t> faces;  // indices of triangles
+};
+
+// By decreasing size of their boxes, so that one is behind all that surround it.
+class BySize {
+ public:
+  BySize(const TriangleMesh& mesh, const Components& components, const std::vector<bool>& open) {
+    std::vector<Box> boxes(components.count, empty_box());
+    std::vector<std::size_t> place(components.count, 0);  // the number of faces, then where the next one goes
+    const auto for_each_face = [&](const auto& visit) {
+      for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const std::uint32_t component = components.of_vertex[mesh.triangles[i][0]];
+        if (!open[component]) visit(i, component);
+      }
+    };
+    for_each_face([&](std::uint32_t i, std::uint32_t component) {
+      ++place[component];
+      for (const std::uint32_t v : mesh.triangles[i]) extend(boxes[component], mesh.vertices[v]);
+    });
+    std::size_t total = 0;
+    for (std::size_t& at : place) total += std::exchange(at, total);
+    faces_.resize(total);
+    for_each_face([&](std::uint32_t i, std::uint32_t component) { faces_[place[component]++] = i; });
+    std::size_t begin = 0;
+    for (std::uint32_t c = 0; c < components.count; ++c) {
+      const std::span<const std::uint32_t> faces(faces_.data() + begin, faces_.data() + place[c]);
+      if (!faces.empty()) by_size_.push_back({c, boxes[c], faces});
+      begin = place[c];
+    }
+    std::ranges::sort(by_size_, std::greater(), [](const ClosedComponent& s) { return size(s.box); });
+  }
+  BySize(const BySize&) = delete;
+  BySize& operator=(const BySize&) = delete;
+
+  [[nodiscard]] auto begin() const { return by_size_.begin(); }
+  [[nodiscard]] auto end() const { return by_size_.end(); }
+
+ private:
+  // Of quarters, which do not overflow.
+  static double size(const Box& box) {
+    const Vec3 quarter = 0.25 * box.upper - 0.25 * box.lower;
+    return quarter.x + quarter.y + quarter.z;
+  }
+
+  std::vector<std::uint32_t> faces_;
+  std::vector<ClosedComponent> by_size_;
+};
 
 // The closed components of a mesh, and which of them are reversed.
 class ClosedComponents {
@@ -209,80 +321,46 @@ class ClosedComponents {
     return candidates;
   }
 
-  // +1 or -1 where the ray from q along +x crosses the triangle, by the sign of its normal's x.
-  [[nodiscard]] int crossing(const Triangle& t, const Vec3& q) const {
-    const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
-    const int side = edge_side(a, b, q).sign;
-    if (side == 0 || edge_side(b, c, q).sign != side || edge_side(c, a, q).sign != side) return 0;
-    return plane_side(a, b, c, q) * side < 0 ? side : 0;
-  }
-
-  // That the ray from a candidate's point crosses another closed component.
-  struct Hit {
-    std::uint32_t candidate, component;
-    int sign;
-  };
-
-  // Removes those that lie in another closed component: whose winding number at their point is not 0.
+  // Removes those that lie in another closed component: whose winding number at their point is not 0. From the largest
+  // component on, without those that are settled: of shells within each other, the outermost one settles all others.
   void drop_surrounded(std::vector<Candidate>& candidates) const {
-    std::vector<std::uint8_t> surrounded(candidates.size(), 0);
-    note_surrounded(candidates, boxes_of_closed(), surrounded);
-    auto flag = surrounded.begin();
-    std::erase_if(candidates, [&](const Candidate&) { return *flag++ != 0; });
-  }
-
-  // By component.
-  [[nodiscard]] std::vector<Box> boxes_of_closed() const {
-    std::vector<Box> boxes(components_.count, empty_box());
-    for (const Triangle& t : mesh_.triangles) {
-      const std::uint32_t component = component_of(t);
-      if (open_[component]) continue;
-      for (const std::uint32_t v : t) extend(boxes[component], mesh_.vertices[v]);
-    }
-    return boxes;
-  }
-
-  // Of many shells within each other, all cross all rays: the candidates are halved until that fits into memory.
-  void note_surrounded(std::span<const Candidate> candidates, std::span<const Box> boxes,
-                       std::span<std::uint8_t> surrounded) const {
-    std::optional<std::vector<Hit>> hits = hits_of(candidates, boxes);
-    if (!hits) {
-      const std::size_t half = candidates.size() / 2;
-      note_surrounded(candidates.first(half), boxes, surrounded.first(half));
-      return note_surrounded(candidates.subspan(half), boxes, surrounded.subspan(half));
-    }
-    std::ranges::sort(*hits, {}, [](const Hit& hit) { return std::pair(hit.candidate, hit.component); });
-    for (auto it = hits->begin(); it != hits->end();) {
-      const Hit first = *it;
-      std::int64_t sum = 0;
-      for (; it != hits->end() && it->candidate == first.candidate && it->component == first.component; ++it) {
-        sum += it->sign;
+    std::optional<PointSums> sums(std::in_place, points_of(candidates));
+    for (const ClosedComponent& outer : BySize(mesh_, components_, open_)) {
+      if (sums->many_are_settled()) {
+        drop_settled(candidates, *sums);
+        if (candidates.empty()) return;
+        sums.emplace(points_of(candidates));
       }
-      if (sum != 0) surrounded[first.candidate] = 1;
+      settle_within(outer, candidates, *sums);
     }
+    drop_settled(candidates, *sums);
   }
 
-  // Of components whose box has the candidate's point, as others do not surround it. Nothing where there are too many
-  // of several candidates.
-  [[nodiscard]] std::optional<std::vector<Hit>> hits_of(std::span<const Candidate> candidates,
-                                                        std::span<const Box> boxes) const {
-    constexpr std::size_t kMost = std::size_t{1} << 18;
+  static void drop_settled(std::vector<Candidate>& candidates, const PointSums& sums) {
+    std::size_t i = 0;
+    std::erase_if(candidates, [&](const Candidate&) { return sums.is_settled(i++); });
+  }
+
+  void settle_within(const ClosedComponent& outer, const std::vector<Candidate>& candidates, PointSums& sums) const {
+    const auto is_other = [&](std::size_t i) { return candidates[i].component != outer.component; };
+    bool may_surround = false;
+    sums.for_each_in(outer.box, [&](std::size_t i) { may_surround |= is_other(i); });
+    if (!may_surround) return;
+    for (const std::uint32_t i : outer.faces) add_face(sums, i, outer.box.lower.x);
+    sums.take([&](std::size_t i) {
+      if (is_other(i)) sums.settle(i);
+    });
+  }
+
+  static std::vector<Vec3> points_of(const std::vector<Candidate>& candidates) {
     std::vector<Vec3> points;
     for (const Candidate& candidate : candidates) points.push_back(candidate.point);
-    const RayGrid grid(points);
-    std::vector<Hit> hits;
-    for (const Triangle& t : mesh_.triangles) {
-      const std::uint32_t component = component_of(t);
-      if (open_[component]) continue;
-      const Box& box = boxes[component];
-      const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
-      grid.for_each_ray(a, b, c, box.lower.x, [&](std::size_t i) {
-        if (candidates[i].component == component || square_of_gap(box, points[i]) > 0.0) return;
-        if (const int sign = crossing(t, points[i])) hits.push_back({static_cast<std::uint32_t>(i), component, sign});
-      });
-      if (hits.size() > kMost && candidates.size() > 1) return {};
-    }
-    return hits;
+    return points;
+  }
+
+  void add_face(PointSums& sums, std::uint32_t face, double lower_x) const {
+    const Triangle& t = mesh_.triangles[face];
+    sums.add(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], lower_x);
   }
 
   const TriangleMesh& mesh_;

@@ -25,14 +25,19 @@ class RayGrid {
     const double z0 = std::min(std::min(a.z, b.z), c.z), z1 = std::max(std::max(a.z, b.z), c.z);
     if (y1 < lower_y_ || y0 > upper_y_ || z1 < lower_z_ || z0 > upper_z_) return;
     const double x1 = std::max(std::max(a.x, b.x), c.x);
-    const std::size_t last_y = place(y1, lower_y_, per_y_), last_z = place(z1, lower_z_, per_z_);
+    const std::size_t first_y = place(y0, lower_y_, per_y_), last_y = place(y1, lower_y_, per_y_);
+    const std::size_t last_z = place(z1, lower_z_, per_z_);
     for (std::size_t z = place(z0, lower_z_, per_z_); z <= last_z; ++z) {
-      for (std::size_t y = place(y0, lower_y_, per_y_); y <= last_y; ++y) {
-        for (const std::size_t i : from(x, z * side_ + y)) {
+      // From one cell with points to the next: a large triangle is over many without.
+      const std::size_t row_end = begin_[z * side_ + last_y + 1];
+      for (std::size_t at = begin_[z * side_ + first_y]; at != row_end;) {
+        const std::size_t here = cell(points_[rays_[at]]);
+        for (const std::size_t i : from(x, here)) {
           const Vec3& q = points_[i];
           if (q.x > x1) break;
           if (q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(i);
         }
+        at = begin_[here + 1];
       }
     }
   }

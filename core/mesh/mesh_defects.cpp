@@ -108,11 +108,19 @@ int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   return plane_side(a, b, c, q) * side < 0 ? side : 0;
 }
 
-// Winding numbers of one closed surface after the other at the same points, but for those that are settled.
+// Where a point lies with respect to a closed surface.
+struct PointSum {
+  std::int64_t winding = 0;  // at the perturbed point (core/exact/predicates.h)
+  bool on_surface = false;   // on a closed triangle
+
+  [[nodiscard]] bool is_none() const { return winding == 0 && !on_surface; }
+};
+
+// These of one closed surface after the other at the same points, but for those that are settled.
 class PointSums {
  public:
   explicit PointSums(std::vector<Vec3> points)
-      : points_(std::move(points)), grid_(points_), sums_(points_.size(), 0), settled_(points_.size(), 0) {}
+      : points_(std::move(points)), grid_(points_), sums_(points_.size()), settled_(points_.size(), 0) {}
   PointSums(const PointSums&) = delete;
   PointSums& operator=(const PointSums&) = delete;
 
@@ -126,21 +134,26 @@ class PointSums {
 
   // Of a triangle of a surface that is at x and beyond: it is not around points before.
   void add(const Vec3& a, const Vec3& b, const Vec3& c, double x) {
+    const double least_x = std::min({a.x, b.x, c.x});
     grid_.for_each_ray(a, b, c, x, [&](std::size_t i) {
-      const int sign = settled_[i] == 0 ? crossing(a, b, c, points_[i]) : 0;
-      if (sign == 0) return;
-      if (sums_[i] == 0) not_0_.push_back(i);
-      sums_[i] += sign;
+      if (settled_[i] != 0) return;
+      const Vec3& q = points_[i];
+      const PointSum by{crossing(a, b, c, q), q.x >= least_x && on_triangle(a, b, c, q)};
+      if (by.is_none()) return;
+      if (sums_[i].is_none()) noted_.push_back(i);
+      sums_[i].winding += by.winding;
+      sums_[i].on_surface |= by.on_surface;
     });
   }
 
-  // Ends a surface: calls visit(i) for each point at which the sum is not 0, in any order.
+  // Ends a surface: calls visit(i, sum) for each point that is on it or at which its winding number is not 0, in any
+  // order.
   template <class Visit>
   void take(const Visit& visit) {
-    for (const std::size_t i : not_0_) {
-      if (std::exchange(sums_[i], 0) != 0) visit(i);
+    for (const std::size_t i : noted_) {
+      if (const PointSum sum = std::exchange(sums_[i], {}); !sum.is_none()) visit(i, sum);
     }
-    not_0_.clear();
+    noted_.clear();
   }
 
   void settle(std::size_t i) {
@@ -154,8 +167,8 @@ class PointSums {
  private:
   std::vector<Vec3> points_;
   RayGrid grid_;
-  std::vector<std::int64_t> sums_;
-  std::vector<std::size_t> not_0_;  // all of these, and some that became 0 again
+  std::vector<PointSum> sums_;
+  std::vector<std::size_t> noted_;  // all that have a sum, and some whose sum became none again
   std::vector<std::uint8_t> settled_;
   std::size_t count_settled_ = 0;
 };
@@ -172,7 +185,7 @@ class BySize {
  public:
   BySize(const TriangleMesh& mesh, const Components& components, const std::vector<bool>& open) {
     std::vector<Box> boxes(components.count, empty_box());
-    std::vector<std::size_t> place(components.count, 0);  // the number of faces, then where the next one goes
+    begin_.assign(components.count + 1, 0);  // at first the numbers of faces
     const auto for_each_face = [&](const auto& visit) {
       for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t component = components.of_vertex[mesh.triangles[i][0]];
@@ -180,23 +193,26 @@ class BySize {
       }
     };
     for_each_face([&](std::uint32_t i, std::uint32_t component) {
-      ++place[component];
+      ++begin_[component];
       for (const std::uint32_t v : mesh.triangles[i]) extend(boxes[component], mesh.vertices[v]);
     });
     std::size_t total = 0;
-    for (std::size_t& at : place) total += std::exchange(at, total);
+    for (std::size_t& at : begin_) total += std::exchange(at, total);
     faces_.resize(total);
-    for_each_face([&](std::uint32_t i, std::uint32_t component) { faces_[place[component]++] = i; });
-    std::size_t begin = 0;
+    std::vector<std::size_t> next = begin_;
+    for_each_face([&](std::uint32_t i, std::uint32_t component) { faces_[next[component]++] = i; });
     for (std::uint32_t c = 0; c < components.count; ++c) {
-      const std::span<const std::uint32_t> faces(faces_.data() + begin, faces_.data() + place[c]);
-      if (!faces.empty()) by_size_.push_back({c, boxes[c], faces});
-      begin = place[c];
+      if (!open[c]) by_size_.push_back({c, boxes[c], faces_of(c)});
     }
     std::ranges::sort(by_size_, std::greater(), [](const ClosedComponent& s) { return size(s.box); });
   }
   BySize(const BySize&) = delete;
   BySize& operator=(const BySize&) = delete;
+
+  // None of an open component.
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t component) const {
+    return {faces_.data() + begin_[component], faces_.data() + begin_[component + 1]};
+  }
 
   [[nodiscard]] auto begin() const { return by_size_.begin(); }
   [[nodiscard]] auto end() const { return by_size_.end(); }
@@ -208,7 +224,8 @@ class BySize {
     return quarter.x + quarter.y + quarter.z;
   }
 
-  std::vector<std::uint32_t> faces_;
+  std::vector<std::uint32_t> faces_;  // by component
+  std::vector<std::size_t> begin_;    // per component, and the end
   std::vector<ClosedComponent> by_size_;
 };
 
@@ -244,8 +261,8 @@ class ClosedComponents {
   }
 
  private:
-  // A component of negative volume, and its lexicographically first vertex. The perturbation (core/exact/predicates.h)
-  // moves that towards the rest of the component, also where it touches a surface around it.
+  // A component of negative volume, and its lexicographically first vertex. It lies within another component where the
+  // first vertex does that is not on that one; where all are on it, where the perturbed first one does.
   struct Candidate {
     std::uint32_t component;
     Vec3 point;
@@ -321,17 +338,22 @@ class ClosedComponents {
     return candidates;
   }
 
-  // Removes those that lie in another closed component: whose winding number at their point is not 0. From the largest
-  // component on, without those that are settled: of shells within each other, the outermost one settles all others.
+  // Removes those that lie in another closed component, where its winding number is not 0. From the largest component
+  // on, without those that are settled: of shells within each other, the outermost one settles all others.
   void drop_surrounded(std::vector<Candidate>& candidates) const {
+    const BySize by_size(mesh_, components_, open_);
     std::optional<PointSums> sums(std::in_place, points_of(candidates));
-    for (const ClosedComponent& outer : BySize(mesh_, components_, open_)) {
+    for (const ClosedComponent& outer : by_size) {
       if (sums->many_are_settled()) {
         drop_settled(candidates, *sums);
         if (candidates.empty()) return;
         sums.emplace(points_of(candidates));
       }
-      settle_within(outer, candidates, *sums);
+      std::vector<Touching> touching;
+      for (const std::size_t i : settle_within(outer, candidates, *sums)) {
+        touching.push_back({i, vertices_of(by_size.faces_of(candidates[i].component))});
+      }
+      settle_touching(outer, std::move(touching), *sums);
     }
     drop_settled(candidates, *sums);
   }
@@ -341,15 +363,66 @@ class ClosedComponents {
     std::erase_if(candidates, [&](const Candidate&) { return sums.is_settled(i++); });
   }
 
-  void settle_within(const ClosedComponent& outer, const std::vector<Candidate>& candidates, PointSums& sums) const {
+  // Those whose first vertex lies in a component. Returns those of which it is on the component.
+  std::vector<std::size_t> settle_within(const ClosedComponent& outer, const std::vector<Candidate>& candidates,
+                                         PointSums& sums) const {
     const auto is_other = [&](std::size_t i) { return candidates[i].component != outer.component; };
     bool may_surround = false;
     sums.for_each_in(outer.box, [&](std::size_t i) { may_surround |= is_other(i); });
-    if (!may_surround) return;
-    for (const std::uint32_t i : outer.faces) add_face(sums, i, outer.box.lower.x);
-    sums.take([&](std::size_t i) {
-      if (is_other(i)) sums.settle(i);
+    if (!may_surround) return {};
+    add_faces(sums, outer);
+    std::vector<std::size_t> touching;
+    sums.take([&](std::size_t i, const PointSum& sum) {
+      if (!is_other(i)) return;
+      if (sum.on_surface) return touching.push_back(i);
+      sums.settle(i);
     });
+    return touching;
+  }
+
+  // A candidate, and all its vertices in lexicographic order.
+  struct Touching {
+    std::size_t candidate;
+    std::vector<Vec3> vertices;
+  };
+
+  // Few of the vertices are on the other component, nearly always: more and more are looked at.
+  void settle_touching(const ClosedComponent& outer, std::vector<Touching> touching, PointSums& sums) const {
+    for (std::size_t most = 4; !touching.empty(); most *= 4) {
+      const auto looked_at = [most](const Touching& t) { return std::min(most, t.vertices.size()); };
+      std::vector<Vec3> points;
+      for (const Touching& t : touching) {
+        points.insert(points.end(), t.vertices.begin(), t.vertices.begin() + static_cast<std::ptrdiff_t>(looked_at(t)));
+      }
+      const std::vector<PointSum> found = sums_at(std::move(points), outer);
+      auto first = found.begin();
+      std::erase_if(touching, [&](const Touching& t) {
+        const auto end = first + static_cast<std::ptrdiff_t>(looked_at(t));
+        const auto off = std::find_if(first, end, [](const PointSum& sum) { return !sum.on_surface; });
+        const bool is_told = off != end || looked_at(t) == t.vertices.size();
+        if (is_told && (off != end ? off : first)->winding != 0) sums.settle(t.candidate);
+        first = end;
+        return is_told;
+      });
+    }
+  }
+
+  [[nodiscard]] std::vector<PointSum> sums_at(std::vector<Vec3> points, const ClosedComponent& outer) const {
+    std::vector<PointSum> found(points.size());
+    PointSums sums(std::move(points));
+    add_faces(sums, outer);
+    sums.take([&](std::size_t i, const PointSum& sum) { found[i] = sum; });
+    return found;
+  }
+
+  [[nodiscard]] std::vector<Vec3> vertices_of(std::span<const std::uint32_t> faces) const {
+    std::vector<Vec3> vertices;
+    for (const std::uint32_t i : faces) {
+      for (const std::uint32_t v : mesh_.triangles[i]) vertices.push_back(mesh_.vertices[v]);
+    }
+    std::ranges::sort(vertices, [](const Vec3& a, const Vec3& b) { return lexicographic_order(a, b) < 0; });
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
   }
 
   static std::vector<Vec3> points_of(const std::vector<Candidate>& candidates) {
@@ -358,9 +431,11 @@ class ClosedComponents {
     return points;
   }
 
-  void add_face(PointSums& sums, std::uint32_t face, double lower_x) const {
-    const Triangle& t = mesh_.triangles[face];
-    sums.add(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], lower_x);
+  void add_faces(PointSums& sums, const ClosedComponent& component) const {
+    for (const std::uint32_t i : component.faces) {
+      const Triangle& t = mesh_.triangles[i];
+      sums.add(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], component.box.lower.x);
+    }
   }
 
   const TriangleMesh& mesh_;

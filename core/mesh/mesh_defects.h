@@ -13,7 +13,7 @@ struct MeshDefects {
   std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that run along them in the same direction
   std::uint64_t cancelling_pairs = 0;    // pairs of faces with the same three vertices and opposite orientations
   // Components (faces joined through vertices) that are closed, have a negative volume, and lie in no other closed
-  // component: a cavity is none.
+  // component: a cavity is none. Of a component that touches the other one, what is not on that decides.
   std::uint64_t reversed_components = 0;
   bool negative_volume = false;  // the mesh as a whole is closed, and its volume is negative
 };

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <functional>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -90,6 +93,66 @@ TEST(MeshDefects, ReversedSolidBesideAWallIsReversed) {
   EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({4, 1, 1}, {6, 2, 2})))), 1U);
   EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({-6, 1, 1}, {-5, 2, 2})))), 1U);
   EXPECT_EQ(reversed_in(joined(cube_at(0, 4), reversed(box_mesh({-6, 0, 0}, {-5, 2, 2})))), 1U);
+}
+
+// With its axes in another order, and mirrored or not, but facing as before.
+TriangleMesh turned(TriangleMesh mesh, const std::array<int, 3>& axes, double sign) {
+  for (Vec3& p : mesh.vertices) p = sign * Vec3{p[axes[0]], p[axes[1]], p[axes[2]]};
+  const bool is_even = (axes[1] - axes[0] + 3) % 3 == 1;
+  return is_even == (sign > 0) ? mesh : reversed(mesh);
+}
+
+// Of a mesh in all these positions.
+void expect_reversed_in_any_position(const TriangleMesh& mesh, std::uint64_t expected) {
+  std::array axes{0, 1, 2};
+  do {
+    for (const double sign : {1.0, -1.0}) {
+      EXPECT_EQ(reversed_in(turned(mesh, axes, sign)), expected) << axes[0] << axes[1] << axes[2] << ' ' << sign;
+    }
+  } while (std::ranges::next_permutation(axes).found);
+}
+
+// A cone of negative volume, from a ring around z at the height z to `apex`.
+TriangleMesh reversed_cone(std::uint32_t corners, double z, const Vec3& apex) {
+  TriangleMesh cone{{apex}, {}};
+  for (std::uint32_t n = 0; n < corners; ++n) {
+    const double angle = 2 * std::numbers::pi * n / corners;
+    cone.vertices.push_back({5 + 2 * std::cos(angle), 5 + 2 * std::sin(angle), z});
+    const std::uint32_t from = n + 1, to = (n + 1) % corners + 1;
+    cone.triangles.push_back({0, to, from});
+    if (n > 0 && n + 1 < corners) cone.triangles.push_back({1, from, to});
+  }
+  return apex.z > z ? cone : reversed(cone);
+}
+
+// Neither its first vertices nor these moved by the perturbation tell: they move along the wall or past it.
+TEST(MeshDefects, WhatTouchesAWallIsWhereTheRestOfItIs) {
+  const TriangleMesh room = cube_at(0, 10);
+  for (const std::uint32_t corners : {3U, 4U, 5U, 40U}) {
+    expect_reversed_in_any_position(reversed_cone(corners, 0, {9, 5, -3}), 1);
+    expect_reversed_in_any_position(joined(room, reversed_cone(corners, 0, {9, 5, -3})), 1);
+    expect_reversed_in_any_position(joined(room, reversed_cone(corners, 0, {9, 5, 3})), 0);
+    expect_reversed_in_any_position(joined(room, reversed_cone(corners, 10, {9, 5, 13})), 1);
+    expect_reversed_in_any_position(joined(room, reversed_cone(corners, 10, {9, 5, 7})), 0);
+  }
+  // From the ceiling by its first vertex alone, and up to the floor from below.
+  const std::vector<Triangle> faces{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  expect_reversed_in_any_position(joined(room, {{{1, 5, 10}, {8, 1, 5}, {9, 5, 3}, {8, 9, 5}}, faces}), 0);
+  expect_reversed_in_any_position(joined(room, {{{1, 5, 0}, {8, 9, -5}, {9, 5, -3}, {8, 1, -5}}, faces}), 1);
+}
+
+TEST(MeshDefects, CavityMayTouchItsWallsWithAllVertices) {
+  TriangleMesh octahedron{{{0, 5, 5}, {10, 5, 5}, {5, 0, 5}, {5, 10, 5}, {5, 5, 0}, {5, 5, 10}}, {}};
+  for (const std::uint32_t x : {0U, 1U}) {
+    for (const std::uint32_t y : {2U, 3U}) {
+      for (const std::uint32_t z : {4U, 5U}) {
+        const bool faces_inward = (x + y + z) % 2 == 0;
+        octahedron.triangles.push_back(faces_inward ? Triangle{x, y, z} : Triangle{x, z, y});
+      }
+    }
+  }
+  EXPECT_EQ(reversed_in(octahedron), 1U);
+  EXPECT_EQ(reversed_in(joined(cube_at(0, 10), octahedron)), 0U);
 }
 
 TEST(MeshDefects, WhollyReversedHollowSolidIsReversedOnce) {

@@ -480,6 +480,8 @@ MUTANTS = [
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
         ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+    Mutant("touching_is_within", "a vertex on another component does not tell whether it lies within", [
+        ("core/mesh/mesh_defects.cpp", "q.x >= least_x && on_triangle(a, b, c, q)", "false && q.x >= least_x")]),
     Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
         ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
     Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [

@@ -103,10 +103,10 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
   if (!edges.empty()) {                   // the values of a closed mesh are exact anyway
     constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
-    constexpr double kFinePerCell = 4.0, kRoughPerCell = 4.0;  // at most, where there are few holes
-    const auto cells = static_cast<double>(mixed_cells(inside));
-    fine.emplace(mesh, options_for(for_points(kTolerance, kFinePerCell * cells), edges));
-    rough.emplace(mesh, options_for(for_points(for_sides.tolerance, kRoughPerCell * cells), edges));
+    constexpr double kPerCell = 4.0;      // points that either is asked for, where there are few holes
+    const double points = kPerCell * static_cast<double>(mixed_cells(inside));
+    fine.emplace(mesh, options_for(for_points(kTolerance, points), edges));
+    rough.emplace(mesh, options_for(for_points(for_sides.tolerance, points), edges));
   }
   FinishedSurface closed = surface_of(name, mesh, fine ? FineAndRough(*fine, *rough) : *rough, inside, options);
   fine.reset();

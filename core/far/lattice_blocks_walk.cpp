@@ -151,12 +151,18 @@ Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_
   return cover;
 }
 
+// Whether the nodes of a fit are where they should be, nearly: they are coordinates, which are rounded.
+bool LatticeBlocksWalk::can_fit_in(const Cube& cube) const {
+  const double most_moved = std::max(0x1p-36, blocks_.tolerance_ / 128);  // half sides (docs/method.md, "Rounding")
+  return most_moved * cube.half >= 0x1p-53 * largest_coordinate(cube.centre);
+}
+
 // As many as the budget allows, the most harmless first; ascending. A block that is deeper than the largest ones ever
 // are has none.
 std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& block,
                                                             std::span<const std::uint32_t> triangles) const {
   std::vector<std::uint32_t> far;
-  if (block.level >= levels_) return far;
+  if (block.level >= levels_ || !can_fit_in(block.cube)) return far;
   using Error = std::pair<double, std::uint32_t>;
   std::vector<Error> errors;
   for (const std::uint32_t n : triangles) {
@@ -181,13 +187,9 @@ std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& b
 }
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.
-double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) const {
+double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) {
   constexpr double kLeastHalf = 0x1p-400;  // squares of less lose bits, as areas of sources of that size do
-  // Nodes of the fit are coordinates, which rounding moves by a unit in the last place.
-  const double most_moved = std::max(0x1p-36, blocks_.tolerance_ / 128);  // half sides
-  if (!(cube.half >= kLeastHalf && most_moved * cube.half >= 0x1p-53 * largest_coordinate(cube.centre))) {
-    return std::numeric_limits<double>::infinity();
-  }
+  if (cube.half < kLeastHalf) return std::numeric_limits<double>::infinity();
   double distance = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     distance =

@@ -113,7 +113,8 @@ class LatticeBlocksWalk {
   [[nodiscard]] Cover far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const;
   [[nodiscard]] std::vector<std::uint32_t> far_triangles(const SampleBlock& block,
                                                          std::span<const std::uint32_t> triangles) const;
-  [[nodiscard]] double error_of(const TriangleExtent& source, const Cube& cube) const;
+  [[nodiscard]] bool can_fit_in(const Cube& cube) const;
+  static double error_of(const TriangleExtent& source, const Cube& cube);
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;

@@ -12,7 +12,8 @@ namespace raycone {
 namespace {
 
 // Of plane_tolerance(). Text often has seven digits, or six behind the point.
-constexpr double kVoxels = 1e-9, kDouble = 0x1p-50, kSingle = 0x1p-22, kText = 0x1p-20;
+constexpr double kVoxels = 1e-9, kMostVoxels = 0x1p-10;
+constexpr double kDouble = 0x1p-50, kSingle = 0x1p-22, kText = 0x1p-20;
 
 constexpr double kBorder = 16.0;  // margins: next to the border a point of an edge is as good, and there are no needles
 
@@ -180,7 +181,8 @@ double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
       for (int axis = 0; axis < 3; ++axis) rounding = least_rounding(p[axis], rounding);
     }
   }
-  return std::max(kVoxels * lattice.least_spacing(), rounding * largest);
+  return std::max(kVoxels, std::min(kMostVoxels, rounding * largest / lattice.least_spacing())) *
+         lattice.least_spacing();
 }
 
 std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell, std::size_t face) {

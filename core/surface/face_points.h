@@ -16,7 +16,7 @@ namespace raycone {
 
 // How far apart numbers of one plane may be, world units: a billionth of a voxel, or what the coordinates' own format
 // rounds. That is 2^-22 of the largest one where all of them are numbers in single precision, and 2^-20 where the
-// others have nine digits at most, as numbers in text files.
+// others have nine digits at most, as numbers in text files; a thousandth of a voxel at most, far from the origin.
 [[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
 
 // The cells at a face with nodes of both kinds: it is between two, or within one, which comes twice then.

@@ -48,8 +48,7 @@ class SurfaceMaker {
         creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, normals_, triangles_, cells_)),
         distance_(mesh),
         settler_(mesh, normals_, distance_, farthest_source(inside.lattice(), options.thickness)),
-        tolerance_(plane_tolerance(mesh, inside.lattice())),
-        moved_(std::min(tolerance_, kMostMoved * inside.lattice().least_spacing())) {}
+        tolerance_(plane_tolerance(mesh, inside.lattice())) {}
 
   FinishedSurface make() {
     enter("finding points on the mesh");
@@ -85,7 +84,6 @@ class SurfaceMaker {
 
  private:
   static constexpr double kMostMargin = 0x1p-4;
-  static constexpr double kMostMoved = 0x1p-10;  // voxels
   static constexpr int kRounds = 4;
 
   struct Attempt {
@@ -159,7 +157,7 @@ class SurfaceMaker {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
     std::optional<SurfaceMesh> result =
-        checked_merge(surface, mesh_, inside_, margins.inner, moved_, options_.single_precision, is_right_unmerged,
+        checked_merge(surface, mesh_, inside_, margins.inner, tolerance_, options_.single_precision, is_right_unmerged,
                       kind == ContourCells::kPolygons);
     if (result) surface = std::move(*result);
     return result.has_value();
@@ -170,7 +168,7 @@ class SurfaceMaker {
     constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
     const Lattice& lattice = inside_.lattice();
     return checked_sharpen(surface, mesh_, normals_, distance_, lattice,
-                           {std::max(kOff * margins.inner * lattice.largest_spacing(), moved_),
+                           {std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
                             kReach * lattice.least_spacing(), options_.single_precision, fewer});
   }
 
@@ -182,7 +180,7 @@ class SurfaceMaker {
   // What is left of `simplify` for pulls, as merging has moved points already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargin = 1.0 - 1e-6;
-    return kMargin * options_.simplify - most_merging(margins.inner * inside_.lattice().largest_spacing(), moved_);
+    return kMargin * options_.simplify - most_merging(margins.inner * inside_.lattice().largest_spacing(), tolerance_);
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
@@ -234,7 +232,6 @@ class SurfaceMaker {
   SourceSettler settler_;
 
   double tolerance_;
-  double moved_;  // how far points may be off planes of theirs for that: no more where the mesh is far from the origin
   std::vector<EdgePoint> points_;
 };
 

@@ -327,7 +327,10 @@ bool CellPolygons::cut_off_runs() {
     runs_ = left;
     run_count_ = count;
   }
-  return add_polygon(runs_[0], false);
+  // It goes around to the point of a face that it starts at, where its plane is on both sides of that.
+  Run& last = runs_[0];
+  if (last.corners[0] == last.corners[last.size - 1]) --last.size;
+  return add_polygon(last, false);
 }
 
 // Both cells at a square look at the same points in the same order.

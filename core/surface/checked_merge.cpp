@@ -78,43 +78,49 @@ class CheckedMerger {
     constexpr double kBetter = 0.25;
     const double unit = margin_ * inside_.lattice().least_spacing();
     std::optional<SurfaceMesh> result;
-    if (tolerance_ > kNearPlane * unit) result = merged_within(tolerance_, false);
-    if (!result && !is_wrong_) result = merged_within(kNearPlane * unit, false);
-    if (!result && !is_wrong_ && !once) result = merged_within(kBetter * unit, true);
+    if (tolerance_ > kNearPlane * unit) result = merged_within(tolerance_, Effort::kLeast);
+    if (!result) result = merged_within(kNearPlane * unit, Effort::kLittle);
+    if (!result && !is_wrong_ && !once) result = merged_within(kBetter * unit, Effort::kAll);
     return result;
   }
 
  private:
-  // What merging spoils is not merged; `all`: nor is what puts more than a few nodes on the wrong side, as happens
-  // where a plane of the mesh is one of the lattice, or what only the last resort mends. `most`: world units.
-  std::optional<SurfaceMesh> merged_within(double most, bool all) {
+  // kLeast gives up where the others ask whether the surface before is right, which takes longer than merging. kAll
+  // goes on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the lattice, to the
+  // last resort.
+  enum class Effort : std::uint8_t { kLeast, kLittle, kAll };
+
+  // What merging spoils is not merged. `most`: world units.
+  std::optional<SurfaceMesh> merged_within(double most, Effort effort) {
     const std::vector<Vec3>& vertices = surface_.mesh.vertices;
     const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
     const double unit = margin_ * inside_.lattice().least_spacing();
     kept_.assign(vertices.size(), false);
+    at_home_ = kept_;
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most, kNearCorner * unit});
     RepeatedCheck check(inside_, vertices.size());
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     bool to_corners = false;
-    const int rounds = all ? kRounds + kWideRounds : kRounds;
+    const int rounds = effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
+    const auto may_go_on = [&] { return effort != Effort::kLeast && is_right(); };
     for (int round = 0; round < rounds; ++round) {
       MergedFaces merged = merger.merge(kept_);
       TriangleMesh compact = used_part(vertices, merged.triangles);
-      if (round > 0 && to_corners) move_to_corners(compact, unit);
+      if (round > 0 && to_corners) move_to_corners(merged, unit, compact);
       SurfaceFaults faults = check.faults(merged, compact, misplaced);
       if (!faults.none()) check.remember(merged, compact, faults);
       if (round == 0 && faults.nodes > 0)
         to_corners = is_better_at_corners(merged, unit, check, compact, faults, misplaced);
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
-      if (faults.nodes > few_nodes && !all) return std::nullopt;
+      if (faults.nodes > few_nodes && effort != Effort::kAll) return std::nullopt;
       const std::uint64_t count = faults.nodes + faults.intersections.pairs;
       const bool no_better = round > 0 && count >= faults_before;
-      if ((no_better || round == kRounds) && !is_right()) return std::nullopt;
+      if ((no_better || round == kRounds) && !may_go_on()) return std::nullopt;
       faults_before = count;
       // With nothing more kept, the next round would find the same.
       while (!keep({merged, compact, faults, misplaced}, round)) {
-        if (++round == rounds || !is_right()) return std::nullopt;
+        if (++round == rounds || !may_go_on()) return std::nullopt;
       }
     }
     return std::nullopt;
@@ -127,7 +133,7 @@ class CheckedMerger {
   bool is_better_at_corners(const MergedFaces& merged, double unit, RepeatedCheck& check, TriangleMesh& mesh,
                             SurfaceFaults& faults, NodeSet& misplaced) const {
     TriangleMesh moved = mesh;
-    move_to_corners(moved, unit);
+    move_to_corners(merged, unit, moved);
     NodeSet misplaced_then(inside_.lattice());
     SurfaceFaults then = check.faults(merged, moved, misplaced_then);
     const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
@@ -139,10 +145,18 @@ class CheckedMerger {
     return true;
   }
 
-  void move_to_corners(TriangleMesh& merged, double unit) const {
-    raycone::move_to_corners(input_, inside_.lattice(), kNearCorner * unit, merged.vertices);
-    if (!single_precision_) return;
-    for (Vec3& p : merged.vertices) p = rounded_to_float(p);
+  // `mesh`: the faces of `merged`, in their order.
+  void move_to_corners(const MergedFaces& merged, double unit, TriangleMesh& mesh) const {
+    raycone::move_to_corners(input_, inside_.lattice(), kNearCorner * unit, mesh.vertices);
+    for (Vec3& p : mesh.vertices) {
+      if (single_precision_) p = rounded_to_float(p);
+    }
+    for (std::size_t face = 0; face < merged.triangles.size(); ++face) {
+      for (std::size_t n = 0; n < 3; ++n) {
+        const std::uint32_t v = merged.triangles[face][n];
+        if (at_home_[v]) mesh.vertices[mesh.triangles[face][n]] = surface_.mesh.vertices[v];
+      }
+    }
   }
 
   bool is_right() {
@@ -160,8 +174,20 @@ class CheckedMerger {
 
   // Returns whether more is kept than before.
   bool keep(const Faulty& found, int round) {
-    if (round >= kRounds) return keep_around(found, round - kRounds);
-    return keep_near(found, round == 0 ? kFirstReach : std::exp2(round - 1));
+    const bool any_home = keep_at_home(found);
+    if (round >= kRounds) return keep_around(found, round - kRounds) || any_home;
+    return keep_near(found, round == 0 ? kFirstReach : std::exp2(round - 1)) || any_home;
+  }
+
+  // Faces of points that are kept may have faults because these were moved to corners. Returns whether more stay.
+  bool keep_at_home(const Faulty& found) {
+    const std::vector<bool> touched = vertices_at_faults(found);
+    bool is_more = false;
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      if (!touched[v] || !kept_[v] || at_home_[v]) continue;
+      at_home_[v] = is_more = true;
+    }
+    return is_more;
   }
 
   // Whether more is kept now.
@@ -238,8 +264,9 @@ class CheckedMerger {
   double margin_, tolerance_;
   bool single_precision_;
   const std::function<bool()>& is_right_;
-  bool is_wrong_ = false;  // as far as is known
-  std::vector<bool> kept_;
+  bool is_wrong_ = false;      // as far as is known
+  std::vector<bool> kept_;     // vertices that are not merged
+  std::vector<bool> at_home_;  // nor moved to corners of the mesh
 };
 
 }  // namespace

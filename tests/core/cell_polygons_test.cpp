@@ -354,6 +354,41 @@ TEST(CellPolygons, CloseUpWhereFacesHaveSeveralPoints) {
   }
 }
 
+// A round edge of pybullet's H0.STL: an odd number of points on a cell's faces is left where one plane is on both sides
+// of the last of them.
+TEST(CellPolygons, GoOnceAroundFromThePointOfAFace) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh mesh{{{0.02026059664785862, -0.062355704605579376, -0.023096155375242233},
+                           {0.012285592965781689, -0.064403340220451355, -0.023096155375242233},
+                           {0.012695024721324444, -0.066549643874168396, -0.008215378038585186},
+                           {0.006935665849596262, -0.068102225661277771, -0.00299997185356915},
+                           {0.012809316627681255, -0.067134104669094086, -0.00299997185356915},
+                           {0.020935805514454842, -0.064433775842189789, -0.008215378038585186},
+                           {0.015287379734218121, -0.066725656390190125, -0.00299997185356915},
+                           {0.0042540379799902439, -0.067615993320941925, -0.008215378038585186},
+                           {0.0176, -0.0863, -0.0109}},
+                          {{0, 1, 2},
+                           {3, 4, 2},
+                           {5, 0, 2},
+                           {5, 2, 6},
+                           {6, 2, 4},
+                           {3, 2, 7},
+                           {7, 2, 1},
+                           {1, 0, 8},
+                           {4, 3, 8},
+                           {0, 5, 8},
+                           {5, 6, 8},
+                           {6, 4, 8},
+                           {3, 7, 8},
+                           {7, 1, 8}}};
+  const double h = 0.0011842161065011513;
+  const Lattice lattice{
+      {-0.013119620425025305, -0.0936463156671036, -0.0347366479086125}, {h, h, h}, {-1, -1, -1}, {47, 47, 47}};
+  const Cells cells(mesh, lattice, PointsOfFaces::kSections);
+  const SurfaceFaults faults = faults_of(cells.contoured(ContourCells::kPolygons).surface.mesh, cells.nodes);
+  EXPECT_TRUE(faults.none()) << described(faults);
+}
+
 // A face keeps all of its points, or none.
 TEST(FacePoints, AreDroppedFaceByFace) {
   const DefaultFloatingPoint guard;

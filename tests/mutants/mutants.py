@@ -258,7 +258,7 @@ MUTANTS = [
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [
-        ("core/mesh/exterior_edges.cpp", "ranks_[placed[rank].place] = rank;", "ranks_[rank] = rank;")]),
+        ("core/mesh/edge_chains.cpp", "ranks_[placed[rank].place] = rank;", "ranks_[rank] = rank;")]),
     Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
         ("core/mesh/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
     Mutant("equal_hashes_are_equal", "vertices are merged by their coordinates, never by a hash alone", [

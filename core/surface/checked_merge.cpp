@@ -20,7 +20,7 @@ namespace raycone {
 namespace {
 
 // Near faults, vertices are kept for these many rounds; then, as the last resort, far around them.
-constexpr int kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
+constexpr int kFewRounds = 6, kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
 constexpr double kFirstReach = 0.25;  // voxels; then 1, 2, 4, ...
 
 using Node = NodeSet::Node;
@@ -85,9 +85,9 @@ class CheckedMerger {
   }
 
  private:
-  // kLeast gives up where the others ask whether the surface before is right, which takes longer than merging. kAll
-  // goes on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the lattice, to the
-  // last resort.
+  // Only kLeast goes on without asking whether the surface before is right, which takes longer than merging, but for
+  // few rounds. kAll goes on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the
+  // lattice, to the last resort.
   enum class Effort : std::uint8_t { kLeast, kLittle, kAll };
 
   // What merging spoils is not merged. `most`: world units.
@@ -101,20 +101,19 @@ class CheckedMerger {
     RepeatedCheck check(inside_, vertices.size());
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
-    bool to_corners = false;
-    const int rounds = effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
-    const auto may_go_on = [&] { return effort != Effort::kLeast && is_right(); };
+    moves_ = Moves::kNone;
+    const int rounds = effort == Effort::kLeast ? kFewRounds : effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
+    const auto may_go_on = [&] { return effort == Effort::kLeast || is_right(); };
     for (int round = 0; round < rounds; ++round) {
       MergedFaces merged = merger.merge(kept_);
       TriangleMesh compact = used_part(vertices, merged.triangles);
-      if (round > 0 && to_corners) move_to_corners(merged, unit, compact);
+      move_points(merged, unit, compact);
       SurfaceFaults faults = check.faults(merged, compact, misplaced);
       if (!faults.none()) check.remember(merged, compact, faults);
-      if (round == 0 && faults.nodes > 0)
-        to_corners = is_better_at_corners(merged, unit, check, compact, faults, misplaced);
+      if (round == 0 && faults.nodes > 0) find_moves(merged, unit, check, compact, faults, misplaced);
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       if (faults.nodes > few_nodes && effort != Effort::kAll) return std::nullopt;
-      const std::uint64_t count = faults.nodes + faults.intersections.pairs;
+      const std::uint64_t count = count_of(faults);
       const bool no_better = round > 0 && count >= faults_before;
       if ((no_better || round == kRounds) && !may_go_on()) return std::nullopt;
       faults_before = count;
@@ -126,28 +125,41 @@ class CheckedMerger {
     return std::nullopt;
   }
 
+  // Which points are moved, by no more than margins and rounding: those next to corners of the mesh to these; and,
+  // before that, those of faces in level planes into these.
+  enum class Moves : std::uint8_t { kNone, kToCorners, kIntoLevelPlanes };
+
   // Where a plane of the mesh leads through nodes, its faces have them on the right side if they are in that plane
-  // exactly, as those between corners of the mesh are. Points next to corners were kept off nodes, or are rounded.
-  // Returns whether fewer nodes are on the wrong side, and no other faults more, with such points moved to the corners;
-  // sets all to what it is then.
-  bool is_better_at_corners(const MergedFaces& merged, double unit, RepeatedCheck& check, TriangleMesh& mesh,
-                            SurfaceFaults& faults, NodeSet& misplaced) const {
-    TriangleMesh moved = mesh;
-    move_to_corners(merged, unit, moved);
-    NodeSet misplaced_then(inside_.lattice());
-    SurfaceFaults then = check.faults(merged, moved, misplaced_then);
-    const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
-    if (then.nodes >= faults.nodes || others > 0 || then.intersections.pairs > faults.intersections.pairs) return false;
-    check.remember(merged, moved, then);
-    mesh = std::move(moved);
-    faults = std::move(then);
-    misplaced = std::move(misplaced_then);
-    return true;
+  // exactly, as those between corners of the mesh are. Other points were kept off nodes, or are rounded. Takes the
+  // moves with the fewest faults that are undone, and none of others, from now on; sets all to what it is then.
+  void find_moves(const MergedFaces& merged, double unit, RepeatedCheck& check, TriangleMesh& mesh,
+                  SurfaceFaults& faults, NodeSet& misplaced) {
+    const TriangleMesh before = mesh;
+    Moves best = Moves::kNone;
+    for (const Moves moves : {Moves::kToCorners, Moves::kIntoLevelPlanes}) {
+      if (count_of(faults) == 0) break;
+      moves_ = moves;
+      TriangleMesh moved = before;
+      move_points(merged, unit, moved);
+      NodeSet misplaced_then(inside_.lattice());
+      SurfaceFaults then = check.faults(merged, moved, misplaced_then);
+      const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
+      if (others > 0 || count_of(then) >= count_of(faults)) continue;
+      check.remember(merged, moved, then);
+      mesh = std::move(moved);
+      faults = std::move(then);
+      misplaced = std::move(misplaced_then);
+      best = moves;
+    }
+    moves_ = best;
   }
 
   // `mesh`: the faces of `merged`, in their order.
-  void move_to_corners(const MergedFaces& merged, double unit, TriangleMesh& mesh) const {
-    raycone::move_to_corners(input_, inside_.lattice(), kNearCorner * unit, mesh.vertices);
+  void move_points(const MergedFaces& merged, double unit, TriangleMesh& mesh) const {
+    if (moves_ == Moves::kNone) return;
+    const double reach = kNearCorner * unit;
+    if (moves_ == Moves::kIntoLevelPlanes) move_into_level_planes(input_, merged.sources, reach, mesh);
+    move_to_corners(input_, inside_.lattice(), reach, mesh.vertices);
     for (Vec3& p : mesh.vertices) {
       if (single_precision_) p = rounded_to_float(p);
     }
@@ -158,6 +170,9 @@ class CheckedMerger {
       }
     }
   }
+
+  // Of those that are undone.
+  static std::uint64_t count_of(const SurfaceFaults& faults) { return faults.nodes + faults.intersections.pairs; }
 
   bool is_right() {
     is_wrong_ = !is_right_();
@@ -179,7 +194,7 @@ class CheckedMerger {
     return keep_near(found, round == 0 ? kFirstReach : std::exp2(round - 1)) || any_home;
   }
 
-  // Faces of points that are kept may have faults because these were moved to corners. Returns whether more stay.
+  // Faces of points that are kept may have faults because these were moved. Returns whether more stay.
   bool keep_at_home(const Faulty& found) {
     const std::vector<bool> touched = vertices_at_faults(found);
     bool is_more = false;
@@ -266,7 +281,8 @@ class CheckedMerger {
   const std::function<bool()>& is_right_;
   bool is_wrong_ = false;      // as far as is known
   std::vector<bool> kept_;     // vertices that are not merged
-  std::vector<bool> at_home_;  // nor moved to corners of the mesh
+  std::vector<bool> at_home_;  // nor moved
+  Moves moves_ = Moves::kNone;
 };
 
 }  // namespace

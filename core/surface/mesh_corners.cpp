@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -79,6 +80,22 @@ void move_to_corners(const TriangleMesh& input, const Lattice& lattice, double r
     if (nearest != UINT32_MAX) moved.emplace_back(nearest, corner);
   }
   for (const auto& [v, corner] : moved) vertices[v] = corner;
+}
+
+void move_into_level_planes(const TriangleMesh& input, const std::vector<std::int32_t>& sources, double reach,
+                            TriangleMesh& surface) {
+  for (std::size_t face = 0; face < surface.triangles.size(); ++face) {
+    if (sources[face] < 0) continue;
+    const Triangle& source = input.triangles[static_cast<std::size_t>(sources[face])];
+    const Vec3 &a = input.vertices[source[0]], &b = input.vertices[source[1]], &c = input.vertices[source[2]];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (a[axis] != b[axis] || a[axis] != c[axis]) continue;
+      for (const std::uint32_t corner : surface.triangles[face]) {
+        double& here = surface.vertices[corner][axis];
+        if (std::abs(here - a[axis]) <= reach) here = a[axis];
+      }
+    }
+  }
 }
 
 }  // namespace raycone

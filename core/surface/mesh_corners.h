@@ -1,6 +1,7 @@
-// Vertices of a surface that are corners of the mesh, but for rounding and margins.
+// Vertices of a surface that are corners of the mesh, or in its level planes, but for rounding and margins.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/data/lattice.h"
@@ -12,5 +13,10 @@ namespace raycone {
 // of equally near ones the first. `lattice`: of about the size of the faces. `reach` is less than its spacing. The used
 // vertices of `input` are finite.
 void move_to_corners(const TriangleMesh& input, const Lattice& lattice, double reach, std::vector<Vec3>& vertices);
+
+// Moves corners of faces whose source, a triangle of `input`, is level along an axis into its plane, exactly, where
+// they are within `reach` of it. `sources`: of each face; negative: none.
+void move_into_level_planes(const TriangleMesh& input, const std::vector<std::int32_t>& sources, double reach,
+                            TriangleMesh& surface);
 
 }  // namespace raycone

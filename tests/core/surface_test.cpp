@@ -1099,6 +1099,49 @@ TEST(MeshCorners, TakeTheNearestVertexEach) {
   EXPECT_EQ(vertices, expected);
 }
 
+TEST(MeshCorners, LevelPlanesTakeCornersOfTheirFacesAlone) {
+  const TriangleMesh mesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}}};
+  TriangleMesh surface{
+      {{0.1, 0.001, 1.001}, {0.5, 0.1, 0.999}, {0.1, 0.5, 1.01}, {0.1, -0.003, 1.5}, {0.9, 0.2, 1.002}},
+      {{0, 1, 2}, {1, 0, 3}, {1, 4, 3}, {2, 4, 3}}};
+  move_into_level_planes(mesh, {0, 1, 2, kHole}, 0.005, surface);
+  const std::vector<Vec3> expected{{0.1, 0, 1}, {0.5, 0.1, 1}, {0.1, 0.5, 1.01}, {0.1, 0, 1.5}, {0.9, 0.2, 1.002}};
+  EXPECT_EQ(surface.vertices, expected);
+}
+
+// Three tetrahedra stand on a plane of the lattice and pass through each other: their faces meet there at points that
+// are no corners.
+TEST(Surface, InLevelPlanesThroughNodesHasLargeFaces) {
+  const TriangleMesh mesh{{{-2, -2, 0},
+                           {-2, 13, 0},
+                           {5.5, 5.5, 15},
+                           {13, -2, 0},
+                           {16, 14, 0},
+                           {16, 14, 30},
+                           {31, -1, 0},
+                           {31, 29, 0},
+                           {0, 30, 0},
+                           {15, 15, 0},
+                           {15, 15, 30},
+                           {30, 30, 0}},
+                          {{0, 2, 1},
+                           {0, 3, 2},
+                           {2, 3, 1},
+                           {1, 3, 0},
+                           {4, 5, 7},
+                           {4, 6, 5},
+                           {5, 6, 7},
+                           {7, 6, 4},
+                           {8, 9, 10},
+                           {8, 11, 9},
+                           {9, 11, 10},
+                           {10, 11, 8}}};
+  const std::optional<double> volume = mesh_statistics(mesh).signed_volume;
+  ASSERT_TRUE(volume && *volume > 0.0);
+  const auto [surface, lattice] = surface_of(mesh, 82);
+  EXPECT_LT(surface.mesh.triangles.size(), 40U);
+}
+
 SurfaceMeasures measured(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
   DroppedSamples dropped(surface, inside, 0.0);
   return measure_surface(surface, mesh, dropped);

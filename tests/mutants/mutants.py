@@ -584,6 +584,10 @@ MUTANTS = [
         ("core/surface/checked_merge.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
         ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
+    Mutant("points_beside_level_planes", "points of faces in level planes are in these exactly", [
+        ("core/surface/mesh_corners.cpp", "if (std::abs(here - a[axis]) <= reach) here = a[axis];", "")]),
+    Mutant("once_around_twice", "a polygon that ends where it starts has that corner once", [
+        ("core/surface/cell_polygons.cpp", "last.corners[last.size - 1]) --last.size;", "last.corners[last.size - 1]) last.size += 0;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

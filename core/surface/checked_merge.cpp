@@ -158,9 +158,13 @@ class CheckedMerger {
   void move_points(const MergedFaces& merged, double unit, TriangleMesh& mesh) const {
     if (moves_ == Moves::kNone) return;
     const double reach = kNearCorner * unit;
+    const std::vector<Vec3> before = mesh.vertices;
     if (moves_ == Moves::kIntoLevelPlanes) move_into_level_planes(input_, merged.sources, reach, mesh);
     move_to_corners(input_, inside_.lattice(), reach, mesh.vertices);
-    for (Vec3& p : mesh.vertices) {
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      Vec3& p = mesh.vertices[v];
+      const Vec3 step = p - before[v];
+      if (!(dot(step, step) <= reach * reach)) p = before[v];  // several planes may have moved it
       if (single_precision_) p = rounded_to_float(p);
     }
     for (std::size_t face = 0; face < merged.triangles.size(); ++face) {

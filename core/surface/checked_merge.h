@@ -14,10 +14,11 @@ namespace raycone {
 // How near points of a surface come to count as one with a corner of the input, or as in one plane: margins.
 inline constexpr double kNearCorner = 16.0, kNearPlane = 2.5;
 
-// How far that moves points of a surface at most: to corners, and within planes. `margin` as a length; `tolerance`: of
-// planes, as below.
+// How far that moves points of a surface at most, and points of the merged surface from it: to corners, and in planes
+// that have what vanished on one side, as far as the corners of what is left are on the other. `margin` as a length;
+// `tolerance`: of planes, as below.
 [[nodiscard]] inline double most_merging(double margin, double tolerance) {
-  return kNearCorner * margin + std::max(kNearPlane * margin, tolerance);
+  return kNearCorner * margin + 2 * std::max(kNearPlane * margin, tolerance);
 }
 
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more

@@ -14,9 +14,9 @@ namespace {
 // Pulls make no face of less shape_along() than this, unless there was one before.
 constexpr double kLeastShape = 2e-3;
 
-// Of two planes back to back: 180 degrees but for 1e-3 radians. Others hold a point within a thousand times what they
-// are off by themselves.
-constexpr double kBackToBack = -1 + 0x1p-21;  // cosine
+// Of two planes nearly back to back, with less than 30 degrees of solid between them. Between others, a point that is
+// as near to both is no more than four times as far from the line where they meet.
+constexpr double kBackToBack = -0.866;  // cosine
 
 double longest_square(const Vec3& u, const Vec3& v) {
   const Vec3 w = v - u;
@@ -249,9 +249,9 @@ bool PatchMerger::is_in_planes(const Vec3& p) const {
   return std::ranges::all_of(around_, [&](std::uint32_t plane) { return planes_[plane].distance(p) <= limits_.most; });
 }
 
-// Some lines hold although planes do not hold them: the rim of a fin, around which faces lie back to back, in planes
-// that differ in their fronts alone; and the border of faces that close a hole, which may be in the plane of what is
-// beside it. A vertex there must be on the straight line between its neighbours on the line, and goes to one of them.
+// Some lines hold although planes do not hold them: the rim of a fin or a blade, around which faces lie back to back;
+// and the border of faces that close a hole, which may be in the plane of what is beside it. A vertex there must be on
+// the straight line between its neighbours on the line, and goes to one of them.
 bool PatchMerger::may_have_rim() const {
   const bool holes = star_.front().is_hole;
   if (std::ranges::any_of(star_, [&](const StarFace& face) { return face.is_hole != holes; })) return true;

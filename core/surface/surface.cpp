@@ -157,8 +157,8 @@ class SurfaceMaker {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
     std::optional<SurfaceMesh> result =
-        checked_merge(surface, mesh_, inside_, margins.inner, tolerance_, options_.single_precision, is_right_unmerged,
-                      kind == ContourCells::kPolygons);
+        checked_merge(surface, mesh_, inside_, margins.inner, merge_tolerance(), options_.single_precision,
+                      is_right_unmerged, kind == ContourCells::kPolygons);
     if (result) surface = std::move(*result);
     return result.has_value();
   }
@@ -177,10 +177,16 @@ class SurfaceMaker {
     return thickness + lattice.least_spacing() / 4;
   }
 
+  // How far apart numbers of one plane may be: where `simplify` is less, so that half of that is left for pulls.
+  [[nodiscard]] double merge_tolerance() const {
+    return options_.simplify > 0.0 ? std::min(tolerance_, options_.simplify / 4) : tolerance_;
+  }
+
   // What is left of `simplify` for pulls, as merging has moved points already.
   [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
     constexpr double kMargin = 1.0 - 1e-6;
-    return kMargin * options_.simplify - most_merging(margins.inner * inside_.lattice().largest_spacing(), tolerance_);
+    return kMargin * options_.simplify -
+           most_merging(margins.inner * inside_.lattice().largest_spacing(), merge_tolerance());
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.

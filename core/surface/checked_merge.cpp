@@ -74,14 +74,15 @@ class CheckedMerger {
   // Points of one plane are as far apart across it as the input's coordinates are rounded, and up to two margins where
   // they are kept off nodes. If faces that are merged as well as that have faults, they are merged where they agree
   // better. None where faults are left even so.
-  std::optional<SurfaceMesh> merge(bool once) {
-    constexpr double kBetter = 0.25;
+  CheckedMerge merge(bool once) {
+    constexpr double kBetter = 0.25, kManyMore = 1.5;
     const double unit = margin_ * inside_.lattice().least_spacing();
     std::optional<SurfaceMesh> result;
     if (tolerance_ > kNearPlane * unit) result = merged_within(tolerance_, Effort::kLeast);
     if (!result) result = merged_within(kNearPlane * unit, Effort::kLittle);
     if (!result && !is_wrong_ && !once) result = merged_within(kBetter * unit, Effort::kAll);
-    return result;
+    const bool is_costly = !result || static_cast<double>(result->mesh.triangles.size()) > kManyMore * faces_of_all_;
+    return {std::move(result), is_costly && cuts_nodes_off_};
   }
 
  private:
@@ -101,7 +102,7 @@ class CheckedMerger {
     RepeatedCheck check(inside_, vertices.size());
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
-    moves_ = Moves::kNone;
+    moves_ = PointMoves::kNone;
     const int rounds = effort == Effort::kLeast ? kFewRounds : effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
     const auto may_go_on = [&] { return effort == Effort::kLeast || is_right(); };
     for (int round = 0; round < rounds; ++round) {
@@ -111,6 +112,10 @@ class CheckedMerger {
       SurfaceFaults faults = check.faults(merged, compact, misplaced);
       if (!faults.none()) check.remember(merged, compact, faults);
       if (round == 0 && faults.nodes > 0) find_moves(merged, unit, check, compact, faults, misplaced);
+      if (round == 0) {
+        cuts_nodes_off_ = cuts_nodes_off_ || faults.nodes > 0;
+        faces_of_all_ = std::max(faces_of_all_, static_cast<double>(compact.triangles.size()));
+      }
       if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
       if (faults.nodes > few_nodes && effort != Effort::kAll) return std::nullopt;
       const std::uint64_t count = count_of(faults);
@@ -125,18 +130,14 @@ class CheckedMerger {
     return std::nullopt;
   }
 
-  // Which points are moved, by no more than margins and rounding: those next to corners of the mesh to these; and,
-  // before that, those of faces in level planes into these.
-  enum class Moves : std::uint8_t { kNone, kToCorners, kIntoLevelPlanes };
-
   // Where a plane of the mesh leads through nodes, its faces have them on the right side if they are in that plane
   // exactly, as those between corners of the mesh are. Other points were kept off nodes, or are rounded. Takes the
   // moves with the fewest faults that are undone, and none of others, from now on; sets all to what it is then.
   void find_moves(const MergedFaces& merged, double unit, RepeatedCheck& check, TriangleMesh& mesh,
                   SurfaceFaults& faults, NodeSet& misplaced) {
     const TriangleMesh before = mesh;
-    Moves best = Moves::kNone;
-    for (const Moves moves : {Moves::kToCorners, Moves::kIntoLevelPlanes}) {
+    PointMoves best = PointMoves::kNone;
+    for (const PointMoves moves : {PointMoves::kToCorners, PointMoves::kIntoLevelPlanes}) {
       if (count_of(faults) == 0) break;
       moves_ = moves;
       TriangleMesh moved = before;
@@ -156,15 +157,9 @@ class CheckedMerger {
 
   // `mesh`: the faces of `merged`, in their order.
   void move_points(const MergedFaces& merged, double unit, TriangleMesh& mesh) const {
-    if (moves_ == Moves::kNone) return;
-    const double reach = kNearCorner * unit;
-    const std::vector<Vec3> before = mesh.vertices;
-    if (moves_ == Moves::kIntoLevelPlanes) move_into_level_planes(input_, merged.sources, reach, mesh);
-    move_to_corners(input_, inside_.lattice(), reach, mesh.vertices);
-    for (std::size_t v = 0; v < before.size(); ++v) {
-      Vec3& p = mesh.vertices[v];
-      const Vec3 step = p - before[v];
-      if (!(dot(step, step) <= reach * reach)) p = before[v];  // several planes may have moved it
+    if (moves_ == PointMoves::kNone) return;
+    raycone::move_points(moves_, input_, merged.sources, inside_.lattice(), kNearCorner * unit, mesh);
+    for (Vec3& p : mesh.vertices) {
       if (single_precision_) p = rounded_to_float(p);
     }
     for (std::size_t face = 0; face < merged.triangles.size(); ++face) {
@@ -286,14 +281,15 @@ class CheckedMerger {
   bool is_wrong_ = false;      // as far as is known
   std::vector<bool> kept_;     // vertices that are not merged
   std::vector<bool> at_home_;  // nor moved
-  Moves moves_ = Moves::kNone;
+  PointMoves moves_ = PointMoves::kNone;
+  bool cuts_nodes_off_ = false;
+  double faces_of_all_ = 0.0;  // how many there are with all merged
 };
 
 }  // namespace
 
-std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
-                                         double margin, double tolerance, bool single_precision,
-                                         const std::function<bool()>& is_right, bool once) {
+CheckedMerge checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside, double margin,
+                           double tolerance, bool single_precision, const std::function<bool()>& is_right, bool once) {
   return CheckedMerger(surface, input, inside, margin, tolerance, single_precision, is_right).merge(once);
 }
 

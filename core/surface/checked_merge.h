@@ -21,16 +21,22 @@ inline constexpr double kNearCorner = 16.0, kNearPlane = 2.5;
   return kNearCorner * margin + 2 * std::max(kNearPlane * margin, tolerance);
 }
 
+struct CheckedMerge {
+  std::optional<SurfaceMesh> surface;
+  // With all merged, and points moved, nodes were on the wrong side: planes of the mesh lead through nodes, as nearly
+  // as numbers can tell.
+  bool cuts_nodes_off = false;
+};
+
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
 // of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
-// fewer, vertices next to the input's are moved there. None where all that did not help. `input`: the mesh that it is
-// of; `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `tolerance`: how far apart
-// numbers of one plane may be, world units (plane_tolerance()); `single_precision`: vertices are floats, and stay so;
-// `is_right`: whether the surface has no faults before, asked where that matters; `once`: not again within less, as who
-// calls can make another surface. The same for any number of threads.
-[[nodiscard]] std::optional<SurfaceMesh> checked_merge(const SurfaceMesh& surface, const TriangleMesh& input,
-                                                       const NodeSet& inside, double margin, double tolerance,
-                                                       bool single_precision, const std::function<bool()>& is_right,
-                                                       bool once);
+// fewer, points are moved (move_points()). No surface where all that did not help. `input`: the mesh that it is of;
+// `inside`: its nodes; `margin`: how far points are kept off nodes, voxels; `tolerance`: how far apart numbers of one
+// plane may be, world units (plane_tolerance()); `single_precision`: vertices are floats, and stay so; `is_right`:
+// whether the surface has no faults before, asked where that matters; `once`: not again within less, as who calls can
+// make another surface. The same for any number of threads.
+[[nodiscard]] CheckedMerge checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
+                                         double margin, double tolerance, bool single_precision,
+                                         const std::function<bool()>& is_right, bool once);
 
 }  // namespace raycone

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/exact/exact_determinant.h"
 #include "core/exact/predicates.h"
 #include "core/mesh/triangle_runs.h"
 
@@ -57,6 +58,23 @@ double place_between(Long of_first, Long of_second) {
   return at >= 0 && at <= 1 ? static_cast<double>(at) : 0.5;  // 0 / 0, where a needle's normal underflows
 }
 
+// The same of p and q and the plane of a triangle. Where both are near to it, their distances are all rounding.
+// `terms`: the magnitudes of the products that the distances, times the normal's length, have, added.
+double place_between(Long of_p, Long of_q, double terms, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                     const Vec3& c) {
+  constexpr Long kSure = 0x1p-10;
+  if (of_p + of_q > kSure * Long{terms}) return place_between(of_p, of_q);
+  const QuadVec3 normal = cross_of_differences(b, c, a);
+  const Quad from_p = absolute(dot(normal, quad_difference(p, a))),
+             from_q = absolute(dot(normal, quad_difference(q, a)));
+  const Quad all = from_p + from_q;
+  return all > 0 ? static_cast<double>(from_p / all) : 0.5;
+}
+
+double distance_terms(const Vec3& normal_terms, const Vec3& p, const Vec3& q, const Vec3& a) {
+  return dot(normal_terms, absolute(p - a) + absolute(q - a));
+}
+
 // segment_hit() of segments whose ends are on these sides of the triangle's plane.
 std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, int side_p,
                                   int side_q) {
@@ -66,7 +84,8 @@ std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, c
   if (side_q == 0) return 1.0;
   const LongVec3 normal = long_normal(a, b, c);
   return place_between(std::abs(long_dot(normal, long_difference(p, a))),
-                       std::abs(long_dot(normal, long_difference(q, a))));
+                       std::abs(long_dot(normal, long_difference(q, a))),
+                       distance_terms(cross_terms(b - a, c - a), p, q, a), p, q, a, b, c);
 }
 
 }  // namespace
@@ -141,7 +160,9 @@ std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, bool from_
     t.has_distance = true;
   }
   const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
-  const double at = from_end ? place_between(t.of_end, of_other) : place_between(of_other, t.of_end);
+  const double terms = distance_terms(t.normal.terms, end_, other, *t.a);
+  const double at = from_end ? place_between(t.of_end, of_other, terms, end_, other, *t.a, *t.b, *t.c)
+                             : place_between(of_other, t.of_end, terms, other, end_, *t.a, *t.b, *t.c);
   const int behind = from_end ? side : t.side;  // of the plane, in front of which w is less by one
   return SegmentHit{at, t.triangle, static_cast<std::int8_t>(how == Passage::kInside ? -behind : 0)};
 }

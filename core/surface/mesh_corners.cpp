@@ -98,4 +98,16 @@ void move_into_level_planes(const TriangleMesh& input, const std::vector<std::in
   }
 }
 
+void move_points(PointMoves moves, const TriangleMesh& input, const std::vector<std::int32_t>& sources,
+                 const Lattice& lattice, double reach, TriangleMesh& surface) {
+  if (moves == PointMoves::kNone) return;
+  const std::vector<Vec3> before = surface.vertices;
+  if (moves == PointMoves::kIntoLevelPlanes) move_into_level_planes(input, sources, reach, surface);
+  move_to_corners(input, lattice, reach, surface.vertices);
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    const Vec3 step = surface.vertices[v] - before[v];
+    if (!(dot(step, step) <= reach * reach)) surface.vertices[v] = before[v];  // several planes may have moved it
+  }
+}
+
 }  // namespace raycone

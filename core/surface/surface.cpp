@@ -19,6 +19,7 @@
 #include "core/surface/checked_sharpen.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
+#include "core/surface/mesh_corners.h"
 #include "core/surface/simplify.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
@@ -39,6 +40,7 @@ class SurfaceMaker {
   SurfaceMaker(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
                const SurfaceOptions& options)
       : mesh_(mesh),
+        evaluators_(evaluators),
         rule_(evaluators, options.rule),
         inside_(inside),
         options_(options),
@@ -57,12 +59,14 @@ class SurfaceMaker {
     Attempt last;
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      points_ = options_.thickness > 0.0 ? thick_edge_points(rule_, distance_, options_.thickness, cells_, margins)
-                                         : edge_points(mesh_, rule_, cells_, triangles_, margins);
+      find_points(margins);
       if (may_use_polygons()) {
-        const FacePoints sharp = points_of_sections(margins);
-        if (Attempt first = attempt(sharp, margins, true, ContourCells::kPolygons); first.made)
-          return *std::move(first.made);
+        Attempt first = attempt(points_of_sections(margins), margins, true, ContourCells::kPolygons);
+        if (first.cuts_nodes_off && factor == 1.0) {
+          if (std::optional<FinishedSurface> other = beside_nodes(margins, first.faces / 2))
+            first.made = std::move(other);
+        }
+        if (first.made) return *std::move(first.made);
       }
       FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
       for (int round = 0; round < kRounds; ++round) {
@@ -89,9 +93,95 @@ class SurfaceMaker {
   struct Attempt {
     std::optional<FinishedSurface> made;
     bool is_sharpened = false;
+    bool cuts_nodes_off = false;            // see CheckedMerge; of a surface of planes
+    std::size_t faces = 0;                  // after merging, if that succeeded
     std::optional<SurfaceFaults> faults{};  // of the surface before merging, where they have been looked for
     TriangleMesh failed{};                  // that surface, where it has any
   };
+
+  void find_points(const SurfaceMargins& margins) {
+    points_ = options_.thickness > 0.0 ? thick_edge_points(rule_, distance_, options_.thickness, cells_, margins)
+                                       : edge_points(mesh_, rule_, cells_, triangles_, margins);
+  }
+
+  // Where planes of the mesh lead through nodes, rounding has these on either side, and faces would have to go around
+  // each. A lattice that is moved by a part of a voxel has its nodes off such planes. Where planes are all there is,
+  // its surface is that of the lattice given: if its faces are between corners of the mesh, they have each node on the
+  // right side, exactly. That is looked at, and whether the points of the lattice's edges are on it.
+  // Corners that one lattice does not see the next one may, where far fewer faces are to be had. `most`: with as many,
+  // it is of no use.
+  [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) const {
+    constexpr int kTries = 6, kPrize = 4;
+    for (int n = 1; n <= kTries; ++n) {
+      Lattice moved = inside_.lattice();
+      for (int axis = 0; axis < 3; ++axis) moved.origin[axis] += step_off_nodes(n, axis) * moved.spacing[axis];
+      const NodeSet nodes = nodes_inside(evaluators_.rough, options_.rule, moved);
+      if (nodes.empty() || nodes.reaches_border()) continue;
+      SurfaceMaker maker(mesh_, evaluators_, nodes, options_);
+      maker.find_points(margins);
+      Attempt made = maker.attempt(maker.points_of_sections(margins), margins, true, ContourCells::kPolygons);
+      if (!made.made || !made.made->merged || !made.made->simplified) continue;
+      SurfaceMesh& surface = made.made->surface;
+      if (surface.mesh.triangles.size() >= most) break;
+      if (put_nodes_right(surface, margins)) {
+        if (!has_points(surface, margins)) break;
+        return std::move(made.made);
+      }
+      if (kPrize * surface.mesh.triangles.size() > most) break;
+    }
+    return std::nullopt;
+  }
+
+  // Voxels, between -0.4 and 0.4: the n-th of places that are spread over a cube (Roberts 2018, "The unreasonable
+  // effectiveness of quasirandom sequences").
+  static double step_off_nodes(int n, int axis) {
+    constexpr std::array kSpread{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    const double place = n * kSpread[static_cast<std::size_t>(axis)];
+    return 0.8 * (place - std::floor(place) - 0.5);
+  }
+
+  // Whether points next to corners, and in level planes, can be moved so that the surface has no faults.
+  [[nodiscard]] bool put_nodes_right(SurfaceMesh& surface, const SurfaceMargins& margins) const {
+    const double reach = kNearCorner * margins.inner * inside_.lattice().least_spacing();
+    for (const PointMoves moves : {PointMoves::kToCorners, PointMoves::kIntoLevelPlanes}) {
+      TriangleMesh moved = surface.mesh;
+      move_points(moves, mesh_, surface.sources, inside_.lattice(), reach, moved);
+      if (options_.single_precision) round_to_float(moved.vertices);
+      if (!faults_of(moved, inside_).none()) continue;
+      surface.mesh = std::move(moved);
+      return true;
+    }
+    return false;
+  }
+
+  // Whether the points of the lattice's edges are on a surface, as nearly as after merging, and simplifying.
+  [[nodiscard]] bool has_points(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
+    const double most =
+        options_.simplify + most_merging(margins.inner * inside_.lattice().largest_spacing(), merge_tolerance());
+    std::vector<Vec3> points(points_.size());
+    std::ranges::transform(points_, points.begin(), &EdgePoint::position);
+    std::vector<double> distances(points.size());
+    DistanceEvaluator(surface.mesh).evaluate(points, distances, most);
+    return std::ranges::max(distances) <= most;
+  }
+
+  // Whether most of a surface is in the planes of its sources, as that of CAD parts is.
+  [[nodiscard]] bool is_of_planes(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
+    constexpr double kMost = 0.75, kOff = 4.0;  // of the area; margins
+    const double off = std::max(kOff * margins.inner * inside_.lattice().largest_spacing(), tolerance_);
+    double all = 0.0, in_planes = 0.0;
+    for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+      const Triangle& t = surface.mesh.triangles[face];
+      const std::vector<Vec3>& v = surface.mesh.vertices;
+      const double area = norm(cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]));
+      all += area;
+      if (surface.sources[face] == kHole) continue;
+      const SourcePlane plane = source_plane(mesh_, surface.sources[face]);
+      const auto is_in_plane = [&](std::uint32_t corner) { return std::abs(plane.height(v[corner])) <= off; };
+      if (std::ranges::all_of(t, is_in_plane)) in_planes += area;
+    }
+    return in_planes >= kMost * all;
+  }
 
   // What thickens has points off the mesh.
   [[nodiscard]] bool may_use_polygons() const { return !(options_.thickness > 0.0); }
@@ -156,11 +246,12 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
-    std::optional<SurfaceMesh> result =
-        checked_merge(surface, mesh_, inside_, margins.inner, merge_tolerance(), options_.single_precision,
-                      is_right_unmerged, kind == ContourCells::kPolygons);
-    if (result) surface = std::move(*result);
-    return result.has_value();
+    CheckedMerge result = checked_merge(surface, mesh_, inside_, margins.inner, merge_tolerance(),
+                                        options_.single_precision, is_right_unmerged, kind == ContourCells::kPolygons);
+    attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, margins);
+    if (result.surface) surface = *std::move(result.surface);
+    attempt.faces = surface.sources.size();
+    return result.surface.has_value();
   }
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
@@ -227,6 +318,7 @@ class SurfaceMaker {
   }
 
   const TriangleMesh& mesh_;
+  FineAndRough evaluators_;
   RuleAlong rule_;
   const NodeSet& inside_;
   const SurfaceOptions& options_;

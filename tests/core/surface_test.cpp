@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/distance/distance.h"
+#include "core/exact/quad.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
@@ -1090,6 +1091,37 @@ TEST(Surface, HasThePlanesOfTheMeshThroughNodes) {
   }
 }
 
+// Both ends are nearer to the triangle's plane than numbers of 64 bits can tell.
+TEST(SegmentHit, IsRightWhereTheSegmentIsNearlyInThePlane) {
+  Random random(31);
+  int hits = 0;
+  for (int n = 0; n < 2000; ++n) {
+    TriangleMesh mesh{{}, {{0, 1, 2}}};
+    const double size = std::exp2(uniform(random, -8, 8));
+    for (int corner = 0; corner < 3; ++corner)
+      mesh.vertices.push_back(
+          {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)});
+    const Vec3 &a = mesh.vertices[0], &b = mesh.vertices[1], &c = mesh.vertices[2];
+    const double u = uniform(random, 0, 0.5), v = uniform(random, 0, 0.5);
+    const Vec3 p = a + u * (b - a) + v * (c - a),
+               q = p + uniform(random, 0, 2) * (b - a) + uniform(random, 0, 2) * (c - a);
+    const std::optional<double> at = segment_hit(p, q, a, b, c);
+    if (!at) continue;
+    ++hits;
+    const QuadVec3 normal = cross(quad_difference(b, a), quad_difference(c, a));
+    const Quad of_p = dot(normal, quad_difference(p, a)), of_q = dot(normal, quad_difference(q, a));
+    EXPECT_NEAR(*at, static_cast<double>(of_p / (of_p - of_q)), 1e-14) << n;
+    HitFinder finder(mesh);
+    std::vector<SegmentHit> found;
+    const std::vector<std::uint32_t> all{0};
+    finder.enter(p, all);
+    finder.find(q, true, found);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].at, *at);
+  }
+  EXPECT_GT(hits, 300);
+}
+
 TEST(MeshCorners, TakeTheNearestVertexEach) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}}, {{0, 1, 2}}};
   const Lattice lattice{{0, 0, 0}, {0.5, 0.5, 0.5}, {-1, -1, -1}, {5, 5, 5}};
@@ -1140,6 +1172,62 @@ TEST(Surface, InLevelPlanesThroughNodesHasLargeFaces) {
   ASSERT_TRUE(volume && *volume > 0.0);
   const auto [surface, lattice] = surface_of(mesh, 82);
   EXPECT_LT(surface.mesh.triangles.size(), 40U);
+}
+
+TriangleMesh octahedron(double radius) {
+  TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  for (Vec3& p : mesh.vertices) p = radius * p;
+  return mesh;
+}
+
+// Oblique planes through nodes, which rounding has on either side of them.
+TEST(Surface, OfPlanesThroughNodesHasTheFacesOfTheMesh) {
+  const TriangleMesh tetrahedron{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                                 {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+  for (const TriangleMesh& mesh : {octahedron(1.0), octahedron(0.1), octahedron(0.001), tetrahedron}) {
+    for (const std::int64_t samples : {24, 44, 74, 80, 84}) {
+      const auto [surface, lattice] = surface_of(mesh, samples + 2);
+      EXPECT_EQ(surface.mesh.triangles.size(), mesh.triangles.size()) << mesh.vertices[0].x << " at " << samples;
+    }
+  }
+}
+
+// The same octahedron, and in a corner of its box a block with a pit that one edge of the lattice leads through. A
+// lattice that is moved does not see it.
+TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
+  const std::int64_t samples = 80;
+  const double h = 2.0 / (samples - 1), x = -1 + 72 * h, top = 0.9375, rim = 0.002;
+  TriangleMesh mesh = octahedron(1.0);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const double low = 0.7, high = 0.95;
+  for (const double z : {low, top}) {
+    for (const Vec3& p : {Vec3{low, low, z}, Vec3{high, low, z}, Vec3{high, high, z}, Vec3{low, high, z}})
+      mesh.vertices.push_back(p);
+  }
+  for (const Vec3& p : {Vec3{x - rim, x - rim, top}, Vec3{x + rim, x - rim, top}, Vec3{x + rim, x + rim, top},
+                        Vec3{x - rim, x + rim, top}, Vec3{x + 1e-4, x + 2e-4, 0.93}})
+    mesh.vertices.push_back(p);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+  };
+  add(0, 2, 1);
+  add(0, 3, 2);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    add(i, j, 4 + j);
+    add(i, 4 + j, 4 + i);
+    add(4 + i, 4 + j, 8 + j);
+    add(4 + i, 8 + j, 8 + i);
+    add(8 + i, 8 + j, 12);
+  }
+  const auto [surface, lattice] = surface_of(mesh, samples + 2);
+  const std::vector<Vec3> in_pit{{x, x, 0.936}};
+  std::vector<double> of_mesh(1), of_surface(1);
+  WindingNumberEvaluator(mesh).evaluate(in_pit, of_mesh);
+  WindingNumberEvaluator(surface.mesh).evaluate(in_pit, of_surface);
+  EXPECT_NEAR(of_mesh[0], 0.0, 1e-12);
+  EXPECT_NEAR(of_surface[0], 0.0, 1e-12);
 }
 
 SurfaceMeasures measured(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {

@@ -588,6 +588,12 @@ MUTANTS = [
         ("core/surface/mesh_corners.cpp", "if (std::abs(here - a[axis]) <= reach) here = a[axis];", "")]),
     Mutant("once_around_twice", "a polygon that ends where it starts has that corner once", [
         ("core/surface/cell_polygons.cpp", "last.corners[last.size - 1]) --last.size;", "last.corners[last.size - 1]) last.size += 0;")]),
+    Mutant("beside_nodes_unseen", "points of the lattice's edges are on the surface of one that is moved", [
+        ("core/surface/surface.cpp", "return std::ranges::max(distances) <= most;", "return std::ranges::max(distances) >= 0.0;")]),
+    Mutant("blades_are_eaten", "a ridge is held where planes meet at less than 30 degrees", [
+        ("core/surface/patch_merger.cpp", "kBackToBack = -0.866;", "kBackToBack = -1 + 0x1p-21;")]),
+    Mutant("hits_by_rounding", "where a segment is nearly in a plane, the place where it meets that is exact", [
+        ("core/surface/edge_crossing.cpp", "kSure = 0x1p-10;", "kSure = 0;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

@@ -11,10 +11,10 @@
 namespace raycone {
 namespace {
 
-constexpr double kMostRows = 180.0;  // of a triangle: each is a small part then
-constexpr double kPerStep = 1.4;     // rows, and parts of a row: two of them to a square of a step
+constexpr double kMostParts = 180.0 * 180.0;  // of a triangle, rows times parts of a row: each is a small part then
+constexpr double kPerStep = 1.4;              // rows, and parts of a row: two of them to a square of a step
 
-double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostRows); }
+double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostParts); }
 
 // In rows along the shortest side, so that needles have as few as their area asks for.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
@@ -24,7 +24,8 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
   const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
   const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
   const double area = safe_norm(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
-  const double rows = parts_of(std::ranges::max(lengths), step), in_last_row = parts_of(lengths[apex], step);
+  const double in_last_row = std::min(parts_of(lengths[apex], step), std::sqrt(kMostParts));
+  const double rows = std::min(parts_of(std::ranges::max(lengths), step), std::floor(kMostParts / in_last_row));
   for (double row = 0.0; row < rows; row += 1.0) {
     const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
     const double centre = (to * to * to - from * from * from) * 2.0 / 3.0 / part;
@@ -42,7 +43,7 @@ double most_samples(const TriangleMesh& mesh, std::uint32_t triangle, double ste
   constexpr double kLonger = 2.0;  // at most, a side than its extent along an axis: above the square root of 3
   const Box box = box_of_triangle(mesh, triangle);
   const double rows = parts_of(kLonger * largest_coordinate(box.upper - box.lower), step);
-  return rows * rows;
+  return std::min(rows * rows, kMostParts);
 }
 
 // Whether a surface between the nodes of a lattice is near to a point, as the nodes tell: it passes between any two

@@ -15,8 +15,8 @@ struct SurfaceMeasures {
   double max_distance = 0.0;     // of vertices of faces with a source from the mesh, world units
   double hole_area = 0.0;        // of faces without a source
   // Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
-  // set, as judged at points half a diagonal apart (on triangles of more than 64 diagonals, at 16 384 points each). It
-  // separates nothing, or is of parts thinner than the lattice sees.
+  // set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most. It separates nothing, or is of
+  // parts thinner than the lattice sees.
   double dropped_area = 0.0;
   std::uint64_t dropped_samples = 0;  // how many of these points are
   bool drops = false;                 // whether there is such area, even if world units make it 0 or infinite

@@ -1,7 +1,6 @@
 // Points as text: CSV, TSV and columns between blanks. Lines are parsed as they arrive, so that memory does not grow
 // and somebody who sends a point and waits for its answer gets it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -17,27 +16,6 @@
 
 namespace raycone {
 namespace {
-
-// What number_of() does not read may be meant as a number: "1D0", "0x1", "1 000", a Unicode minus.
-bool starts_like_number(std::string_view field) {
-  for (const std::string_view sign : {"+", "-", "\u2212", "."}) {
-    if (field.starts_with(sign)) field.remove_prefix(sign.size());
-  }
-  return !field.empty() && is_digit(field.front());
-}
-
-// Of any alphabet.
-bool has_letter(std::string_view field) {
-  return std::any_of(field.begin(), field.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
-  });
-}
-
-// What programs write for a value that is missing.
-bool stands_for_nothing(std::string_view field) {
-  constexpr std::array<std::string_view, 5> kWords{"NA", "N/A", "null", "NULL", "None"};
-  return std::ranges::find(kWords, field) != kWords.end();
-}
 
 class TextPointReader : public PointReader {
  public:
@@ -68,29 +46,11 @@ class TextPointReader : public PointReader {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
-  // Whether the first line is a header, which it is if no coordinate in it is a number, or looks like one, and one of
-  // them is a name.
   bool take_header(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
-    const std::vector<std::string_view> names = fields_of(line, delimiter_of(line));
-    for (const std::size_t column : columns_) {
-      if (column < names.size() && number_of(names[column])) return false;
-    }
-    const std::size_t last = *std::max_element(columns_.begin(), columns_.end());
-    if (last >= names.size() && std::any_of(names.begin(), names.end(), number_of)) return false;
-    if (!named_columns(names) && !has_names(names)) return false;
+    if (!is_header(line, given_)) return false;
     header_ = line;
     return true;
-  }
-
-  [[nodiscard]] bool has_names(const std::vector<std::string_view>& fields) const {
-    bool found = false;
-    for (const std::size_t column : columns_) {
-      if (column >= fields.size()) continue;
-      if (starts_like_number(fields[column])) return false;
-      found = found || (has_letter(fields[column]) && !stands_for_nothing(fields[column]));
-    }
-    return found || std::none_of(columns_.begin(), columns_.end(), [&](std::size_t c) { return c < fields.size(); });
   }
 
   void find_layout(std::string_view line) {

@@ -8,23 +8,6 @@
 
 namespace raycone {
 
-// The character between the fields of a line: the first of comma, semicolon and tab that occurs outside quotes, else a
-// blank, which stands for any run of blanks. Never guessed from the locale: a decimal comma is an error. What a comment
-// holds does not count.
-[[nodiscard]] inline char delimiter_of(std::string_view line) {
-  for (const char delimiter : {',', ';', '\t'}) {
-    bool quoted = false;
-    char before = ' ';
-    for (const char c : line) {
-      if (c == '"') quoted = !quoted;
-      if (!quoted && c == '#' && std::string_view(" \t,;").find(before) != std::string_view::npos) break;
-      if (!quoted && c == delimiter) return delimiter;
-      before = c;
-    }
-  }
-  return ' ';
-}
-
 // The fields of a line from left to right, without quotes and surrounding blanks.
 class TableFields {
  public:

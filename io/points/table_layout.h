@@ -23,10 +23,15 @@ struct TableLayout {
 // The columns that a header names as coordinates.
 [[nodiscard]] std::optional<Columns> named_columns(const std::vector<std::string_view>& names);
 
+// Whether the first line of a table is a header: whichever of tab, semicolon, comma and blanks is between its fields,
+// the coordinates are not numbers; whichever of those that it has, none of them looks like one, and one is a name. So
+// no point is taken for a header. `given`: the columns, whatever the header names; here and below.
+[[nodiscard]] bool is_header(std::string_view line, const std::optional<Columns>& given);
+
 // Of a table whose first line of data is `line`. The delimiter is the first of tab, semicolon and comma for which the
-// coordinates are numbers; where there is none of these characters, a blank. `given`: the columns, whatever the header
-// names. A header that names coordinates must have as many fields as the line: else they may be those of other columns,
-// as where rows have names, or names have blanks.
+// coordinates are numbers; where there is none of these characters, a blank. Never guessed from the locale: a decimal
+// comma is an error. A header that names coordinates must have as many fields as the line: else they may be those of
+// other columns, as where rows have names, or names have blanks.
 [[nodiscard]] TableLayout layout_of(const std::optional<std::string>& header, std::string_view line,
                                     const std::optional<Columns>& given);
 

@@ -152,6 +152,10 @@ TEST_F(ReadPoints, ColumnOfRowNumbersIsNotX) {
 TEST_F(ReadPoints, MissingValuesAreNoHeader) {
   EXPECT_EQ(error_of("NA,NA,NA\n1,2,3\n"), "pts:1: column 1 is 'NA', expected a finite number");
   EXPECT_EQ(error_of("null;null;null\n1;2;3\n"), "pts:1: column 1 is 'null', expected a finite number");
+  for (const std::string word : {"na", "n/a", "Null", "none", "<NA>", "NaN"}) {
+    EXPECT_EQ(error_of(word + "," + word + "," + word + "\n1,2,3\n"),
+              "pts:1: column 1 is '" + word + "', expected a finite number");
+  }
 }
 
 TEST_F(ReadPoints, TextGluedToQuotesIsNoNumber) {
@@ -183,6 +187,39 @@ TEST_F(ReadPoints, HeaderNeedsAName) {
   EXPECT_EQ(read(",x,y,z\n0,1,2,3\n1,-4,.5,6e-3\n"), kTwo);
 }
 
+// The header test and the data must not differ about the delimiter.
+TEST_F(ReadPoints, PointWithOtherDelimitersInItsTextIsNoHeader) {
+  ReadPointsOptions options;
+  options.columns = {2, 3, 4};
+  EXPECT_EQ(read("Smith, J.\t1\t2\t3\nDoe, A.\t-4\t.5\t6e-3\n", options), kTwo);
+  EXPECT_EQ(read("a,b;1;2;3\nc;-4;.5;6e-3\n", options), kTwo);
+  EXPECT_EQ(read("a;b,1,2,3\nc,-4,.5,6e-3\n", options), kTwo);
+  EXPECT_EQ(read("14\" pipe, x\t1\t2\t3\nc\t-4\t.5\t6e-3\n", options), kTwo);
+  EXPECT_EQ(read("x,y,z;1;2;3\nc;-4;.5;6e-3\n", options), kTwo);
+  EXPECT_EQ(read("x,y,z\t1\t2\t3\n", options).size(), 1u);
+  EXPECT_EQ(error_of("P1 1 2 3 a,b\nP2 -4 .5 6e-3 a\n", options).substr(0, 16), "pts:1: column 2 ");
+  EXPECT_EQ(error_of("a;b,1D0,2D0,3D0\nc,-4,.5,6e-3\n", options).substr(0, 6), "pts:1:");
+  EXPECT_EQ(error_of("id7, A\t.5\t.5\t.5\t\nid8\t.5\t.5\t.5\t\n"),
+            "pts:1: column 1 is 'id7, A', expected a finite number");
+}
+
+TEST_F(ReadPoints, DelimitersWithinQuotesDoNotCountBetweenBlanks) {
+  EXPECT_EQ(read("1 2 3 \"a;b\"\n-4 .5 6e-3 \"c, d\"\n"), kTwo);
+  EXPECT_EQ(read("x y z \"a; 2\"\n1 2 3 4\n-4 .5 6e-3 5\n"), kTwo);
+  ReadPointsOptions options;
+  options.columns = {2, 3, 4};
+  EXPECT_EQ(read("\"a, b\" 1 2 3\nc -4 .5 6e-3\n", options), kTwo);
+  EXPECT_EQ(error_of("1 2 3x \"a;b\"\n"), "pts:1: column 3 is '3x', expected a finite number");
+}
+
+TEST_F(ReadPoints, HeaderMayHaveOtherDelimitersInItsNames) {
+  EXPECT_EQ(read("east, m;north, m;height, m\n1;2;3\n-4;.5;6e-3\n"), kTwo);
+  EXPECT_EQ(read("x;y;z;note, 2 words\n1;2;3;a\n-4;.5;6e-3;b\n"), kTwo);
+  EXPECT_EQ(read("x,y,z,a;2\n1,2,3,4\n-4,.5,6e-3,5\n"), kTwo);
+  EXPECT_EQ(read("field 1,field 2,field 3\n1,2,3\n-4,.5,6e-3\n"), kTwo);
+  EXPECT_EQ(read("2nd id,x,y,z\n7,1,2,3\n8,-4,.5,6e-3\n"), kTwo);
+}
+
 TEST_F(ReadPoints, GivenColumnsWinOverNames) {
   ReadPointsOptions options;
   options.columns = {4, 2, 3};
@@ -207,7 +244,7 @@ TEST_F(ReadPoints, WhatIsNotAFiniteNumberIsAnErrorWithItsLine) {
 }
 
 TEST_F(ReadPoints, DecimalCommaIsAnErrorNotAnotherPoint) {
-  EXPECT_EQ(error_of("1,5;2,5;3,5\n"), "pts:1: column 2 is '5;2', expected a finite number");
+  EXPECT_EQ(error_of("1,5;2,5;3,5\n"), "pts:1: column 1 is '1,5', expected a finite number");
 }
 
 TEST_F(ReadPoints, TooFewColumnsAreAnError) {

@@ -55,23 +55,25 @@ struct StoreDouble {
   Stored operator()(Number number) const { return number + 0.0; }
 };
 
-// A distance of `band_width` or more is stored as the background, a lesser one as a value of lesser magnitude.
-template <typename Value>
+// A distance of `band_width` or more is stored as the background, a lesser one as a value of lesser magnitude. Store:
+// of lesser ones, StoreFloat or StoreDouble; it keeps negative ones negative.
+template <typename Store>
 struct StoreDistance {
   using Number = double;
-  using Stored = Value;
+  using Stored = typename Store::Stored;
   Stored operator()(Number distance) const {
     if (std::abs(distance) >= band_width) return distance < 0 ? -background : background;
-    const Value most = std::nextafter(background, Value{0});
-    return std::clamp(static_cast<Value>(distance), -most, most) + Value{0};
+    const Stored most = std::nextafter(background, Stored{0});
+    return std::clamp(store(distance), -most, most);
   }
   double band_width;
-  Value background;
+  Stored background;
+  Store store;
 };
 
 template <typename Store>
 inline constexpr bool kIsDistance = false;
-template <typename Value>
-inline constexpr bool kIsDistance<StoreDistance<Value>> = true;
+template <typename Store>
+inline constexpr bool kIsDistance<StoreDistance<Store>> = true;
 
 }  // namespace raycone::vdb

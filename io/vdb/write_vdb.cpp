@@ -329,13 +329,19 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan, const Store& sto
   return std::make_unique<TypedGridBuilder<typename Grid::TreeType, Store>>(grid, plan.lattice.grid, store, background);
 }
 
-template <typename Grid>
-std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan) {
+// Store: see StoreDistance.
+template <typename Grid, typename Store>
+std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan, const Store& store) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
   const auto background =
       vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, plan.description.is(Precision::kHalf));
-  return make_builder<Grid>(plan, vdb::StoreDistance<Value>{band_width, background}, background);
+  return make_builder<Grid>(plan, vdb::StoreDistance<Store>{band_width, background, store}, background);
+}
+
+// Of 32 or 16 bits, as the user chose.
+vdb::StoreFloat narrow_store(const GridPlan& plan) {
+  return {vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf))};
 }
 
 // Components as Store keeps numbers.
@@ -353,8 +359,7 @@ std::unique_ptr<GridBuilder> make_vector_builder(const GridPlan& plan) {
     using Wide = StoreVector<vdb::StoreDouble, openvdb::Vec3d>;
     return make_builder<openvdb::Vec3DGrid>(plan, Wide{}, openvdb::Vec3d(0.0));
   }
-  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf));
-  return make_builder<openvdb::Vec3SGrid>(plan, StoreVector<vdb::StoreFloat, Vec3f>{{narrowing}}, Vec3f(0.0F));
+  return make_builder<openvdb::Vec3SGrid>(plan, StoreVector<vdb::StoreFloat, Vec3f>{narrow_store(plan)}, Vec3f(0.0F));
 }
 
 std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
@@ -372,7 +377,8 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
     case FieldKind::kBound:
       return make_builder<FloatGrid>(plan, vdb::StoreFloat{Narrowing(plan.field)}, narrow_background);
     case FieldKind::kDistance:
-      return wide ? make_level_set_builder<DoubleGrid>(plan) : make_level_set_builder<FloatGrid>(plan);
+      if (wide) return make_level_set_builder<DoubleGrid>(plan, vdb::StoreDouble{});
+      return make_level_set_builder<FloatGrid>(plan, narrow_store(plan));
     case FieldKind::kVector:
       return make_vector_builder(plan);
     case FieldKind::kReal:
@@ -380,8 +386,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
       break;
   }
   if (wide) return make_builder<DoubleGrid>(plan, vdb::StoreDouble{}, background);
-  const Narrowing narrowing = vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf));
-  return make_builder<FloatGrid>(plan, vdb::StoreFloat{narrowing}, narrow_background);
+  return make_builder<FloatGrid>(plan, narrow_store(plan), narrow_background);
 }
 
 // --- The file

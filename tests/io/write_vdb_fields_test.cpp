@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -237,6 +238,33 @@ TEST(WriteVdbFields, DistancesThatRoundToTheBandStayActive) {
   const auto grid = read_vdb_grid(directory / "out.vdb", "surface");
   EXPECT_EQ(grid->active_voxel_count(), 2U * 61 * 61);
   EXPECT_EQ(grid->level_set_faults(8), "");
+}
+
+// docs/formats.md: whatever the type, a number is on the side where its double is.
+TEST(WriteVdbFields, DistancesKeepTheSideOfInside) {
+  const TemporaryDirectory directory;
+  const auto inside = samples_of(lattice_around_zero(), [](const auto& at) { return std::uint8_t(at.x < 0); });
+  const auto distances = samples_of(lattice_around_zero(), [](const VoxelIndex& at) {
+    constexpr std::array kSizes{5e-324, 1e-300, 1e-50, 1e-46, 1e-40, 1e-12, 2.9e-8, 1e-7, 0.05};
+    const double size = kSizes[static_cast<std::size_t>(at.y + 30) % kSizes.size()];
+    return at.x < 0 ? -size : size;
+  });
+  for (const auto precision : {Precision::kHalf, Precision::kSingle, Precision::kDouble}) {
+    OutputDescription description = described({kInside, kDistance});
+    description.precision = precision;
+    write_vdb(directory / "out.vdb", description, {std::span(inside), std::span(distances)});
+    const VdbType type = precision == Precision::kDouble ? VdbType::kDouble : VdbType::kFloat;
+    const auto flags = read_vdb_grid(directory / "out.vdb", "inside", VdbType::kBool);
+    const auto grid = read_vdb_grid(directory / "out.vdb", "surface", type);
+    std::size_t wrong = 0, inactive = 0;
+    samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+      wrong += (grid->value(at) < 0) != (flags->value(at) != 0);
+      inactive += !grid->is_active(at);
+      return 0;
+    });
+    EXPECT_EQ(wrong, 0U) << static_cast<int>(precision);
+    EXPECT_EQ(inactive, 0U) << static_cast<int>(precision);
+  }
 }
 
 TEST(WriteVdbFields, DoublesOnRequest) {

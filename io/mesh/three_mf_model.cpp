@@ -233,10 +233,18 @@ class ModelReader {
 
 }  // namespace
 
-// Names of parts do not depend on the case of letters.
+// Names of parts do not depend on the case of letters. Of several members of one name the last one counts, as in any
+// ZIP archive; names that are equivalent (ECMA-376 part 2, 6.2) may be one part to one reader and another to the next.
 ThreeMfParts::ThreeMfParts(std::string_view bytes, const std::string& file)
     : file_(file), size_(bytes.size()), archive_(bytes, file) {
-  for (const ZipReader::Member& member : archive_.members()) parts_.try_emplace(key_of(member.name), &member);
+  for (const ZipReader::Member& member : archive_.members()) {
+    const auto [part, is_new] = parts_.try_emplace(key_of(member.name), &member);
+    if (!is_new && part->second->name != member.name) {
+      throw InputError(file_ + ": has the parts " + excerpt(part->second->name) + " and " + excerpt(member.name) +
+                       ", expected names that differ by more than case or encoding");
+    }
+    part->second = &member;
+  }
 }
 
 std::string ThreeMfParts::root() {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,13 +23,6 @@
 
 namespace raycone {
 namespace {
-
-std::optional<double> micrometres_of(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
-      {{"micron", 1}, {"millimeter", 1e3}, {"centimeter", 1e4}, {"inch", 25'400}, {"foot", 304'800}, {"meter", 1e6}}};
-  const auto found = std::ranges::find(kUnits, unit, &std::pair<std::string_view, double>::first);
-  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
-}
 
 // An object with triangles, and where it stands.
 struct Instance {
@@ -92,13 +84,8 @@ class ThreeMfPackage {
   }
 
   // Coordinates are in the unit of their own part (core specification, 3.4).
-  [[nodiscard]] AffineMap to_unit(const std::string& unit, const std::string& part, const std::string& of_part) const {
-    const std::optional<double> from = micrometres_of(of_part), to = micrometres_of(unit);
-    if (!from || !to) {
-      throw InputError(file_ + '(' + excerpt(part) + "): is in the unit " + excerpt(of_part) + ", its place in " +
-                       excerpt(unit) + ", expected units of 3MF");
-    }
-    const double factor = *from / *to;
+  [[nodiscard]] static AffineMap to_unit(const std::string& unit, const std::string& of_part) {
+    const double factor = *micrometres_of(of_part) / *micrometres_of(unit);
     return affine_map_of_parts({}, std::array{0.0, 0.0, 0.0, 1.0}, {factor, factor, factor});
   }
 
@@ -111,8 +98,7 @@ class ThreeMfPackage {
     const ThreeMfObject& placed = object(use);
     const std::string& unit = model(use.part).unit;
     const AffineMap in_outer_unit = composed(outer, use.placement);
-    const AffineMap placement =
-        unit == outer_unit ? in_outer_unit : composed(in_outer_unit, to_unit(outer_unit, *use.part, unit));
+    const AffineMap placement = unit == outer_unit ? in_outer_unit : composed(in_outer_unit, to_unit(outer_unit, unit));
     if (!placed.stands_for.empty()) {
       throw InputError(file_ + ": object " + std::to_string(use.object) + " has triangles " + placed.stands_for +
                        ", expected its shape in triangles");

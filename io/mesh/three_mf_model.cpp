@@ -45,6 +45,23 @@ std::string key_of(std::string_view name) {
   return lower_case(std::filesystem::path('/' + decoded).lexically_normal().relative_path().string());
 }
 
+struct Unit {
+  std::string_view name;
+  double micrometres;
+};
+constexpr std::array<Unit, 6> kUnits{
+    {{"micron", 1}, {"millimeter", 1e3}, {"centimeter", 1e4}, {"inch", 25'400}, {"foot", 304'800}, {"meter", 1e6}}};
+
+std::string unit_of(const XmlAttributes& attributes) {
+  const std::string_view unit = attributes.find("unit").value_or("millimeter");
+  if (micrometres_of(unit)) return std::string(unit);
+  std::string names;
+  for (const Unit& known : kUnits) {
+    names += (names.empty() ? "" : &known == &kUnits.back() ? " or " : ", ") + std::string(known.name);
+  }
+  attributes.fail("unit is '" + excerpt(unit) + "', expected " + names);
+}
+
 // "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.
 AffineMap placement_of(const XmlAttributes& attributes) {
   const auto text = attributes.find("transform");
@@ -159,7 +176,7 @@ class ModelReader {
       if (!object_->mesh.vertices.empty()) attributes.fail("a second mesh of an object, expected one");
     } else if (open_.back() == Element::kModel) {
       check_extensions(attributes);
-      model_.unit = attributes.find("unit").value_or("millimeter").substr(0, kMostOfName);
+      model_.unit = unit_of(attributes);
     }
   }
 
@@ -232,6 +249,11 @@ class ModelReader {
 };
 
 }  // namespace
+
+std::optional<double> micrometres_of(std::string_view unit) {
+  const auto* const found = std::ranges::find(kUnits, unit, &Unit::name);
+  return found == kUnits.end() ? std::nullopt : std::optional(found->micrometres);
+}
 
 // Names of parts do not depend on the case of letters. Of several members of one name the last one counts, as in any
 // ZIP archive; names that are equivalent (ECMA-376 part 2, 6.2) may be one part to one reader and another to the next.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,8 +32,11 @@ struct ThreeMfObject {
   std::uint64_t lattices = 0;  // of beams, which are passed over
 };
 
+// Of the format's units; absent for other words.
+[[nodiscard]] std::optional<double> micrometres_of(std::string_view unit);
+
 struct ThreeMfModel {
-  std::string unit;               // of the root part: "millimeter" where it names none
+  std::string unit;               // known to micrometres_of(): "millimeter" where the part names none
   std::vector<ThreeMfUse> items;  // of the root part, in order
   std::map<std::uint32_t, ThreeMfObject> objects;
 };

@@ -287,8 +287,13 @@ REFUSED = {
                        "object 1 has triangles that stand for its alternatives (lowres), expected its shape"),
     "obfuscated": (package(model(mesh_object(1, VERTICES, FACES, 'pa:modelresolution="obfuscated"'), ITEM)),
                    "that stand for its alternatives (obfuscated)"),
-    "units_unknown": (package({"3D/3dmodel.model": model("", '<item objectid="1" p:path="/a.model"/>'),
-                               "a.model": model(TETRAHEDRON, "", 'unit="furlong"')}), "is in the unit furlong, its place in"),
+    "unit_unknown": (package(model(TETRAHEDRON, ITEM, 'unit="parsec"')),
+                     "unit is 'parsec', expected micron, millimeter, centimeter, inch, foot or meter"),
+    "unit_of_another_part": (package({"3D/3dmodel.model": model("", '<item objectid="1" p:path="/a.model"/>'),
+                                      "a.model": model(TETRAHEDRON, "", 'unit="furlong"')}),
+                             "(a.model):2: unit is 'furlong', expected micron"),
+    "unit_of_both": (package({"3D/3dmodel.model": model("", '<item objectid="1" p:path="/a.model"/>', 'unit="mm"'),
+                              "a.model": model(TETRAHEDRON, "", 'unit="mm"')}), "unit is 'mm', expected micron"),
     "no_triangles": (package(model(TETRAHEDRON, "")), "no triangles, expected at least one"),
 }
 

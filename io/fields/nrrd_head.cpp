@@ -173,14 +173,28 @@ Axes spaced_axes(const std::string& path, const NrrdHead& head, const std::vecto
   return axes;
 }
 
+// --- Lines ----------------------------------------------------------------------------------------------------------
+
+// Up to the empty line that ends a head, or the end of the file. Labels of many names take megabytes.
+std::string_view read_head(InputBuffer& input) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 26;
+  constexpr std::size_t kLongestEnd = 3;  // may begin in what has been searched
+  std::size_t searched = 0, end = std::string_view::npos;
+  do {
+    const std::string_view pending = input.pending();
+    const std::size_t from = searched - std::min(searched, kLongestEnd - 1);
+    end = std::min(pending.find("\n\n", from), pending.find("\n\r\n", from));
+    searched = pending.size();
+  } while (end == std::string_view::npos && searched < kMostBytes && input.fill());
+  const std::string_view text = input.pending().substr(0, end);
+  if (text.size() >= kMostBytes) fail_as_volume(input.name(), "its head, expected an empty line within 64 MB");
+  return text;
+}
+
 }  // namespace
 
 NrrdHead read_nrrd_head(InputBuffer& input) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-  const auto end = [&] { return std::min(input.pending().find("\n\n"), input.pending().find("\n\r\n")); };
-  while (end() == std::string_view::npos && input.pending().size() < kMostBytes && input.fill()) continue;
-  std::string_view text = input.pending().substr(0, end());
-  if (text.size() >= kMostBytes) fail_as_volume(input.name(), "its head has no end");
+  std::string_view text = read_head(input);
   NrrdHead head;
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));

@@ -195,6 +195,21 @@ class Files(Like):
             self.assertEqual(numbers("space origin"), points[0].tolist())
             self.assertTrue((self.like("a.nrrd") == points).all())
 
+    def test_heads_of_nrrd_may_have_many_labels(self):
+        rows = ["v %d %d %d" % (i % 3, i % 5, i % 7) for i in range(12)]
+        rows += ["g %d %s\nf %d %d %d" % (n, "x" * 240, *numpy.random.default_rng(n).choice(12, 3, False) + 1)
+                 for n in range(3000)]
+        with open("many.obj", "w") as file:
+            file.write("\n".join(rows) + "\n")
+        result = run("lattice many.obj --field label --parts group -o a.nrrd --resolution 3 --quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater(read("a.nrrd").index(b"\n\n"), 1 << 20)
+        self.assertIsNotNone(json.loads(self.works("info a.nrrd --json"))["lattice"])
+        self.works("lattice %s --like a.nrrd -o b.nrrd" % CUBE)
+        with open("g.nrrd", "wb") as file:  # a search from the start on for each block would take minutes
+            file.write(b"NRRD0004\n" + b"# %s\n" % (b"x" * 64) * (1 << 20))
+        self.refused("lattice %s --like g.nrrd -o b.nrrd" % CUBE, 2, "its head, expected an empty line within 64 MB")
+
     def test_nifti(self):
         try:
             import nibabel

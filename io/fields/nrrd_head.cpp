@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "io/fields/volume_error.h"
 #include "io/files/ascii.h"
+#include "io/files/text_scanner.h"
 
 namespace raycone {
 namespace {
@@ -44,13 +43,20 @@ class Numbers {
     return true;
   }
 
-  double next(const std::string& expected) {
+  // The next one where that is a finite number.
+  std::optional<double> take_number() {
     skip();
     double number = 0.0;
-    const auto [after, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
-    if (error != std::errc() || !std::isfinite(number)) fail(expected);
+    const char* const after = parse_number(rest_.data(), rest_.data() + rest_.size(), number);
+    if (!after || !std::isfinite(number)) return std::nullopt;
     rest_.remove_prefix(static_cast<std::size_t>(after - rest_.data()));
     return number;
+  }
+
+  double next(const std::string& expected) {
+    const std::optional<double> number = take_number();
+    if (!number) fail(expected);
+    return *number;
   }
 
   Vec3 next_vector(const std::string& expected) {
@@ -86,13 +92,15 @@ std::size_t read_dimension(const std::string& path, const NrrdHead& head) {
   return static_cast<std::size_t>(dimension);
 }
 
+bool is_size(double number) { return number >= 1.0 && number <= 0x1p53 && number == std::floor(number); }
+
 std::vector<std::int64_t> read_sizes(const std::string& path, const NrrdHead& head, std::size_t dimension) {
   const std::string expected = std::to_string(dimension) + " whole numbers of at least 1";
   Numbers numbers(path, head, "sizes");
   std::vector<std::int64_t> sizes;
   for (std::size_t n = 0; n < dimension; ++n) {
     const double size = numbers.next(expected);
-    if (!(size >= 1.0) || size > 0x1p53 || size != std::floor(size)) numbers.fail(expected);
+    if (!is_size(size)) numbers.fail(expected);
     sizes.push_back(static_cast<std::int64_t>(size));
   }
   numbers.end(expected);
@@ -214,6 +222,17 @@ NrrdHead read_nrrd_head(InputBuffer& input) {
     }
   }
   return head;
+}
+
+std::vector<std::uint64_t> nrrd_shape(const NrrdHead& head) {
+  std::vector<std::uint64_t> shape;
+  if (!head.fields.contains("sizes")) return shape;
+  const std::string no_path;
+  Numbers numbers(no_path, head, "sizes");
+  for (auto size = numbers.take_number(); size && is_size(*size); size = numbers.take_number()) {
+    shape.push_back(static_cast<std::uint64_t>(*size));
+  }
+  return shape;
 }
 
 PlacedLattice nrrd_lattice(const std::string& path, const NrrdHead& head) {

@@ -1,10 +1,12 @@
 // The head of an NRRD file, as teem.sourceforge.net/nrrd/format.html describes it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/data/placed_lattice.h"
 #include "io/files/input_buffer.h"
@@ -21,6 +23,9 @@ struct NrrdHead {
 // Of a file that begins with kNrrdMagic and of which nothing has been consumed. Throws InputError where the head has no
 // end.
 [[nodiscard]] NrrdHead read_nrrd_head(InputBuffer& input);
+
+// The sizes of all axes, as many as there are before what is none.
+[[nodiscard]] std::vector<std::uint64_t> nrrd_shape(const NrrdHead& head);
 
 // The samples of three axes of the world, in right, anterior, superior; index 0 is the first one. Other axes, as those
 // of colours, are left out. `path`: of the file, for errors. Throws InputError where the head does not say where the

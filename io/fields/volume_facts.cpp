@@ -1,7 +1,6 @@
 #include "io/fields/volume_facts.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -61,24 +60,11 @@ std::string entry_of(const auto& entries, const std::string& key, const std::str
   return found == entries.end() ? otherwise : found->second;
 }
 
-// As many as there are at its beginning.
-std::vector<std::uint64_t> numbers_of(std::string_view text) {
-  std::vector<std::uint64_t> numbers;
-  for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    std::uint64_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc()) return numbers;
-    numbers.push_back(number);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  }
-}
-
 VolumeFacts facts_of(const NrrdHead& head) {
   VolumeFacts facts;
   facts.format = "NRRD";
-  facts.arrays.push_back({entry_of(head.pairs, "raycone_field", ""), entry_of(head.fields, "type", ""),
-                          numbers_of(entry_of(head.fields, "sizes", ""))});
+  facts.arrays.push_back(
+      {entry_of(head.pairs, "raycone_field", ""), entry_of(head.fields, "type", ""), nrrd_shape(head)});
   facts.made_json = entry_of(head.pairs, "raycone", "");
   return facts;
 }

@@ -116,6 +116,18 @@ class VolumeInfo(CommandCase):
                          ([{"name": "", "type": "float", "shape": [4, 5]}], None, {}))
         self.assertIn("no lattice           not a readable volume: dimension, expected", self.info("a.nrrd"))
 
+    def test_numbers_of_nrrd_may_have_tabs_and_plus_signs(self):
+        with open("plain.nrrd", "w") as file:
+            file.write(TURNED)
+        with open("a.nrrd", "w") as file:
+            file.write(TURNED.replace("sizes: 4 5 6", "sizes: 4\t+5\t6").replace("(.3,.1,0)", "(+.3,+1e-1,\t0)"))
+        facts = self.facts("a.nrrd")
+        self.assertEqual(facts["arrays"][0]["shape"], [4, 5, 6])
+        self.assertEqual(facts["lattice"], self.facts("plain.nrrd")["lattice"])
+        with open("a.nrrd", "w") as file:
+            file.write("NRRD0004\ntype: float\ndimension: 3\nsizes: 1 2 3\nspacings: +1.0\t1 +2e0\n\n")
+        self.assertEqual(self.facts("a.nrrd")["lattice"]["spacing"], [1, 1, 2])
+
     def test_archives_of_others(self):
         with zipfile.ZipFile("a.npz", "w") as archive:
             archive.writestr("a.txt", "text")

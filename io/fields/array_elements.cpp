@@ -132,19 +132,9 @@ class TypedElements final : public ArrayElements {
 
   void check_range(std::span<const Vec3>) const {}
 
-  template <typename Scalar>
-  void check_range(std::span<const Scalar> numbers) const {
-    if (!std::isfinite(largest_)) return;
-    const auto beyond = std::ranges::find_if(
-        numbers, [this](Scalar number) { return std::abs(static_cast<double>(number)) > largest_; });
-    if (beyond == numbers.end()) return;
-    const bool half = largest_ <= kLargestHalf;
-    char message[160];
-    std::snprintf(message, sizeof message,
-                  ": the distance %.6g is beyond %g, the range of %d bits; expected --dtype f%d, or another --scale",
-                  static_cast<double>(*beyond), largest_, half ? 16 : 32, half ? 32 : 64);
-    throw OutputError(output_ + message);
-  }
+  void check_range(std::span<const double> numbers) const { check_distances(numbers, largest_, "--dtype", output_); }
+  template <typename Integer>
+  void check_range(std::span<const Integer>) const {}
 
   [[nodiscard]] std::span<const char> bytes() const {
     return {reinterpret_cast<const char*>(elements_.data()), elements_.size() * sizeof(Element)};
@@ -171,6 +161,18 @@ std::unique_ptr<ArrayElements> make_vector_elements(const FieldDescription& fiel
 
 }  // namespace
 
+void check_distances(std::span<const double> numbers, double largest, const char* option, const std::string& output) {
+  if (!std::isfinite(largest)) return;
+  const auto beyond = std::ranges::find_if(numbers, [=](double number) { return std::abs(number) > largest; });
+  if (beyond == numbers.end()) return;
+  const bool half = largest <= kLargestHalf;
+  char message[160];
+  std::snprintf(message, sizeof message,
+                ": the distance %.6g is beyond %g, the range of %d bits; expected %s f%d, or another --scale", *beyond,
+                largest, half ? 16 : 32, option, half ? 32 : 64);
+  throw OutputError(output + message);
+}
+
 std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field, Precision precision,
                                                    const std::string& output) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -186,7 +188,6 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
     return std::make_unique<TypedElements<DoubleElement>>(DoubleElement{}, kAny, output);
   }
   if (precision == Precision::kSingle) {
-    constexpr double kLargestFloat = std::numeric_limits<float>::max();
     const double largest = field.kind == FieldKind::kDistance ? kLargestFloat : kAny;
     return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, largest, output);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,5 +30,11 @@ class ArrayElements {
 
 [[nodiscard]] std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field, Precision precision,
                                                                  const std::string& output);
+
+inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+// Throws OutputError, which names `output`, where a number's magnitude is beyond `largest`, kLargestHalf or
+// kLargestFloat; infinity checks nothing. `option`: that chooses the type of numbers.
+void check_distances(std::span<const double> numbers, double largest, const char* option, const std::string& output);
 
 }  // namespace raycone

@@ -41,6 +41,18 @@ TEST_F(RawOption, TakesTriplesAndReturnsValues) {
   EXPECT_EQ(raw("", {"f64"}).out, "");
 }
 
+TEST_F(RawOption, RefusesDistancesBeyondFloats) {
+  const std::string far = bytes_of<float>({3e38F, 3e38F, 3e38F});
+  const CommandResult result = raw(far, {"f32", "--field", "sdf"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(
+      result.err.find(": the distance 5.19615e+38 is beyond 3.40282e+38, the range of 32 bits; expected --raw f64"),
+      std::string::npos)
+      << result.err;
+  EXPECT_EQ(raw(far, {"f32", "--field", "inside"}).out, bytes_of<float>({0}));
+}
+
 TEST_F(RawOption, ReadsFilesOfAnyNameAndWritesThoseThatPromiseNoOtherFormat) {
   write_text(dir_ / "points.csv", bytes_of<double>({.5, .5, .5}));
   const auto to = [&](const char* name) {

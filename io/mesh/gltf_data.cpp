@@ -143,19 +143,29 @@ std::string_view GltfData::load(std::size_t index) {
   const GltfBuffer& buffer = buffers_[index];
   std::string_view bytes;
   if (buffer.uri) {
-    bytes = owned_.emplace_back(load_gltf_uri(source_, index, *buffer.uri, companions_));
+    bytes = load_uri(index, *buffer.uri);
   } else if (!buffer.fallback_of.empty()) {
     fail("buffer", index, "has no data but those of the extension " + buffer.fallback_of + ", which is not supported");
   } else if (index == 0 && binary_chunk_) {
     bytes = *binary_chunk_;
+    bytes_ += bytes.size();
   } else {
     fail("buffer", index, "has no uri, expected one (only the first buffer of a GLB is its binary chunk)");
   }
   if (bytes.size() < buffer.byte_length) {
     fail("buffer", index, "has " + counted(bytes.size(), "byte") + ", expected " + std::to_string(buffer.byte_length));
   }
-  bytes_ += bytes.size();
   return bytes.substr(0, buffer.byte_length);
+}
+
+std::string_view GltfData::load_uri(std::size_t buffer, const std::string& uri) {
+  const std::optional<std::string> path = path_of_gltf_uri(source_, buffer, uri);
+  const auto known = path ? files_.find(*path) : files_.end();
+  if (known != files_.end()) return known->second;
+  const std::string_view bytes = owned_.emplace_back(load_gltf_uri(source_, buffer, uri, companions_));
+  if (path) files_.emplace(*path, bytes);
+  bytes_ += bytes.size();
+  return bytes;
 }
 
 std::string_view GltfData::view(std::size_t index) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,8 @@ class GltfData {
   // harm.
   [[nodiscard]] std::string_view view(std::size_t index);
   [[nodiscard]] std::string_view load(std::size_t buffer);
+  // What a buffer's URI stands for. Of buffers that name one file, only the first reads it and adds to bytes_.
+  [[nodiscard]] std::string_view load_uri(std::size_t buffer, const std::string& uri);
   void spend_draco(std::uint64_t bytes);
   void check_positions(std::size_t accessor) const;
   void check_indices(std::size_t accessor) const;
@@ -70,6 +73,7 @@ class GltfData {
   std::vector<FileRead>* companions_;
   std::vector<std::optional<std::string_view>> loaded_;  // buffers
   std::deque<std::string> owned_;                        // keeps its elements where they are
+  std::map<std::string, std::string_view> files_;        // those loaded, by their paths
   std::uint64_t bytes_ = 0;                              // of the buffers loaded
   std::uint64_t spent_ = 0;
   std::uint64_t draco_bytes_ = 0;  // decoded so far, those of several primitives each time

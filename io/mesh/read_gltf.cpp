@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -336,10 +337,12 @@ GltfDocument document_of(const NamedBytes& source, const GlbChunks& chunks) {
 std::vector<std::string> files_of_gltf(const NamedBytes& source) {
   const std::vector<GltfBuffer> buffers = document_of(source, chunks_of(source)).buffers;
   std::vector<std::string> paths;
+  std::set<std::string> known;
   for (std::size_t n = 0; n < buffers.size(); ++n) {
     try {
       if (!buffers[n].uri) continue;
-      if (std::optional<std::string> path = path_of_gltf_uri(source, n, *buffers[n].uri)) paths.push_back(*path);
+      const std::optional<std::string> path = path_of_gltf_uri(source, n, *buffers[n].uri);
+      if (path && known.insert(*path).second) paths.push_back(*path);
     } catch (const InputError&) {  // what may not be followed is not read, whatever is there
     }
   }

@@ -406,6 +406,24 @@ TEST(ReadGltf, PercentEncodedFileBesideTheAssetIsReadAndReported) {
   EXPECT_EQ(files[0].sha256, sha256(asset.binary + '!'));
 }
 
+// It counts once in the limits, too.
+TEST(ReadGltf, FileOfSeveralBuffersIsReadOnce) {
+  const TemporaryDirectory directory;
+  Asset asset;
+  std::ofstream(directory / "x.bin", std::ios::binary) << asset.binary << std::string(1'200'000, '\0');
+  asset.buffers = R"([{"byteLength":48,"uri":"x.bin"},{"byteLength":60,"uri":"./a/../x%2Ebin"}])";
+  asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":1,"byteOffset":48,"byteLength":12}])";
+  std::vector<FileRead> files;
+  const auto read = [&] { return read_gltf({"a.gltf", directory.path().string(), asset.json()}, &files); };
+  EXPECT_EQ(triangles_of(read().mesh), kSquareTriangles);
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].path, directory / "x.bin");
+  EXPECT_EQ(files_of_gltf({"a.gltf", directory.path().string(), asset.json()}), std::vector{directory / "x.bin"});
+  asset.accessors.insert(asset.accessors.size() - 1, R"(,{"componentType":5126,"count":20000000,"type":"VEC3"})");
+  asset.meshes = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":2}}]}])";
+  EXPECT_THROW(static_cast<void>(read()), LimitError);
+}
+
 TEST(ReadGltf, UriThatLeavesTheDirectoryIsRefusedByName) {
   const TemporaryDirectory directory;
   std::filesystem::create_directory(directory / "inner");

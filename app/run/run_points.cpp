@@ -101,13 +101,16 @@ struct PointWork {
   std::optional<FieldRun> fields;
 };
 
-// Reserves room for the values of as many points as are known to come.
+// Reserves room for the values of as many points as are known to come. What a head merely says must not look like a
+// full disk; where the output is a file, its own head is completed at the end.
 std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const PointReader& reader, MeshRun& run) {
   OutputDescription description = description_of(run.report, command.field, command.encoding);
   description.single_points = draws_single(command);
   description.has_places = command.sample && draws_on_surface(*command.sample);
-  run.output.reserve(least_point_file(command.encoding.format, description, reader.size().value_or(0)));
-  return make_point_writer(command.encoding.format, run.output, reader.size(), description);
+  const bool is_certain = reader.has_certain_size();
+  if (is_certain) run.output.reserve(least_point_file(command.encoding.format, description, *reader.size()));
+  const bool is_used = is_certain || !run.output.seekable();
+  return make_point_writer(command.encoding.format, run.output, is_used ? reader.size() : std::nullopt, description);
 }
 
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {

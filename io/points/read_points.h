@@ -48,6 +48,9 @@ class PointReader {
 
   // Number of points in total, where it is known before they are read: of NPY, NPZ, PLY, and raw numbers in a file.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
+
+  // Whether so many are there. Of NPY that comes packed or through a pipe, size() is only what its head says.
+  [[nodiscard]] virtual bool has_certain_size() const { return size().has_value(); }
 };
 
 // Opens `path`, or standard input (text) for "-", either packed by gzip or Zstandard, too. Throws InputError.

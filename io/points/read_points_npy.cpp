@@ -124,6 +124,7 @@ class NpyPointReader : public PointReader {
       : input_(std::move(input)), layout_(layout), load_(loader_of(layout)) {}
 
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return layout_.rows; }
+  [[nodiscard]] bool has_certain_size() const override { return input_->is_seekable(); }
 
  protected:
   // The number of rows to read next, at most `max`.
@@ -217,6 +218,7 @@ class ColumnMajorReader : public NpyPointReader {
   }
 
   [[nodiscard]] bool would_block() override { return false; }
+  [[nodiscard]] bool has_certain_size() const override { return true; }  // all are held or can be sought
 
  private:
   void hold() {

@@ -110,8 +110,8 @@ def stl_binary():
         struct.pack("<12fH", 0, 0, 0, *VERTICES[a], *VERTICES[b], *VERTICES[c], 0) for a, b, c in FACES)
 
 
-def npy(points=POINTS):
-    head = "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 3), }" % len(points)
+def npy(points=POINTS, announced=None):
+    head = "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 3), }" % (announced or len(points))
     head += " " * (-(len(head) + 11) % 64) + "\n"
     data = b"".join(struct.pack("<3d", *p) for p in points)
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
@@ -257,6 +257,14 @@ class Compressed(unittest.TestCase):
         for name, data in MESHES.items():
             for packed_name, packed in self.packed(name, data):
                 self.refused("info " + self.write(packed_name, gzip.compress(packed)), "is compressed twice, expected once")
+
+    def test_rows_that_are_only_announced_are_no_full_disk(self):
+        for name, content in self.packed("a.npy", npy(announced=1 << 40)):
+            for output in ("o.npy", "o.npz", "o.csv", "-"):
+                words = "points t.obj %s --field sdf,inside --format %s -o " % (
+                    self.write(name, content), "npy" if output == "-" else output[2:])
+                self.refused(words + output, name + ":byte ")
+                self.assertFalse(os.path.exists(output))
 
     def test_damaged_archives_of_arrays_are_refused(self):
         for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):

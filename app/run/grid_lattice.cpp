@@ -1,10 +1,13 @@
 #include "app/run/grid_lattice.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "app/process/usage_error.h"
 #include "app/run/grid_reader.h"
+#include "app/run/volume_input.h"
 #include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"
 
@@ -12,7 +15,10 @@ namespace raycone {
 
 PlacedLattice lattice_of_grid(const GridReference& grid) {
   if (is_image(grid.path)) return read_image_lattice(grid.path);
-  return is_npz(grid.path) ? read_npz_lattice(grid.path) : read_grid_lattice(grid.path, grid.name);
+  if (is_npz(grid.path)) return read_npz_lattice(grid.path);
+  std::error_code error;  // of what is no file, the reader says why
+  if (std::filesystem::is_regular_file(grid.path, error) && !is_vdb(grid.path)) fail_as_unknown_volume(grid.path);
+  return read_grid_lattice(grid.path, grid.name);
 }
 
 Lattice world_lattice_of_grid(const GridReference& grid, const char* purpose) {

@@ -11,8 +11,6 @@
 #include "io/fields/read_npz_lattice.h"
 
 namespace raycone {
-namespace {
-
 bool is_vdb(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
@@ -22,8 +20,6 @@ bool is_vdb(const std::string& path) {
   file.read(first.data(), first.size());
   return file && std::string_view(first.data(), first.size()) == kMagic;
 }
-
-}  // namespace
 
 bool holds_values(const std::string& path) {
   if (path == "-") return false;

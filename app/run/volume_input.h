@@ -1,4 +1,4 @@
-// Files of values, for `raycone info`.
+// Files of values, for `raycone info`, and what tells them apart.
 #pragma once
 
 #include <string>
@@ -11,7 +11,10 @@ namespace raycone {
 // "-" is none.
 [[nodiscard]] bool holds_values(const std::string& path);
 
-// What such a file says about itself. Throws InputError where it is damaged, LimitError, std::bad_alloc.
+// Whether the regular file at `path` begins as OpenVDB's do; false where it cannot be read.
+[[nodiscard]] bool is_vdb(const std::string& path);
+
+// What a file of values says about itself. Throws InputError where it is damaged, LimitError, std::bad_alloc.
 [[nodiscard]] VolumeFacts facts_of_file(const std::string& path);
 
 }  // namespace raycone

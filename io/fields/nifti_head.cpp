@@ -27,6 +27,13 @@ std::optional<NiftiHead> nifti_head(std::string_view bytes) {
   return order ? std::optional(NiftiHead(bytes.substr(0, kNiftiHead), *order)) : std::nullopt;
 }
 
+bool is_nifti2(std::string_view bytes) {
+  constexpr std::uint32_t kHead2 = 540;  // bytes, as its first number says
+  if (bytes.size() < 8 || (bytes.substr(4, 3) != "n+2" && bytes.substr(4, 3) != "ni2")) return false;
+  return load<std::uint32_t>(bytes.data(), std::endian::little) == kHead2 ||
+         load<std::uint32_t>(bytes.data(), std::endian::big) == kHead2;
+}
+
 std::int16_t NiftiHead::integer(std::size_t offset) const { return load<std::int16_t>(&bytes_[offset], order_); }
 
 double NiftiHead::real(std::size_t offset) const { return static_cast<double>(load<float>(&bytes_[offset], order_)); }

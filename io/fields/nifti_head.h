@@ -34,6 +34,9 @@ class NiftiHead {
 // The head that `bytes` begin with, in either byte order; absent where they do not.
 [[nodiscard]] std::optional<NiftiHead> nifti_head(std::string_view bytes);
 
+// Whether they are of NIfTI-2, which is not read.
+[[nodiscard]] bool is_nifti2(std::string_view bytes);
+
 // The voxels by the sform, else by the qform, in right, anterior, superior; index 0 is the first one. `path`: of the
 // file, for errors. Throws InputError where the head has neither.
 [[nodiscard]] PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "io/fields/volume_error.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/input_buffer.h"
 #include "io/files/unpack.h"
@@ -50,6 +51,14 @@ ImageHead read_image_head(const std::string& path) {
 PlacedLattice image_lattice(const std::string& path, const ImageHead& head) {
   const auto* const nrrd = std::get_if<NrrdHead>(&head);
   return checked(path, nrrd ? nrrd_lattice(path, *nrrd) : nifti_lattice(path, std::get<NiftiHead>(head)));
+}
+
+void fail_as_unknown_volume(const std::string& path) {
+  const InputBuffer input = open_image(path);
+  constexpr std::size_t kTold = 16;
+  const std::string_view first = input.pending().substr(0, kTold);
+  const std::string found = is_nifti2(first) ? "NIfTI-2" : first.empty() ? "no bytes" : "'" + excerpt(first) + "'";
+  throw InputError(path + ": found " + found + ", expected OpenVDB, NPZ, NRRD or NIfTI-1");
 }
 
 PlacedLattice read_image_lattice(const std::string& path) { return image_lattice(path, read_image_head(path)); }

@@ -14,6 +14,10 @@ namespace raycone {
 // read.
 [[nodiscard]] bool is_image(const std::string& path);
 
+// Throws InputError about a regular file that is none of what --like takes: what it is, as far as that is known, and
+// what is expected.
+[[noreturn]] void fail_as_unknown_volume(const std::string& path);
+
 using ImageHead = std::variant<NrrdHead, NiftiHead>;
 
 // Of such a file. Throws InputError where it cannot be read or its head is damaged.

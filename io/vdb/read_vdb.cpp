@@ -277,8 +277,12 @@ auto read_file(const std::string& path, const Read& read_something) {
   } catch (const std::bad_alloc&) {
     if (!memory.is_tightest()) throw;
     throw InputError(path + ": not a readable OpenVDB file: it announces more than it holds");
-  } catch (const std::exception& error) {  // OpenVDB's own and the standard library's
+  } catch (const std::ios_base::failure&) {
+    throw InputError(path + ": not a readable OpenVDB file: it ends too early");
+  } catch (const openvdb::Exception& error) {
     throw InputError(path + ": not a readable OpenVDB file: " + excerpt(error.what()));
+  } catch (const std::exception&) {  // the standard library's, whose words tell nothing of the file
+    throw InputError(path + ": not a readable OpenVDB file: it is damaged");
   }
 }
 

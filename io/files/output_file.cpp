@@ -94,7 +94,7 @@ struct OutputFile::State {
   std::string name;
   bool no_clobber;
   OutputGroup* group;                      // or null
-  std::string target;                      // `name` with links followed
+  std::string target;                      // `name` with links followed, where that is a regular file
   std::optional<TemporaryFile> temporary;  // absent where written to directly
   bool has_reserved = false;
   int descriptor = -1;
@@ -111,7 +111,8 @@ OutputFile::State::~State() {
 void OutputFile::State::open() {
   target = follow_links(name);
   struct stat status {};
-  const bool exists = stat(target.c_str(), &status) == 0;
+  // Of the name as given: a link to a pipe in another process's /proc/N/fd leads to one, but its text names no file.
+  const bool exists = stat(name.c_str(), &status) == 0;
   if (name == "-") {
     open_descriptor(STDOUT_FILENO);
   } else if (const std::optional<int> number = descriptor_number(target)) {
@@ -141,7 +142,7 @@ void OutputFile::State::open_descriptor(int number) {
 
 void OutputFile::State::open_special() {
   do {
-    descriptor = ::open(target.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    descriptor = ::open(name.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
   } while (descriptor < 0 && errno == EINTR);
   if (descriptor < 0) fail_writing(errno);
 }

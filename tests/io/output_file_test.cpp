@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <climits>
 #include <csignal>
 #include <filesystem>
@@ -263,6 +264,22 @@ TEST(OutputFile, WritesToANamedDescriptor) {
 }
 
 // `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
+// The link there reads "pipe:[...]".
+TEST(OutputFile, WritesToAPipeOfAnyProcess) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  {
+    OutputFile output("/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(ends[1]));
+    output.write("abc", 3);
+    output.commit();
+  }
+  ::close(ends[1]);
+  std::array<char, 8> bytes{};
+  EXPECT_EQ(read(ends[0], bytes.data(), bytes.size()), 3);
+  EXPECT_EQ(std::string(bytes.data()), "abc");
+  ::close(ends[0]);
+}
+
 TEST(OutputFile, WritesToANamedDescriptorOfARegularFileWhereItStands) {
   const TemporaryDirectory directory;
   put(directory / "log", "before ");

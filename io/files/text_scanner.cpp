@@ -192,12 +192,9 @@ bool TextScanner::skip_word(std::string_view word) {
 }
 
 bool TextScanner::skip_continuation() {
-  if (*position_ != '\\') return false;
-  const char* next = position_ + 1;
-  if (end_ - next > 1 && next[0] == '\r' && next[1] == '\n' && is_line_end('\n')) ++next;
-  if (next == end_ || !is_line_end(*next)) return false;
-  position_ = next;
-  return true;
+  const char* const end = continued_end(position_);
+  if (end != nullptr) position_ = end;
+  return end != nullptr;
 }
 
 std::string TextScanner::found() const {

@@ -50,7 +50,7 @@ class TextScanner {
   [[nodiscard]] bool at_end() const { return position_ == end_; }
   // At the end of a line or of the text, or at a comment ('#').
   [[nodiscard]] bool at_line_end() const { return at_end() || is_line_end(*position_) || *position_ == '#'; }
-  // At a blank, a line end, a comment or the end of the text.
+  // At a blank, a line end, a comment, a backslash that joins lines or the end of the text.
   [[nodiscard]] bool at_token_end() const { return ends_token(position_); }
   // Position as an offset into the source's bytes.
   [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(position_ - begin_); }
@@ -91,8 +91,8 @@ class TextScanner {
   // Moves past `word`, given in lower case, if that is the token at the position, in any case of letters.
   bool skip_word(std::string_view word);
 
-  // The number at the position, moving past it; absent, without moving, where there is none or where something other
-  // than a blank, a line end or a comment is glued to it.
+  // The number at the position, moving past it; absent, without moving, where there is none or where something is glued
+  // to it, see at_token_end().
   std::optional<double> number() {
     double value = 0.0;
     const char* after = parse_number(position_, end_, value);
@@ -137,7 +137,17 @@ class TextScanner {
   [[nodiscard]] std::string found() const;
   [[nodiscard]] bool is_line_end(char c) const { return c == line_end_ || c == other_end_; }
   void skip_mixed_line();
-  [[nodiscard]] bool ends_token(const char* p) const { return p == end_ || is_space(*p) || *p == '#' || *p == '\\'; }
+  // A backslash does so only where it joins two lines: else it is part of what it is glued to.
+  [[nodiscard]] bool ends_token(const char* p) const {
+    return p == end_ || is_space(*p) || *p == '#' || continued_end(p) != nullptr;
+  }
+  // The line end behind a backslash at `p`; null where there is none.
+  [[nodiscard]] const char* continued_end(const char* p) const {
+    if (*p != '\\') return nullptr;
+    const char* next = p + 1;
+    if (end_ - next > 1 && next[0] == '\r' && next[1] == '\n' && is_line_end('\n')) ++next;
+    return next != end_ && is_line_end(*next) ? next : nullptr;
+  }
   // At a backslash before a line end: moves to the line end and returns true.
   bool skip_continuation();
 

@@ -65,7 +65,10 @@ class ObjReader {
       const std::size_t start = text_.offset();
       text_.skip_token();
       // A backslash glued to a word may join the next line to it.
-      if (text_.offset() - start > 1 && rest[text_.offset() - start - 1] == '\\') text_.seek(text_.offset() - 1);
+      if (text_.offset() - start > 1 && rest[text_.offset() - start - 1] == '\\') {
+        text_.seek(text_.offset() - 1);
+        if (!text_.at_token_end()) text_.advance(1);
+      }
       const std::size_t length = std::min(text_.offset() - start, kMostOfName);
       if (name.size() < kMostOfName) name += (name.empty() ? "" : " ") + std::string(rest.substr(0, length));
     }

@@ -51,6 +51,20 @@ TEST(ReadObj, BackslashContinuesALine) {
   EXPECT_EQ(triangles(with_triangle("f 1 2 \\\r\n3\r\n")), kOneTriangle);
 }
 
+TEST(ReadObj, NamesMayHoldBackslashesAndHashes) {
+  const std::array<std::array<const char*, 2>, 7> cases{{{"g a\\ b#c d\n", "a\\ b#c d"},
+                                                         {"g a\\\nb\n", "a b"},
+                                                         {"g a \\\r\nb\r\n", "a b"},
+                                                         {"g C:\\a\\b\n", "C:\\a\\b"},
+                                                         {"g a \\ b\n", "a \\ b"},
+                                                         {"g a # b\n", "a"},
+                                                         {"g a#\n", "a#"}}};
+  for (const auto& [line, name] : cases) {
+    EXPECT_EQ(parse(with_triangle(line + std::string("f 1 2 3\n"))).groups.names, std::vector<std::string>{name})
+        << line;
+  }
+}
+
 TEST(ReadObj, EmptyLineEndsAContinuationHoweverLinesEnd) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     EXPECT_EQ(triangles("v 0 0 0" + end + "v 1 0 0" + end + "v 0 1 0" + end + "f 1 2 3\\" + end + end + "f 1 2 3" + end)
@@ -167,11 +181,15 @@ TEST(ReadObj, BadNumbersAreQuoted) {
   EXPECT_EQ(error_of("v 0 0x10 0\n"), "f:1: expected a coordinate, found '0x10'");
   EXPECT_EQ(error_of("v 0 1,5 0\n"), "f:1: expected a coordinate, found '1,5'");
   EXPECT_EQ(error_of("v 0 1e 0\n"), "f:1: expected a coordinate, found '1e'");
+  EXPECT_EQ(error_of("v 0 0 1\\garbage\n"), "f:1: expected a coordinate, found '1\\garbage'");
+  EXPECT_EQ(error_of("v 0 0\\ 1\n"), "f:1: expected a coordinate, found '0\\'");
   EXPECT_EQ(error_of("v 0 0\nv 1 1 1\n"), "f:1: expected a coordinate, found the end of the line");
   EXPECT_EQ(error_of("v 0 0"), "f:1: expected a coordinate, found the end of the file");
   EXPECT_EQ(error_of(with_triangle("f 1 2 x\n")), "f:4: expected a vertex index, found 'x'");
   EXPECT_EQ(error_of(with_triangle("f 1 2 3/a\n")), "f:4: expected a vertex index, found '3/a'");
   EXPECT_EQ(error_of(with_triangle("f 1 2 3.0\n")), "f:4: expected a vertex index, found '3.0'");
+  EXPECT_EQ(error_of(with_triangle("f 1 2 4\\x 5 6\n")), "f:4: expected a vertex index, found '4\\x'");
+  EXPECT_EQ(error_of(with_triangle("f 1 2 3\\")), "f:4: expected a vertex index, found '3\\'");
 }
 
 TEST(ReadObj, MessagesAreOnePrintableLine) {

@@ -8,14 +8,18 @@ namespace {
 
 Vec3 turned(const AffineMap& map, const Vec3& v) { return v.x * map.x + v.y * map.y + v.z * map.z; }
 
-// Scaled to entries of at most 1, so that the product of three tiny ones keeps its sign.
+// To a largest magnitude of about 1, without rounding: by a power of two.
+Vec3 scaled_to_one(const Vec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (largest == 0.0 || !std::isfinite(largest)) return v;
+  const int exponent = std::ilogb(largest);
+  return {std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent)};
+}
+
+// Columns, and then rows, are scaled each by its own size, so that the product of tiny ones keeps its sign.
 bool has_negative_determinant(const AffineMap& map) {
-  double largest = 0.0;
-  for (const Vec3& column : {map.x, map.y, map.z}) {
-    largest = std::max({largest, std::abs(column.x), std::abs(column.y), std::abs(column.z)});
-  }
-  if (largest == 0.0) return false;
-  const auto row = [&](int i) { return Vec3{map.x[i] / largest, map.y[i] / largest, map.z[i] / largest}; };
+  const Vec3 x = scaled_to_one(map.x), y = scaled_to_one(map.y), z = scaled_to_one(map.z);
+  const auto row = [&](int i) { return scaled_to_one({x[i], y[i], z[i]}); };
   return dot(row(0), cross(row(1), row(2))) < 0.0;
 }
 

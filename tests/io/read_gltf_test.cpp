@@ -264,6 +264,18 @@ TEST(ReadGltf, NegativeDeterminantFlipsTheWinding) {
   for (const Corners& t : triangles_of(parse(asset).mesh)) EXPECT_GT(cross(t[1] - t[0], t[2] - t[0]).z, 0.0);
 }
 
+// Products of two or three of these entries are 0 in doubles.
+TEST(ReadGltf, TinyNegativeDeterminantFlipsTheWinding) {
+  for (const char* const matrix : {"1,0,0,0,0,-1e-163,0,0,0,0,1e-163,0", "1e-163,0,0,0,0,1e-163,0,0,0,0,-1,0",
+                                   "-1e-200,0,0,0,0,1,0,0,0,0,1e-200,0", "1e300,0,0,0,0,-1e-200,0,0,0,0,1e-200,0",
+                                   "1,1e-170,0,0,1,-1e-170,1e-170,0,1,0,2e-170,0"}) {
+    Asset asset;
+    asset.nodes = std::string(R"([{"mesh":0,"matrix":[)") + matrix + ",0,0,0,1]}]";
+    const TriangleMesh mesh = parse(asset).mesh;
+    EXPECT_EQ(mesh.triangles.front(), (Triangle{0, 2, 1})) << matrix;
+  }
+}
+
 TEST(ReadGltf, MeshOfSeveralNodesIsThereSeveralTimes) {
   Asset asset;
   asset.nodes = R"([{"mesh":0,"children":[1,2]},{"mesh":0,"translation":[5,0,0]},{"translation":[7,0,0]}])";

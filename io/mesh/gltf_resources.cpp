@@ -122,7 +122,7 @@ GlbChunks split_glb(const NamedBytes& source) {
   std::size_t offset = kGlbHeaderSize;
   const Chunk json = next_chunk(source, glb, offset);
   if (json.type != kJsonChunk) fail_at_byte(source.name, kGlbHeaderSize + 4, "first chunk of the GLB is not JSON");
-  GlbChunks chunks{json.data, json.data_offset, std::nullopt};
+  GlbChunks chunks{json.data, json.data_offset, std::nullopt, bytes.size() - length};
   // Chunks of unknown types are to be ignored.
   while (offset < glb.size() && !chunks.binary) {
     const Chunk chunk = next_chunk(source, glb, offset);

@@ -16,6 +16,7 @@ struct GlbChunks {
   std::string_view json;
   std::size_t json_offset = 0;             // of `json` in the file
   std::optional<std::string_view> binary;  // the BIN chunk
+  std::size_t surplus = 0;                 // bytes after the length that the GLB announces
 };
 
 // Whether the bytes begin like a GLB.

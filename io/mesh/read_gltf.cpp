@@ -324,7 +324,7 @@ std::vector<Warning> warnings_of(const Omissions& omissions) {
 }
 
 GlbChunks chunks_of(const NamedBytes& source) {
-  return is_glb(source.bytes) ? split_glb(source) : GlbChunks{source.bytes, 0, std::nullopt};
+  return is_glb(source.bytes) ? split_glb(source) : GlbChunks{source.bytes, 0, std::nullopt, 0};
 }
 
 GltfDocument document_of(const NamedBytes& source, const GlbChunks& chunks) {
@@ -369,6 +369,10 @@ ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions
   parsed.groups = groups.finish(parsed.mesh.triangles.size());
   parsed.skipped_faces = omissions.incomplete_faces;
   parsed.warnings = warnings_of(omissions);
+  if (chunks.surplus > 0) {
+    parsed.warnings.push_back(
+        {"trailing-data", "bytes after the announced length ignored: " + std::to_string(chunks.surplus)});
+  }
   return parsed;
 }
 

@@ -695,6 +695,13 @@ TEST(ReadGltf, OldVersionsAreRefused) {
             "a.glb:byte 4: GLB version 1, expected 2");
 }
 
+TEST(ReadGltf, BytesAfterTheAnnouncedLengthAreIgnoredWithAWarning) {
+  EXPECT_TRUE(parse(Asset().bytes()).warnings.empty());
+  const ParsedMesh parsed = parse(Asset().bytes() + std::string(32, 'x'));
+  EXPECT_EQ(triangles_of(parsed.mesh), kSquareTriangles);
+  EXPECT_EQ(parsed.warnings, (std::vector<Warning>{{"trailing-data", "bytes after the announced length ignored: 32"}}));
+}
+
 TEST(ReadGltf, GlbCutShortAnywhereIsAnError) {
   const std::string whole = Asset{}.bytes();
   for (std::size_t size = 0; size < whole.size(); ++size) {

@@ -224,6 +224,14 @@ std::vector<MadeFact> how_made(const openvdb::GridBase& grid) {
   return facts;
 }
 
+// Adds what a grid says under `key`, unless another grid has told it.
+void add_text(std::vector<MadeFact>& facts, const openvdb::GridBase& grid, const char* key, const char* name,
+              bool is_json = false) {
+  const auto text = grid.getMetadata<openvdb::StringMetadata>(key);
+  const bool known = std::ranges::any_of(facts, [&](const MadeFact& fact) { return fact.key == name; });
+  if (text && !known) facts.push_back({name, text->value(), is_json});
+}
+
 // Of all grids.
 openvdb::GridCPtrVec read_heads(const std::string& path) {
   openvdb::GridCPtrVec heads;
@@ -246,13 +254,17 @@ VolumeFacts facts_of(const std::string& path) {
   facts.format = "OpenVDB";
   const openvdb::GridCPtrVec heads = read_heads(path);
   facts.made = how_made(*heads.front());
+  std::string fields;
   for (const openvdb::GridBase::ConstPtr& head : heads) {
     facts.arrays.push_back({head->getName(), value_type(head->type())});
-    // Only some fields have a rule, and all have the same.
-    const auto rule = head->getMetadata<openvdb::StringMetadata>("raycone_rule");
-    const bool known = std::ranges::any_of(facts.made, [](const MadeFact& fact) { return fact.key == "rule"; });
-    if (rule && !known) facts.made.push_back({"rule", rule->value()});
+    // Only some fields have a rule, and all have the same; only one has labels.
+    add_text(facts.made, *head, "raycone_rule", "rule");
+    add_text(facts.made, *head, "raycone_labels", "labels", /*is_json=*/true);
+    if (const auto field = head->getMetadata<openvdb::StringMetadata>("raycone_field")) {
+      fields += (fields.empty() ? "" : " ") + field->value();
+    }
   }
+  if (!fields.empty()) facts.made.push_back({"fields", fields});
   try {
     facts.lattice = lattice_of(path, *heads.front(), "");
   } catch (const InputError& error) {

@@ -98,7 +98,7 @@ class VolumeInfo(CommandCase):
         for line in ("  grids                winding float\n                       inside bool\n",
                      "  samples              3 x 3 x 3\n", "  spacing              (0.5, 0.5, 0.5) world units\n",
                      "  axes                 those of the world\n", "  rule                 odd\n",
-                     "  mesh                 cube.obj\n", "\np.npz\n", "  arrays               points <f8 (5, 3)\n"):
+                     "  mesh                 cube.obj\n", "  fields               winding inside\n", "\np.npz\n", "  arrays               points <f8 (5, 3)\n"):
             self.assertIn(line, text)
         several = json.loads(self.info("%s a.vdb p.npz --json" % CUBE))
         self.assertEqual([entry.get("mesh", entry.get("file")) for entry in several], [CUBE, "a.vdb", "p.npz"])
@@ -107,6 +107,14 @@ class VolumeInfo(CommandCase):
         for option in ("--csv", "--require closed", "--intersections", "--mark m.ply", "--scale 2", "--orient auto"):
             self.refused("info %s a.vdb %s" % (CUBE if "mark" not in option else "", option), 1,
                          "raycone: %s: has no effect on a.vdb, which is no mesh" % option.split()[0])
+
+    def test_labels_are_told(self):
+        for fields, name in (("label", "a.nrrd"), ("label", "a.npz"), ("label", "a.vdb"), ("winding,label", "b.vdb")):
+            self.works("lattice %s %s -o %s --field %s --resolution 9" % (CUBE, TEAPOT, name, fields))
+            made = self.facts(name)["made"]
+            self.assertEqual(made["labels"], ["cube", "teapot"], name)
+            told = made["fields"] if name.endswith(".vdb") else " ".join(made["fields"])
+            self.assertEqual(told, fields.replace(",", " "), name)
 
     def test_a_file_without_a_place_has_no_lattice(self):
         with open("a.nrrd", "w") as file:

@@ -56,7 +56,7 @@ class Document {
       if (count == 0) return;
       done += static_cast<XML_Index>(count);
       if (done - XML_GetCurrentByteIndex(parser()) > kLongestToken) {
-        throw InputError(place() + ": a tag or comment of more than a megabyte");
+        throw InputError(place() + ": a tag or comment of more than a megabyte, expected a shorter one");
       }
     }
   }

@@ -150,8 +150,10 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
   const std::optional<double> height = height_of(seen_after_, seen_vertex_);
   if (!height) return false;
   const Vec3 halfway = vertex_ + 0.5 * *height * axes_[2];
+  const Box all = box();
   Vec3 first;
-  for (int a = 0; a < 3; ++a) first[a] = std::floor(lattice.index_at(a, halfway[a]));
+  for (int a = 0; a < 3; ++a)
+    first[a] = std::floor(lattice.index_at(a, std::clamp(halfway[a], all.lower[a], all.upper[a])));
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 node;
     for (int a = 0; a < 3; ++a) {
@@ -162,10 +164,33 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
   return false;
 }
 
+// That holds all that is between the faces, as far as is_between() can tell.
+Box StarChange::box() const {
+  constexpr double kSlack = 16 * kDoubt;
+  Box box{vertex_, vertex_};
+  for (const Vec3& p : ring_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = std::min(box.lower[axis], p[axis]);
+      box.upper[axis] = std::max(box.upper[axis], p[axis]);
+    }
+  }
+  const Vec3 size = box.upper - box.lower;
+  const double slack = kSlack * std::max({size.x, size.y, size.z});
+  return {box.lower - Vec3{slack, slack, slack}, box.upper + Vec3{slack, slack, slack}};
+}
+
 // Nodes near each face after, row by row along the axis that it is steepest to. Where there is much between the faces,
-// most of these rows are beside it: then a node below the vertex is found sooner.
+// most of these rows are beside it: then a node below the vertex is found sooner. Along the direction, steep faces may
+// be far from each other: nodes beyond all of them are between none.
 bool StarChange::passes_node(const Lattice& lattice, double distance) const {
   if (distance > lattice.least_spacing() && passes_node_below_vertex(lattice)) return true;
+  const Box all = box();
+  const auto first_from = [&](int a, double x) {
+    return static_cast<std::int64_t>(std::ceil(lattice.index_at(a, std::max(x, all.lower[a])) - kDoubt));
+  };
+  const auto last_to = [&](int a, double x) {
+    return static_cast<std::int64_t>(std::floor(lattice.index_at(a, std::min(x, all.upper[a])) + kDoubt));
+  };
   for (const Corners3& c : after_) {
     const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
     const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
@@ -174,8 +199,7 @@ bool StarChange::passes_node(const Lattice& lattice, double distance) const {
     const double reach = distance * length / std::abs(normal[axis]) + kDoubt * lattice.spacing[axis];
     const auto range = [&](int a) {
       const auto [low, high] = std::minmax({c[0][a], c[1][a], c[2][a]});
-      return std::array{static_cast<std::int64_t>(std::ceil(lattice.index_at(a, low - distance) - kDoubt)),
-                        static_cast<std::int64_t>(std::floor(lattice.index_at(a, high + distance) + kDoubt))};
+      return std::array{first_from(a, low - distance), last_to(a, high + distance)};
     };
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const auto [u_begin, u_end] = range(u);
@@ -187,9 +211,8 @@ bool StarChange::passes_node(const Lattice& lattice, double distance) const {
         node[v] = lattice.coordinate(v, j);
         const double on_plane =
             c[0][axis] - (normal[u] * (node[u] - c[0][u]) + normal[v] * (node[v] - c[0][v])) / normal[axis];
-        const auto first = static_cast<std::int64_t>(std::ceil(lattice.index_at(axis, on_plane - reach) - kDoubt));
-        const auto last = static_cast<std::int64_t>(std::floor(lattice.index_at(axis, on_plane + reach) + kDoubt));
-        for (std::int64_t k = first; k <= last; ++k) {
+        const std::int64_t last = last_to(axis, on_plane + reach);
+        for (std::int64_t k = first_from(axis, on_plane - reach); k <= last; ++k) {
           node[axis] = lattice.coordinate(axis, k);
           if (is_between(node)) return true;
         }

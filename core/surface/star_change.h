@@ -39,6 +39,7 @@ class StarChange {
   [[nodiscard]] double rounding() const;
   [[nodiscard]] bool is_between(const Vec3& node) const;
   [[nodiscard]] bool passes_node_below_vertex(const Lattice& lattice) const;
+  [[nodiscard]] Box box() const;
 
   Vec3 vertex_;
   std::vector<Vec3> ring_;

@@ -204,6 +204,19 @@ TEST(SimplifiedSurface, IsWithinTheDistanceWhereCoordinatesAreRounded) {
   for (const double most : {0.0005, 0.001, 0.002}) EXPECT_LE(moved_by(mesh, most).farthest, most);
 }
 
+// What a pull may cost does not make it look at more nodes: faces are where they are.
+TEST(SimplifiedSurface, TakesNoLongerForDistancesBeyondAllSizes) {
+  const TriangleMesh mesh = weld(test::open_box(), {});
+  const WindingNumberEvaluator evaluator(mesh);
+  const NodeSet inside = nodes_inside(evaluator, {}, {{-0.3, -0.3, -0.3}, {0.2, 0.2, 0.2}, {0, 0, 0}, {9, 9, 9}});
+  SurfaceOptions options;
+  for (const double most : {10.0, 1e3, 1e6, 1e300}) {
+    options.simplify = most;
+    const FinishedSurface finished = closed_surface(mesh, evaluator, inside, options);
+    EXPECT_TRUE(faults_of(finished.surface.mesh, inside).none()) << most;
+  }
+}
+
 TEST(StarChange, SeesNodesBetween) {
   // A tip of height 0.5 over a square that becomes flat.
   const std::vector<Vec3> ring{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};

@@ -53,7 +53,7 @@ std::string suffix_of(const std::optional<Shard>& shard) {
 
 // Whether rows are kept in a file of this name.
 bool holds_rows(const std::string& name) {
-  static const std::regex pattern("results(-[0-9]{1,18}-of-[0-9]{1,18})?\\.csv");
+  static const std::regex pattern("results(-[0-9]{1,19}-of-[0-9]{1,19})?\\.csv");
   return std::regex_match(name, pattern);
 }
 
@@ -119,7 +119,10 @@ std::vector<CsvRecord> CsvLog::read() const {
     if (all.starts_with(former)) return parse_csv(std::string_view(all).substr(former.size())).records;
   }
   if (header.starts_with(all)) return {};  // empty, or a header that was never completed
-  if (!all.starts_with(header)) throw InputError(path_ + ":1: not written by raycone batch, expected " + header);
+  if (!all.starts_with(header)) {
+    const std::string expected = header.substr(0, header.find_last_not_of("\r\n") + 1);
+    throw InputError(path_ + ":1: not written by raycone batch, expected " + expected);
+  }
   return parse_csv(std::string_view(all).substr(header.size())).records;
 }
 

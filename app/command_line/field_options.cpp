@@ -97,8 +97,9 @@ OptionGroup points_field_group() {
   OptionSpec& field = group.options.front();
   field.value = "winding|inside|density|sdf|gradient|label[,...]";
   field.description =
-      "winding: winding number (default); inside: mask; density: winding number clamped to 0..1; sdf: signed distance "
-      "to the faces; gradient: of the winding number; label: number of the part that a point is in";
+      "winding: winding number (default; with --sample winding,inside,sdf); inside: mask; density: winding number "
+      "clamped to 0..1; sdf: signed distance to the faces; gradient: of the winding number; label: number of the part "
+      "that a point is in";
   return group;
 }
 

@@ -39,7 +39,8 @@ std::vector<std::string> given_options(const Values& values, const OptionNames& 
     for (const std::string& text : values_that_count(name, given)) {
       const std::string value = name == "--like" ? std::filesystem::path(text).filename().string() : text;
       std::string option = known.flags.contains(name) ? name : name + '=' + value;
-      if (!defaults.contains(option)) options.push_back(std::move(option));
+      const bool is_default = defaults.contains(option) && !(name == "--field" && values.given("--sample"));
+      if (!is_default) options.push_back(std::move(option));
     }
   }
   return options;

@@ -118,7 +118,7 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   Slice slice;
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
-  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + six_digits(at);
+  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + six_digits(at + 0.0);  // never -0
   slice.short_plane = slice.plane;
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(plane.axis)];
   slice.is_flat = padded.lower[right] == padded.upper[right] || padded.lower[up] == padded.upper[up];

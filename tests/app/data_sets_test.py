@@ -299,6 +299,12 @@ class Provenance(DataSets):
             self.works(command + " -o a.npz --weld exact --orient keep --engine embree")  # what would hold anyway
             self.assertEqual(read("a.npz"), whole)
 
+    def test_a_default_of_others_is_an_option_of_samples(self):
+        for given, options in (([], ["--sample=uniform=3"]),
+                               (["--field", "winding"], ["--field=winding", "--sample=uniform=3"])):
+            self.works(" ".join(["points", CUBE, "--sample uniform=3 -o a.npz", *given]))
+            self.assertEqual(json.loads(numpy.load("a.npz")["raycone"].item())["options"], options)
+
     def test_vdb_has_options_and_transform(self):
         try:
             import pyopenvdb

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <thread>
 
@@ -313,6 +314,24 @@ TEST_F(Batch, ShardsAndAFinalRunMakeTheSameAsOneRun) {
   EXPECT_EQ(rows_in(out_ + "/results-1-of-1.csv").size(), 14U) << "what others did counts, and is taken over";
   const Environment environment = outside_array_jobs();
   for (const char* const wrong : {"0/3", "4/3", "slurm", "x"}) EXPECT_EQ(run({"--shard", wrong}).status, 1) << wrong;
+}
+
+TEST_F(Batch, ReadsWhatTheLargestNumbersOfShardsHaveWritten) {
+  put("a.obj");
+  EXPECT_EQ(run({"--shard", "1/9223372036854775807"}).status, 0);
+  EXPECT_EQ(run().status, 0);
+  EXPECT_EQ(rows().size(), 1U);
+  EXPECT_EQ(rows_in(out_ + "/results-1-of-9223372036854775807.csv").size(), 1U);
+}
+
+TEST_F(Batch, SaysInOneLineWhatATableOfOthersIsNot) {
+  put("a.obj");
+  fs::create_directories(out_);
+  std::ofstream(out_ + "/results.csv") << "name,size\n";
+  const CommandResult result = run();
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find(": not written by raycone batch, expected mesh,status,"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('?'), std::string::npos) << result.err;
 }
 
 TEST_F(Batch, WarnsOncePerMeshAndObeysStrict) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/data/box.h"
 #include "core/data/lattice.h"
 #include "core/data/vec3.h"
 

@@ -110,21 +110,24 @@ class SurfaceMaker {
   // right side, exactly. That is looked at, and whether the points of the lattice's edges are on it.
   // Corners that one lattice does not see the next one may, where far fewer faces are to be had. `most`: with as many,
   // it is of no use.
-  [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) const {
+  [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) {
     constexpr int kTries = 6, kPrize = 4;
+    SurfaceOptions merge_only = options_;
+    merge_only.simplify = 0.0;
     for (int n = 1; n <= kTries; ++n) {
       Lattice moved = inside_.lattice();
       for (int axis = 0; axis < 3; ++axis) moved.origin[axis] += step_off_nodes(n, axis) * moved.spacing[axis];
       const NodeSet nodes = nodes_inside(evaluators_.rough, options_.rule, moved);
       if (nodes.empty() || nodes.reaches_border()) continue;
-      SurfaceMaker maker(mesh_, evaluators_, nodes, options_);
+      SurfaceMaker maker(mesh_, evaluators_, nodes, merge_only);
       maker.find_points(margins);
       Attempt made = maker.attempt(maker.points_of_sections(margins), margins, true, ContourCells::kPolygons);
-      if (!made.made || !made.made->merged || !made.made->simplified) continue;
+      if (!made.made || !made.made->merged) continue;
       SurfaceMesh& surface = made.made->surface;
       if (surface.mesh.triangles.size() >= most) break;
       if (put_nodes_right(surface, margins)) {
         if (!has_points(surface, margins)) break;
+        if (options_.simplify > 0.0) simplify_within_bound(*made.made, margins);
         return std::move(made.made);
       }
       if (kPrize * surface.mesh.triangles.size() > most) break;
@@ -154,10 +157,9 @@ class SurfaceMaker {
     return false;
   }
 
-  // Whether the points of the lattice's edges are on a surface, as nearly as after merging, and simplifying.
+  // Whether the points of the lattice's edges are on a surface, as nearly as after merging.
   [[nodiscard]] bool has_points(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
-    const double most =
-        options_.simplify + most_merging(margins.inner * inside_.lattice().largest_spacing(), merge_tolerance());
+    const double most = most_merging(margins.inner * inside_.lattice().largest_spacing(), tolerance_);
     std::vector<Vec3> points(points_.size());
     std::ranges::transform(points_, points.begin(), &EdgePoint::position);
     std::vector<double> distances(points.size());
@@ -223,12 +225,7 @@ class SurfaceMaker {
     if (options_.merge_planes && !made.merged && kind == ContourCells::kPolygons) return result;
     if (result.faults && !result.faults->none()) return result;
     if (!made.merged && !is_right(made.surface, places, result)) return result;
-    if (options_.simplify > 0.0) {
-      const double most = farthest_pull(margins);
-      made.bound_too_small = !(most > 0.0);
-      made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
-      if (made.simplified) settler_.settle(made.surface);
-    }
+    if (options_.simplify > 0.0) simplify_within_bound(made, margins);
     result.made = std::move(made);
     return result;
   }
@@ -278,6 +275,13 @@ class SurfaceMaker {
     constexpr double kMargin = 1.0 - 1e-6;
     return kMargin * options_.simplify -
            most_merging(margins.inner * inside_.lattice().largest_spacing(), merge_tolerance());
+  }
+
+  void simplify_within_bound(FinishedSurface& made, const SurfaceMargins& margins) {
+    const double most = farthest_pull(margins);
+    made.bound_too_small = !(most > 0.0);
+    made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
+    if (made.simplified) settler_.settle(made.surface);
   }
 
   // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.

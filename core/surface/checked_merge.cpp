@@ -20,7 +20,7 @@ namespace raycone {
 namespace {
 
 // Near faults, vertices are kept for these many rounds; then, as the last resort, far around them.
-constexpr int kFewRounds = 6, kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
+constexpr int kRounds = 8, kWideRounds = 6, kFacesFrom = 4;
 constexpr double kFirstReach = 0.25;  // voxels; then 1, 2, 4, ...
 
 using Node = NodeSet::Node;
@@ -86,9 +86,9 @@ class CheckedMerger {
   }
 
  private:
-  // Only kLeast goes on without asking whether the surface before is right, which takes longer than merging, but for
-  // few rounds. kAll goes on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the
-  // lattice, to the last resort.
+  // Only kLeast goes on without asking whether the surface before is right, which takes longer than merging. kAll goes
+  // on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the lattice, to the last
+  // resort.
   enum class Effort : std::uint8_t { kLeast, kLittle, kAll };
 
   // What merging spoils is not merged. `most`: world units.
@@ -103,7 +103,7 @@ class CheckedMerger {
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     moves_ = PointMoves::kNone;
-    const int rounds = effort == Effort::kLeast ? kFewRounds : effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
+    const int rounds = effort == Effort::kAll ? kRounds + kWideRounds : kRounds;
     const auto may_go_on = [&] { return effort == Effort::kLeast || is_right(); };
     for (int round = 0; round < rounds; ++round) {
       MergedFaces merged = merger.merge(kept_);

@@ -75,7 +75,8 @@ class CheckedMerger {
   // they are kept off nodes. If faces that are merged as well as that have faults, they are merged where they agree
   // better. None where faults are left even so.
   CheckedMerge merge(bool once) {
-    constexpr double kBetter = 0.25, kManyMore = 1.5;
+    constexpr double kBetter = 0.25;   // margins: less than any point is kept off a node
+    constexpr double kManyMore = 1.5;  // times the faces: below, another surface would not be worth its time
     const double unit = margin_ * inside_.lattice().least_spacing();
     std::optional<SurfaceMesh> result;
     if (tolerance_ > kNearPlane * unit) result = merged_within(tolerance_, Effort::kLeast);

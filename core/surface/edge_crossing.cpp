@@ -62,7 +62,7 @@ double place_between(Long of_first, Long of_second) {
 // `terms`: the magnitudes of the products that the distances, times the normal's length, have, added.
 double place_between(Long of_p, Long of_q, double terms, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                      const Vec3& c) {
-  constexpr Long kSure = 0x1p-10;
+  constexpr Long kSure = 0x1p-10;  // ten roundings of 2^-64 are below 2^-50 of the sum then
   if (of_p + of_q > kSure * Long{terms}) return place_between(of_p, of_q);
   const QuadVec3 normal = cross_of_differences(b, c, a);
   const Quad from_p = absolute(dot(normal, quad_difference(p, a))),

@@ -108,8 +108,8 @@ class SurfaceMaker {
   // each. A lattice that is moved by a part of a voxel has its nodes off such planes. Where planes are all there is,
   // its surface is that of the lattice given: if its faces are between corners of the mesh, they have each node on the
   // right side, exactly. That is looked at, and whether the points of the lattice's edges are on it.
-  // Corners that one lattice does not see the next one may, where far fewer faces are to be had. `most`: with as many,
-  // it is of no use.
+  // Corners that one lattice does not see the next one may: others are tried where less than an eighth of the faces
+  // would do. `most`: with as many, it is of no use.
   [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) {
     constexpr int kTries = 6, kPrize = 4;
     SurfaceOptions merge_only = options_;
@@ -169,7 +169,7 @@ class SurfaceMaker {
 
   // Whether most of a surface is in the planes of its sources, as that of CAD parts is.
   [[nodiscard]] bool is_of_planes(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
-    constexpr double kMost = 0.75, kOff = 4.0;  // of the area; margins
+    constexpr double kMost = 0.75, kOff = 4.0;  // of the area, which scans stay below (see Sharpener); margins
     const double off = std::max(kOff * margins.inner * inside_.lattice().largest_spacing(), tolerance_);
     double all = 0.0, in_planes = 0.0;
     for (std::size_t face = 0; face < surface.sources.size(); ++face) {

@@ -9,6 +9,29 @@
 #include "core/surface/surface_cells.h"
 
 namespace raycone {
+namespace {
+
+using Node = NodeSet::Node;
+
+// `nodes` are in the order of NodeSet.
+bool is_near(const std::vector<Vec3>& vertices, const Triangle& t, const Lattice& lattice,
+             const std::vector<Node>& nodes) {
+  Node low{}, high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const auto [least, most] = std::minmax({vertices[t[0]][axis], vertices[t[1]][axis], vertices[t[2]][axis]});
+    low[a] = lattice.cell_at(axis, least) - 1;
+    high[a] = lattice.cell_at(axis, most) + 2;
+  }
+  const auto layer = [](const Node& node) { return node[2]; };
+  const auto begin = std::ranges::lower_bound(nodes, low[2], {}, layer);
+  const auto end = std::ranges::upper_bound(nodes, high[2], {}, layer);
+  return std::any_of(begin, end, [&](const Node& node) {
+    return low[0] <= node[0] && node[0] <= high[0] && low[1] <= node[1] && node[1] <= high[1];
+  });
+}
+
+}  // namespace
 
 std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
                                   const SurfaceFaults& faults) {
@@ -33,6 +56,16 @@ bool is_beside(const Vec3& p, const NodeSet& nodes) {
     if (nodes.holds(i, j, k)) return true;
   }
   return false;
+}
+
+void touch_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const NodeSet& nodes,
+                  std::vector<bool>& touched) {
+  std::vector<Node> sorted;
+  nodes.for_each([&](const Node& node) { sorted.push_back(node); });
+  for (const Triangle& t : triangles) {
+    if (!is_near(vertices, t, nodes.lattice(), sorted)) continue;
+    for (const std::uint32_t corner : t) touched[corner] = true;
+  }
 }
 
 TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles) {

@@ -44,4 +44,8 @@ Vec3 rounded_to_float(const Vec3& p) {
   return {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 
+void round_to_float(std::vector<Vec3>& points) {
+  for (Vec3& p : points) p = rounded_to_float(p);
+}
+
 }  // namespace raycone

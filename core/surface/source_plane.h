@@ -28,5 +28,6 @@ struct SourcePlane {
 
 // As vertices of surfaces in single precision are rounded.
 [[nodiscard]] Vec3 rounded_to_float(const Vec3& p);
+void round_to_float(std::vector<Vec3>& points);
 
 }  // namespace raycone

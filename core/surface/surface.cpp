@@ -17,11 +17,11 @@
 #include "core/surface/cell_triangles.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_sharpen.h"
+#include "core/surface/checked_simplify.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
-#include "core/surface/mesh_corners.h"
-#include "core/surface/simplify.h"
 #include "core/surface/source_plane.h"
+#include "core/surface/surface_beside_nodes.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/thicken.h"
 #include "core/surface/triangle_normals.h"
@@ -29,10 +29,6 @@
 
 namespace raycone {
 namespace {
-
-void round_to_float(std::vector<Vec3>& vertices) {
-  for (Vec3& p : vertices) p = rounded_to_float(p);
-}
 
 // One attempt at a surface after the other.
 class SurfaceMaker {
@@ -88,6 +84,7 @@ class SurfaceMaker {
 
  private:
   static constexpr double kMostMargin = 0x1p-4;
+  static constexpr double kOff = 4.0;  // margins that points of a plane may be off it, if not plane_tolerance()
   static constexpr int kRounds = 4;
 
   struct Attempt {
@@ -104,85 +101,31 @@ class SurfaceMaker {
                                        : edge_points(mesh_, rule_, cells_, triangles_, margins);
   }
 
-  // Where planes of the mesh lead through nodes, rounding has these on either side, and faces would have to go around
-  // each. A lattice that is moved by a part of a voxel has its nodes off such planes. Where planes are all there is,
-  // its surface is that of the lattice given: if its faces are between corners of the mesh, they have each node on the
-  // right side, exactly. That is looked at, and whether the points of the lattice's edges are on it.
-  // Corners that one lattice does not see the next one may: others are tried where less than an eighth of the faces
-  // would do. `most`: with as many, it is of no use.
+  // Merged only: by a lattice that is moved by a part of a voxel, which `most` faces or more would not be worth.
   [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) {
-    constexpr int kTries = 6, kPrize = 4;
     SurfaceOptions merge_only = options_;
     merge_only.simplify = 0.0;
-    for (int n = 1; n <= kTries; ++n) {
-      Lattice moved = inside_.lattice();
-      for (int axis = 0; axis < 3; ++axis) moved.origin[axis] += step_off_nodes(n, axis) * moved.spacing[axis];
+    const auto merged_surface = [&](const Lattice& moved) -> std::optional<SurfaceMesh> {
       const NodeSet nodes = nodes_inside(evaluators_.rough, options_.rule, moved);
-      if (nodes.empty() || nodes.reaches_border()) continue;
+      if (nodes.empty() || nodes.reaches_border()) return std::nullopt;
       SurfaceMaker maker(mesh_, evaluators_, nodes, merge_only);
       maker.find_points(margins);
       Attempt made = maker.attempt(maker.points_of_sections(margins), margins, true, ContourCells::kPolygons);
-      if (!made.made || !made.made->merged) continue;
-      SurfaceMesh& surface = made.made->surface;
-      if (surface.mesh.triangles.size() >= most) break;
-      if (put_nodes_right(surface, margins)) {
-        if (!has_points(surface, margins)) break;
-        if (options_.simplify > 0.0) simplify_within_bound(*made.made, margins);
-        return std::move(made.made);
-      }
-      if (kPrize * surface.mesh.triangles.size() > most) break;
-    }
-    return std::nullopt;
-  }
-
-  // Voxels, between -0.4 and 0.4: the n-th of places that are spread over a cube (Roberts 2018, "The unreasonable
-  // effectiveness of quasirandom sequences").
-  static double step_off_nodes(int n, int axis) {
-    constexpr std::array kSpread{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-    const double place = n * kSpread[static_cast<std::size_t>(axis)];
-    return 0.8 * (place - std::floor(place) - 0.5);
-  }
-
-  // Whether points next to corners, and in level planes, can be moved so that the surface has no faults.
-  [[nodiscard]] bool put_nodes_right(SurfaceMesh& surface, const SurfaceMargins& margins) const {
-    const double reach = kNearCorner * margins.inner * inside_.lattice().least_spacing();
-    for (const PointMoves moves : {PointMoves::kToCorners, PointMoves::kIntoLevelPlanes}) {
-      TriangleMesh moved = surface.mesh;
-      move_points(moves, mesh_, surface.sources, inside_.lattice(), reach, moved);
-      if (options_.single_precision) round_to_float(moved.vertices);
-      if (!faults_of(moved, inside_).none()) continue;
-      surface.mesh = std::move(moved);
-      return true;
-    }
-    return false;
-  }
-
-  // Whether the points of the lattice's edges are on a surface, as nearly as after merging.
-  [[nodiscard]] bool has_points(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
-    const double most = most_merging(margins.inner * inside_.lattice().largest_spacing(), tolerance_);
+      if (!made.made || !made.made->merged) return std::nullopt;
+      return std::move(made.made->surface);
+    };
     std::vector<Vec3> points(points_.size());
     std::ranges::transform(points_, points.begin(), &EdgePoint::position);
-    std::vector<double> distances(points.size());
-    DistanceEvaluator(surface.mesh).evaluate(points, distances, most);
-    return std::ranges::max(distances) <= most;
-  }
-
-  // Whether most of a surface is in the planes of its sources, as that of CAD parts is.
-  [[nodiscard]] bool is_of_planes(const SurfaceMesh& surface, const SurfaceMargins& margins) const {
-    constexpr double kMost = 0.75, kOff = 4.0;  // of the area, which scans stay below (see Sharpener); margins
-    const double off = std::max(kOff * margins.inner * inside_.lattice().largest_spacing(), tolerance_);
-    double all = 0.0, in_planes = 0.0;
-    for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-      const Triangle& t = surface.mesh.triangles[face];
-      const std::vector<Vec3>& v = surface.mesh.vertices;
-      const double area = norm(cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]));
-      all += area;
-      if (surface.sources[face] == kHole) continue;
-      const SourcePlane plane = source_plane(mesh_, surface.sources[face]);
-      const auto is_in_plane = [&](std::uint32_t corner) { return std::abs(plane.height(v[corner])) <= off; };
-      if (std::ranges::all_of(t, is_in_plane)) in_planes += area;
-    }
-    return in_planes >= kMost * all;
+    const double margin = margins.inner * inside_.lattice().largest_spacing();
+    std::optional<SurfaceMesh> surface =
+        surface_beside_nodes(mesh_, inside_, points,
+                             {kNearCorner * margins.inner * inside_.lattice().least_spacing(),
+                              most_merging(margin, merge_tolerance()), most, options_.single_precision},
+                             merged_surface);
+    if (!surface) return std::nullopt;
+    FinishedSurface made{*std::move(surface)};
+    if (options_.simplify > 0.0) simplify_within_bound(made, margins);
+    return made;
   }
 
   // What thickens has points off the mesh.
@@ -243,9 +186,12 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
-    CheckedMerge result = checked_merge(surface, mesh_, inside_, margins.inner, merge_tolerance(),
-                                        options_.single_precision, is_right_unmerged, kind == ContourCells::kPolygons);
-    attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, margins);
+    CheckedMerge result =
+        checked_merge(surface, mesh_, inside_,
+                      {margins.inner, merge_tolerance(), options_.single_precision, kind == ContourCells::kPolygons},
+                      is_right_unmerged);
+    const double margin = margins.inner * inside_.lattice().largest_spacing();
+    attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, mesh_, std::max(kOff * margin, tolerance_));
     if (result.surface) surface = *std::move(result.surface);
     attempt.faces = surface.sources.size();
     return result.surface.has_value();
@@ -253,7 +199,7 @@ class SurfaceMaker {
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
   [[nodiscard]] bool sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) const {
-    constexpr double kReach = 2.0, kOff = 4.0;  // voxels, margins
+    constexpr double kReach = 2.0;  // voxels
     const Lattice& lattice = inside_.lattice();
     return checked_sharpen(surface, mesh_, normals_, distance_, lattice,
                            {std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
@@ -280,29 +226,9 @@ class SurfaceMaker {
   void simplify_within_bound(FinishedSurface& made, const SurfaceMargins& margins) {
     const double most = farthest_pull(margins);
     made.bound_too_small = !(most > 0.0);
-    made.simplified = !made.bound_too_small && simplify_surface(made.surface, most);
+    if (!made.bound_too_small) enter("simplifying");
+    made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside_, most, options_.rounds);
     if (made.simplified) settler_.settle(made.surface);
-  }
-
-  // Pulls around faces that intersect are undone, until there are none. Returns false where that takes too many rounds.
-  bool simplify_surface(SurfaceMesh& surface, double most) {
-    enter("simplifying");
-    std::vector<bool> kept(surface.mesh.vertices.size(), false);
-    for (int round = 0; round < options_.rounds; ++round) {
-      MergedFaces merged = simplify(surface, inside_, kept, most);
-      TriangleMesh compact = used_part(surface.mesh.vertices, merged.triangles);
-      const SurfaceFaults faults = faults_of(compact, inside_);
-      if (faults.none()) {
-        surface = {std::move(compact), std::move(merged.sources)};
-        return true;
-      }
-      if (faults.intersections.pairs == 0) return false;
-      const std::vector<bool> touched = faulty_vertices(surface.mesh.vertices.size(), merged.triangles, faults);
-      const std::vector<bool> before = kept;
-      for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
-      if (kept == before) return false;  // another round would be the same
-    }
-    return false;
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of

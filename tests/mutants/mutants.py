@@ -581,7 +581,7 @@ MUTANTS = [
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
-        ("core/surface/checked_merge.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
+        ("core/surface/kept_vertices.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
         ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
     Mutant("points_beside_level_planes", "points of faces in level planes are in these exactly", [
@@ -589,7 +589,7 @@ MUTANTS = [
     Mutant("once_around_twice", "a polygon that ends where it starts has that corner once", [
         ("core/surface/cell_polygons.cpp", "last.corners[last.size - 1]) --last.size;", "last.corners[last.size - 1]) last.size += 0;")]),
     Mutant("beside_nodes_unseen", "points of the lattice's edges are on the surface of one that is moved", [
-        ("core/surface/surface.cpp", "return std::ranges::max(distances) <= most;", "return std::ranges::max(distances) >= 0.0;")]),
+        ("core/surface/surface_beside_nodes.cpp", "return std::ranges::max(distances) <= off;", "return std::ranges::max(distances) >= 0.0;")]),
     Mutant("blades_are_eaten", "a ridge is held where planes meet at less than 30 degrees", [
         ("core/surface/patch_merger.cpp", "kBackToBack = -0.866;", "kBackToBack = -1 + 0x1p-21;")]),
     Mutant("hits_by_rounding", "where a segment is nearly in a plane, the place where it meets that is exact", [

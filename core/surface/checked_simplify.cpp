@@ -1,0 +1,34 @@
+#include "core/surface/checked_simplify.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "core/surface/certificate.h"
+#include "core/surface/fault_places.h"
+#include "core/surface/simplify.h"
+
+namespace raycone {
+
+bool checked_simplify(SurfaceMesh& surface, const NodeSet& inside, double most, int rounds) {
+  const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  std::vector<bool> kept(vertices.size(), false);
+  for (int round = 0; round < rounds; ++round) {
+    MergedFaces merged = simplify(surface, inside, kept, most);
+    TriangleMesh compact = used_part(vertices, merged.triangles);
+    NodeSet misplaced(inside.lattice());
+    const SurfaceFaults faults = faults_of(compact, inside, &misplaced);
+    if (faults.none()) {
+      surface = {std::move(compact), std::move(merged.sources)};
+      return true;
+    }
+    std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
+    touch_beside(vertices, merged.triangles, misplaced, touched);
+    const std::vector<bool> before = kept;
+    for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
+    if (kept == before) return false;  // another round would be the same
+  }
+  return false;
+}
+
+}  // namespace raycone

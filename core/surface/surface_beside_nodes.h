@@ -1,0 +1,42 @@
+// Surfaces of meshes whose planes lead through nodes of the lattice.
+//
+// Rounding has such nodes on either side of the plane, and faces would have to go around each. A lattice that is moved
+// by a part of a voxel has its nodes off the planes. Where planes are all there is, its surface is that of the lattice
+// given, too: if its faces are between corners of the mesh, they have each node on the right side, exactly.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "core/surface/contour.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// Whether most of a surface of `input` is in the planes of its sources, but for `off`, as that of CAD parts is.
+[[nodiscard]] bool is_of_planes(const SurfaceMesh& surface, const TriangleMesh& input, double off);
+
+// Lengths are world units.
+struct BesideNodesLimits {
+  double to_corners = 0.0;  // how far points may be moved to corners, and into level planes, of the mesh
+  double off = 0.0;         // how far points of the lattice's edges may be from the surface
+  std::size_t faces = 0;    // with as many a surface is of no use
+  bool single_precision = false;
+};
+
+// The merged surface of a lattice, where there is one without faults.
+using MergedSurface = std::function<std::optional<SurfaceMesh>(const Lattice&)>;
+
+// A surface by way of moved lattices: of `input`, without faults (faults_of()) as the surface of `inside`, with all of
+// `points` on it, which are those of the lattice's edges. The first that there is of six; none if that has too many
+// faces, or a point is off it.
+[[nodiscard]] std::optional<SurfaceMesh> surface_beside_nodes(const TriangleMesh& input, const NodeSet& inside,
+                                                              std::span<const Vec3> points,
+                                                              const BesideNodesLimits& limits,
+                                                              const MergedSurface& merged_surface);
+
+}  // namespace raycone

@@ -23,7 +23,10 @@ bool checked_simplify(SurfaceMesh& surface, const NodeSet& inside, double most, 
       return true;
     }
     std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
-    touch_beside(vertices, merged.triangles, misplaced, touched);
+    const std::vector<bool> beside = faces_beside(vertices, merged.triangles, misplaced);
+    for (std::size_t face = 0; face < beside.size(); ++face) {
+      for (const std::uint32_t corner : merged.triangles[face]) touched[corner] = touched[corner] || beside[face];
+    }
     const std::vector<bool> before = kept;
     for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
     if (kept == before) return false;  // another round would be the same

@@ -58,14 +58,14 @@ bool is_beside(const Vec3& p, const NodeSet& nodes) {
   return false;
 }
 
-void touch_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const NodeSet& nodes,
-                  std::vector<bool>& touched) {
+std::vector<bool> faces_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                               const NodeSet& nodes) {
   std::vector<Node> sorted;
   nodes.for_each([&](const Node& node) { sorted.push_back(node); });
-  for (const Triangle& t : triangles) {
-    if (!is_near(vertices, t, nodes.lattice(), sorted)) continue;
-    for (const std::uint32_t corner : t) touched[corner] = true;
-  }
+  std::vector<bool> beside(triangles.size(), false);
+  for (std::size_t face = 0; face < triangles.size() && !sorted.empty(); ++face)
+    beside[face] = is_near(vertices, triangles[face], nodes.lattice(), sorted);
+  return beside;
 }
 
 TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles) {

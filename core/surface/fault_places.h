@@ -19,9 +19,9 @@ namespace raycone {
 // outermost cells.
 [[nodiscard]] bool is_beside(const Vec3& p, const NodeSet& nodes);
 
-// Sets `touched` for the corners of triangles whose box, a voxel larger on each side, has one of `nodes`.
-void touch_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const NodeSet& nodes,
-                  std::vector<bool>& touched);
+// Of each triangle whether its box, a voxel larger on each side, has one of `nodes`.
+[[nodiscard]] std::vector<bool> faces_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                                             const NodeSet& nodes);
 
 // A mesh without the vertices that no triangle uses.
 [[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles);

@@ -110,10 +110,13 @@ class GapFiller {
   }
 
   std::optional<GapFill> fill() {
-    std::optional<GapFill> none;
-    const auto has_no_front = [](const Label& label) { return label.front == 0.0; };
-    if (std::ranges::any_of(labels_, has_no_front)) return none;
-    return fill_rest() ? std::optional(std::move(filled_)) : none;
+    if (!has_fronts() || !fill_rest()) return std::nullopt;
+    return std::move(filled_);
+  }
+  std::optional<GapFill> fill_from(const Vec3& corner) {
+    if (!has_fronts() || !fill_sectors(limits_.single_precision ? rounded_to_float(corner) : corner))
+      return std::nullopt;
+    return std::move(filled_);
   }
 
  private:
@@ -159,14 +162,21 @@ class GapFiller {
     return runs;
   }
 
+  [[nodiscard]] bool has_fronts() const {
+    return std::ranges::none_of(labels_, [](const Label& label) { return label.front == 0.0; });
+  }
   bool fill_rest();
+  bool fill_sectors(const Vec3& corner);
+  [[nodiscard]] std::size_t nearest_end(std::size_t between, const Vec3& point) const;
   bool cut_off(const Run& run);
   std::optional<Path> path_of(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
                               std::size_t after);
   std::optional<Path> path_by_corner(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
                                      std::size_t after);
   bool add_polygon(const std::vector<std::size_t>& corners, const Side& like);
-  void add_middle(std::size_t from, std::size_t to) { on_mesh_.push_back(0.5 * points_[from] + 0.5 * points_[to]); }
+  void add_line(std::size_t from, std::size_t to);
+  void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
+  [[nodiscard]] int pieces(double square) const;
 
   const GapLimits& limits_;
   std::size_t loop_corners_;
@@ -203,6 +213,55 @@ bool GapFiller::fill_rest() {
   return false;
 }
 
+// One of each run, between lines to its ends. Where several corners around an end are on the line, the nearest one is
+// the end: others are on a side of the sector that they lead along.
+bool GapFiller::fill_sectors(const Vec3& corner) {
+  const auto is_on_plane = [&](const Side& side) { return is_in(side.label, corner); };
+  std::vector<Run> runs = find_runs();
+  const auto is_there = [&](const Side& side) {
+    const Vec3 step = points_[side.corner] - corner;
+    return dot(step, step) <= 4 * limits_.off * limits_.off;
+  };
+  if (runs.size() < 2 || !std::ranges::all_of(sides_, is_on_plane) || std::ranges::any_of(sides_, is_there))
+    return false;
+  std::ranges::sort(runs, {}, &Run::first);
+  const std::size_t apex = points_.size(), count = sides_.size();
+  points_.push_back(corner);
+  filled_.corners.push_back(corner);
+  std::vector<std::size_t> ends;
+  for (const Run& run : runs) ends.push_back(nearest_end(run.first, corner));
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    const std::size_t first = ends[n], end = n + 1 < ends.size() ? ends[n + 1] : ends[0] + count;
+    if (!(first < end && end <= first + count)) return false;
+    std::vector<std::size_t> polygon{apex};
+    for (std::size_t i = first; i <= end; ++i) polygon.push_back(side(i).corner);
+    add_line(apex, polygon[1]);
+    if (!add_polygon(polygon, side(runs[n].first))) return false;
+  }
+  return limits_.are_on_mesh(on_mesh_);
+}
+
+// Of the corners around the one between two runs that are on both planes, as those between are, the number of the one
+// that is nearest to a point; counted on around the loop.
+std::size_t GapFiller::nearest_end(std::size_t between, const Vec3& point) const {
+  const std::size_t count = sides_.size(), before = side(between + count - 1).label, after = side(between).label;
+  const auto is_on_line = [&](std::size_t i) {
+    const Vec3& p = points_[side(i).corner];
+    return is_in(before, p) && is_in(after, p);
+  };
+  const auto square = [&](std::size_t i) {
+    const Vec3 step = points_[side(i).corner] - point;
+    return dot(step, step);
+  };
+  const std::size_t here = between + count;
+  std::size_t nearest = here;
+  for (std::size_t i = here - 1; i > here - count && is_on_line(i); --i)
+    nearest = square(i) < square(nearest) ? i : nearest;
+  for (std::size_t i = here + 1; i < here + count && is_on_line(i); ++i)
+    nearest = square(i) < square(nearest) ? i : nearest;
+  return nearest;
+}
+
 // Where lines meet in a corner of the run, there is no new one.
 std::optional<GapFiller::Path> GapFiller::path_by_corner(const std::vector<std::size_t>& corners, std::size_t label,
                                                          std::size_t before, std::size_t after) {
@@ -230,10 +289,11 @@ std::optional<GapFiller::Path> GapFiller::path_by_corner(const std::vector<std::
   std::optional<Vec3> point = meeting_point(planes, 0.5 * from + 0.5 * to);
   if (!point) return std::nullopt;
   if (limits_.single_precision) point = rounded_to_float(*point);
-  for (const Vec3& end : {from, to}) {
-    const Vec3 step = *point - end;
-    if (!(dot(step, step) <= limits_.reach * limits_.reach)) return std::nullopt;
-  }
+  const auto is_near = [&](std::size_t end) {
+    const Vec3 step = *point - points_[end];
+    return dot(step, step) <= limits_.reach * limits_.reach;
+  };
+  if (std::ranges::none_of(corners, is_near)) return std::nullopt;
   if (!limits_.are_on_mesh({&*point, 1})) return std::nullopt;
   points_.push_back(*point);
   return path;
@@ -247,6 +307,30 @@ std::optional<GapFiller::Path> GapFiller::path_of(const std::vector<std::size_t>
     if (i == 0 || i + 1 == corners.size() || is_in(before, points_[corners[i]])) path.places.push_back(i);
   }
   return path;
+}
+
+// None longer than half of the reach; not too many. `square`: of the length of the whole.
+int GapFiller::pieces(double square) const {
+  constexpr double kMost = 16.0;
+  return static_cast<int>(std::clamp(std::ceil(2.0 * std::sqrt(square) / limits_.reach), 1.0, kMost));
+}
+
+// The middle of each piece of a line.
+void GapFiller::add_line(std::size_t from, std::size_t to) {
+  const Vec3 step = points_[to] - points_[from];
+  const int count = pieces(dot(step, step));
+  for (int n = 0; n < count; ++n) on_mesh_.push_back(points_[from] + (n + 0.5) / count * step);
+}
+
+// The middle of each part of a triangle that is cut along lines parallel to its sides.
+void GapFiller::add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a, w = c - b;
+  const int count = pieces(std::max({dot(u, u), dot(v, v), dot(w, w)}));
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; i + j < count; ++j) {
+      on_mesh_.push_back(a + (i + 1.0 / 3) / count * u + (j + 1.0 / 3) / count * v);
+    }
+  }
 }
 
 // Where this fails, it has added some of what it should.
@@ -274,10 +358,10 @@ bool GapFiller::cut_off(const Run& run) {
     }
     if (polygon.size() < 3) continue;
     if (turns) {
-      add_middle(corners[from], points);
-      add_middle(points, corners[to]);
+      add_line(corners[from], points);
+      add_line(points, corners[to]);
     } else {
-      add_middle(corners[from], corners[to]);
+      add_line(corners[from], corners[to]);
     }
     if (!add_polygon(polygon, side(run.first + from))) return false;
   }
@@ -295,7 +379,7 @@ bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side&
   const std::vector<Triangle> triangles = PolygonCutter(points, labels_[like.label].plane.normal).triangles();
   if (triangles.empty()) return false;
   for (const auto& [a, b, c] : triangles) {
-    on_mesh_.push_back((1.0 / 3) * points[a] + (1.0 / 3) * points[b] + (1.0 / 3) * points[c]);
+    add_triangle(points[a], points[b], points[c]);
     filled_.triangles.push_back({static_cast<std::uint32_t>(corners[a]), static_cast<std::uint32_t>(corners[b]),
                                  static_cast<std::uint32_t>(corners[c])});
     filled_.sources.push_back(like.source);
@@ -307,6 +391,11 @@ bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side&
 
 std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits) {
   return GapFiller(loop, input, limits).fill();
+}
+
+std::optional<GapFill> fill_gap_from(const Vec3& corner, const GapLoop& loop, const TriangleMesh& input,
+                                     const GapLimits& limits) {
+  return GapFiller(loop, input, limits).fill_from(corner);
 }
 
 }  // namespace raycone

@@ -27,7 +27,7 @@ struct GapFill {
 
 struct GapLimits {
   double off = 0.0;    // how far points of one plane are from it at most, world units
-  double reach = 0.0;  // how far new corners may be from the loop, likewise
+  double reach = 0.0;  // how far new corners may be from corners of the loop, likewise
   std::size_t new_corners = 0;
   bool single_precision = false;                           // new corners are rounded to float
   std::function<bool(std::span<const Vec3>)> are_on_mesh;  // all of them
@@ -37,5 +37,10 @@ struct GapLimits {
 // and in points of three planes. Nothing where that leads off the mesh, or planes would have to be folded. Whether the
 // triangles meet others, or each other, is not looked at beyond their planes.
 [[nodiscard]] std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits);
+
+// The planes behind a loop that goes around a corner of the mesh, continued to that: sectors of them. Nothing where it
+// is not in all these planes, or the rest is as above.
+[[nodiscard]] std::optional<GapFill> fill_gap_from(const Vec3& corner, const GapLoop& loop, const TriangleMesh& input,
+                                                   const GapLimits& limits);
 
 }  // namespace raycone

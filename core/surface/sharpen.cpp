@@ -6,11 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include "core/machine/first_touch.h"
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 #include "core/surface/edge_crossing.h"
-#include "core/surface/edge_points.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/strip_pulls.h"
@@ -25,28 +23,11 @@ Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const Tria
       input_(input),
       distance_(distance),
       limits_(limits) {
-  auto of_all = sized_on_all_threads<Placed>(surface.mesh.triangles.size());
-  parallel_for(of_all.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face)
-      of_all[face] = placed(surface.mesh.triangles[face], surface.sources[face], normals);
-  });
+  const std::vector<Placed> of_all = placements(surface, input, normals, limits.off);
   find_strips(of_all);
   if (strip_vertices_.empty()) return;
   now_ = first_;
   distance_.prepare_points();
-}
-
-// Faces over holes are in no plane, and belong to no strip.
-Sharpener::Placed Sharpener::placed(const Triangle& t, std::int32_t source, const TriangleNormals& normals) const {
-  constexpr double kTurned = 0.9986295347545738;  // cosine of 3 degrees
-  if (source == kHole) return Placed::kInPlane;
-  const auto triangle = static_cast<std::uint32_t>(source);
-  const SourcePlane plane{input_.vertices[input_.triangles[triangle][0]], normals.of(triangle), source};
-  const std::vector<Vec3>& vertices = surface_.mesh.vertices;
-  const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
-  const double farthest = std::max({std::abs(plane.height(a)), std::abs(plane.height(b)), std::abs(plane.height(c))});
-  if (farthest <= limits_.off) return Placed::kInPlane;
-  return std::abs(dot(plane.normal, unit_normal(a, b, c))) < kTurned ? Placed::kAcross : Placed::kOff;
 }
 
 void Sharpener::find_strips(const std::vector<Placed>& of_all) {
@@ -60,11 +41,8 @@ void Sharpener::find_strips(const std::vector<Placed>& of_all) {
   };
   std::vector<std::uint32_t> at_strips = numbers_where(of_all.size(), is_at_strip);
   std::vector<std::uint32_t> part = find_parts(triangles, at_strips);
-  // Whether it is planes that the mesh is made of. Of CAD parts 75 to 99 per cent of the faces are in one, of scans
-  // less than 70; there, strips are looked at one by one.
-  const auto in_planes = static_cast<std::uint64_t>(std::ranges::count(of_all, Placed::kInPlane));
-  if (4 * (in_planes + limits_.fewer) < 3 * (of_all.size() + limits_.fewer))
-    drop_parts(triangles, of_all, at_strips, part);
+  // Where it is not planes that the mesh is made of, strips are looked at one by one.
+  if (!are_mostly_in_planes(of_all, limits_.fewer)) drop_parts(triangles, of_all, at_strips, part);
   if (strip_vertices_.empty()) return;
   number_vertices(part, triangles, of_all, at_strips);
   add_faces(of_all, at_strips);

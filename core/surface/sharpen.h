@@ -10,6 +10,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
 #include "core/surface/contour.h"
+#include "core/surface/face_placement.h"
 #include "core/surface/surface_edit.h"
 #include "core/surface/triangle_normals.h"
 
@@ -65,9 +66,6 @@ class Sharpener {
   friend class StripPulls;
   static constexpr std::uint32_t kNoPlace = UINT32_MAX;
   static constexpr std::uint8_t kKeptFrom = 2;  // at faults once, vertices are not pulled; twice, gaps are left, too
-  // Where a face is: in the plane of its source, or over a hole; off that plane; or so much turned against it, too,
-  // that strips are looked for there. Fine tessellations are off, and hardly turned.
-  enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
   struct State {
     std::vector<Triangle> triangles;     // of the faces at strips; those that are gone have three equal corners
     std::vector<std::int32_t> sources;   // likewise
@@ -84,7 +82,6 @@ class Sharpener {
     bool may_turn = true;
   };
 
-  [[nodiscard]] Placed placed(const Triangle& t, std::int32_t source, const TriangleNormals& normals) const;
   void find_strips(const std::vector<Placed>& of_all);
   void add_to_strips(const Triangle& t);
   void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);

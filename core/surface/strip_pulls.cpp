@@ -11,12 +11,6 @@
 #include "core/surface/surface_edit.h"
 
 namespace raycone {
-namespace {
-
-constexpr std::uint32_t kNoFace = UINT32_MAX;
-
-}  // namespace
-
 StripPulls::StripPulls(const Sharpener& all, const Sharpener::Part& part, Sharpener::State& state)
     : all_(all),
       part_(part),
@@ -89,7 +83,11 @@ std::size_t StripPulls::fill_gaps() {
   for (std::uint32_t n = 0; n < gone_.size(); ++n) {
     const std::uint32_t first = part_.first_face + n;
     if (gone_[n] != 0 || seen[n] != 0 || !is_off(first)) continue;
-    Gap gap{gap_from(first, seen), {}, {}, {}};
+    seen[n] = 1;
+    const auto joins = [&](std::uint32_t face) {
+      return is_off(face) && std::exchange(seen[face - part_.first_face], 1) == 0;
+    };
+    Gap gap{faces_joined_to(first, *this, joins), {}, {}, {}};
     if (!is_hopeless(gap.faces)) gaps.push_back(std::move(gap));
   }
   parallel_for(gaps.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -114,61 +112,10 @@ bool StripPulls::is_hopeless(const Faces& gap) {
       gap, [&](std::uint32_t face) { return std::ranges::any_of(state_.triangles[face], is_changed); });
 }
 
-StripPulls::Faces StripPulls::gap_from(std::uint32_t first, std::vector<std::uint8_t>& seen) const {
-  Faces gap{first};
-  seen[first - part_.first_face] = 1;
-  for (std::size_t next = 0; next < gap.size(); ++next) {
-    const Triangle& t = state_.triangles[gap[next]];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t face = face_with(t[(i + 1) % 3], t[i]);
-      if (face == kNoFace || !is_off(face) || seen[face - part_.first_face] != 0) continue;
-      seen[face - part_.first_face] = 1;
-      gap.push_back(face);
-    }
-  }
-  std::ranges::sort(gap);
-  return gap;
-}
-
-// The sides of the border of a gap one after the other, around each corner within the gap; from one that does not
-// depend on numbers. Nothing where there are several borders, or it is not known what is beyond.
-std::vector<StripPulls::BorderSide> StripPulls::border_of(const Faces& gap) const {
-  std::vector<BorderSide> all;
-  for (const std::uint32_t face : gap) {
-    const Triangle& t = state_.triangles[face];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = t[i], to = t[(i + 1) % 3], beyond = face_with(to, from);
-      if (beyond == kNoFace) return {};
-      if (!std::ranges::binary_search(gap, beyond)) all.push_back({from, to, face, beyond});
-    }
-  }
-  constexpr std::size_t kMost = 256;
-  if (all.empty() || all.size() > kMost) return {};
-  const auto is_lower = [&](const BorderSide& a, const BorderSide& b) {
-    const auto order = lexicographic_order(position(a.from), position(b.from));
-    return order != 0 ? order < 0 : lexicographic_order(position(a.to), position(b.to)) < 0;
-  };
-  std::vector<BorderSide> border{*std::ranges::min_element(all, is_lower)};
-  while (border.size() <= all.size()) {
-    BorderSide side = border.back();
-    for (side.beyond = side.face; std::ranges::binary_search(gap, side.beyond);
-         side.beyond = face_with(side.to, side.from)) {
-      const Triangle& t = state_.triangles[side.face = side.beyond];
-      const std::uint32_t around = border.back().to;
-      side.from = around;
-      side.to = t[0] == around ? t[1] : t[1] == around ? t[2] : t[0];
-    }
-    if (side.from == border.front().from && side.to == border.front().to) break;
-    border.push_back(side);
-  }
-  if (border.size() != all.size()) return {};
-  return border;
-}
-
 // Nothing where vertices are to stay, or at a hole.
-std::optional<GapLoop> StripPulls::loop_along(const std::vector<BorderSide>& border) const {
+std::optional<GapLoop> StripPulls::loop_along(const std::vector<GapSide>& border) const {
   GapLoop loop;
-  for (const BorderSide& side : border) {
+  for (const GapSide& side : border) {
     const bool is_kept =
         place(side.from) != Sharpener::kNoPlace && all_.kept_[place(side.from)] >= Sharpener::kKeptFrom;
     if (is_kept || state_.sources[side.beyond] == kHole) return std::nullopt;
@@ -181,19 +128,15 @@ std::optional<GapLoop> StripPulls::loop_along(const std::vector<BorderSide>& bor
 }
 
 void StripPulls::find_fill(Gap& gap) const {
-  const std::vector<BorderSide> border = border_of(gap.faces);
+  constexpr std::size_t kMostSides = 256;
+  const std::vector<GapSide> border = border_of_gap(gap.faces, *this, kMostSides);
   const std::optional<GapLoop> around = loop_along(border);
   if (border.empty() || !around) return;
-  for (const BorderSide& side : border) gap.loop.push_back(side.from);
-  for (const std::uint32_t face : gap.faces) {
-    for (const std::uint32_t v : state_.triangles[face]) {
-      if (std::ranges::find(gap.loop, v) == gap.loop.end()) gap.free.push_back(v);
-    }
-  }
-  std::ranges::sort(gap.free);
-  gap.free.erase(std::unique(gap.free.begin(), gap.free.end()), gap.free.end());
+  for (const GapSide& side : border) gap.loop.push_back(side.from);
+  const std::optional<Faces> within = vertices_within(gap.faces, border, *this);
+  if (!within) return;
+  gap.free = *within;
   if (std::ranges::any_of(gap.free, [&](std::uint32_t v) { return place(v) == Sharpener::kNoPlace; })) return;
-  if (gap.faces.size() + 2 != gap.loop.size() + 2 * gap.free.size()) return;  // no disc
   const auto are_on_mesh = [&](std::span<const Vec3> points) { return this->are_on_mesh(points); };
   gap.filled = fill_gap(*around, all_.input_,
                         {all_.limits_.off, all_.limits_.reach, gap.free.size() + part_.spares,

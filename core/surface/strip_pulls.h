@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/surface/fill_gap.h"
+#include "core/surface/gap.h"
 #include "core/surface/sharpen.h"
 #include "core/surface/source_plane.h"
 
@@ -24,16 +25,19 @@ class StripPulls {
   // Returns the number of pulls, and of gaps filled.
   std::size_t pull_all();
 
+  // For gap.h.
+  [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return state_.triangles[face]; }
+  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const {
+    return place(vertex) == Sharpener::kNoPlace ? all_.surface_.mesh.vertices[vertex] : state_.places[place(vertex)];
+  }
+  [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const;
+
  private:
-  using Placed = Sharpener::Placed;
   using Place = std::array<double, 3>;
   using Edge = std::tuple<double, Place, Place, std::uint32_t, std::uint32_t>;  // square of the length, ends
   using Faces = std::vector<std::uint32_t>;
 
   [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return all_.place_[vertex]; }
-  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const {
-    return place(vertex) == Sharpener::kNoPlace ? all_.surface_.mesh.vertices[vertex] : state_.places[place(vertex)];
-  }
   [[nodiscard]] std::uint32_t last_of(std::uint32_t vertex) const {
     std::uint32_t at = place(vertex);
     while (state_.into[at] != at) at = state_.into[at];
@@ -47,17 +51,9 @@ class StripPulls {
     Faces free;   // its other vertices
     std::optional<GapFill> filled;
   };
-  // Of a face of a gap, in its direction, and the face beyond.
-  struct BorderSide {
-    std::uint32_t from, to, face, beyond;
-  };
-
-  [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const;
   std::size_t fill_gaps();
   [[nodiscard]] bool is_hopeless(const Faces& gap);
-  [[nodiscard]] Faces gap_from(std::uint32_t first, std::vector<std::uint8_t>& seen) const;
-  [[nodiscard]] std::vector<BorderSide> border_of(const Faces& gap) const;
-  [[nodiscard]] std::optional<GapLoop> loop_along(const std::vector<BorderSide>& border) const;
+  [[nodiscard]] std::optional<GapLoop> loop_along(const std::vector<GapSide>& border) const;
   void find_fill(Gap& gap) const;
   bool fill(const Gap& gap);
   void replace(const Faces& gap, const Faces& loop, const GapFill& filled);

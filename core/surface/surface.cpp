@@ -18,6 +18,7 @@
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_sharpen.h"
 #include "core/surface/checked_simplify.h"
+#include "core/surface/corner_gaps.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/source_plane.h"
@@ -201,9 +202,10 @@ class SurfaceMaker {
   [[nodiscard]] bool sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) const {
     constexpr double kReach = 2.0;  // voxels
     const Lattice& lattice = inside_.lattice();
-    return checked_sharpen(surface, mesh_, normals_, distance_, lattice,
-                           {std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
-                            kReach * lattice.least_spacing(), options_.single_precision, fewer});
+    const SharpenLimits limits{std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
+                               kReach * lattice.least_spacing(), options_.single_precision, fewer};
+    const bool is_pulled = checked_sharpen(surface, mesh_, normals_, distance_, lattice, limits);
+    return fill_corner_gaps(surface, mesh_, normals_, distance_, lattice, limits) || is_pulled;
   }
 
   // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.

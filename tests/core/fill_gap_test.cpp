@@ -17,7 +17,7 @@
 namespace raycone {
 namespace {
 
-// A unit box, and loops on it whose sides name what is behind them by the direction of its front.
+// A unit box, and loops on it whose sides name what is behind them by the direction of its front; corners are in its plane.
 class Gap {
  public:
   explicit Gap(TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1})) : mesh_(std::move(mesh)), distances_(mesh_) {}
@@ -29,20 +29,20 @@ class Gap {
       const Triangle& t = mesh_.triangles[face];
       const Vec3& a = mesh_.vertices[t[0]];
       const Vec3 normal = cross(mesh_.vertices[t[1]] - a, mesh_.vertices[t[2]] - a);
-      if (dot(normal, front) < 0.9 * norm(normal)) continue;
+      if (dot(normal, front) < 0.9 * norm(normal) || std::abs(dot(normal, corner - a)) > 1e-9) continue;
       loop_.sources.push_back(static_cast<std::int32_t>(face));
       return;
     }
   }
 
-  [[nodiscard]] std::optional<GapFill> filled(std::size_t new_corners) const {
+  [[nodiscard]] std::optional<GapFill> filled(std::size_t new_corners, const std::optional<Vec3>& corner = {}) const {
     const DefaultFloatingPoint guard;
     const GapLimits limits{1e-9, 1.0, new_corners, false, [&](std::span<const Vec3> points) {
                              std::vector<double> distances(points.size());
                              distances_.evaluate(points, distances);
                              return std::ranges::all_of(distances, [](double d) { return d <= 1e-9; });
                            }};
-    return fill_gap(loop_, mesh_, limits);
+    return corner ? fill_gap_from(*corner, loop_, mesh_, limits) : fill_gap(loop_, mesh_, limits);
   }
 
   // The area of the triangles that have a front, which those of other fronts are taken from.
@@ -135,6 +135,51 @@ TEST(FillGap, StartsWithTheRunThatGoesOn) {
   ASSERT_TRUE(fill);
   EXPECT_NEAR(gap.area(*fill, kX), 0.5 * 0.1 * 0.06, 1e-12);
   EXPECT_NEAR(gap.area(*fill, kY), 0.5 * 0.1 * 0.14, 1e-12);
+}
+
+// A step: three planes meet in (1, 1, 1), where the edge along z is concave. The loop leaves three quarters of the top.
+Gap gap_of_step() {
+  Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  gap.add({1.5, 1, 1}, kY);
+  gap.add({1, 1, 0.5}, kX);
+  gap.add({1, 1.5, 1}, kZ);
+  gap.add({0.6, 1.4, 1}, kZ);
+  gap.add({0.6, 0.6, 1}, kZ);
+  gap.add({1.4, 0.6, 1}, kZ);
+  return gap;
+}
+
+TEST(FillGap, FillsSectorsAroundAConcaveCorner) {
+  const Gap gap = gap_of_step();
+  const std::optional<GapFill> fill = gap.filled(1, Vec3{1, 1, 1});
+  ASSERT_TRUE(fill);
+  ASSERT_EQ(fill->corners.size(), 1U);
+  EXPECT_NEAR(gap.area(*fill, kX), 0.5 * 0.5 * 0.5, 1e-12);
+  EXPECT_NEAR(gap.area(*fill, kY), 0.5 * 0.5 * 0.5, 1e-12);
+  // Two triangles at the notch, and a square of 0.4.
+  EXPECT_NEAR(gap.area(*fill, kZ), 2 * 0.5 * (0.5 + 0.4) * 0.4 + 0.4 * 0.4, 1e-12);
+}
+
+// Corners of the loop on a line from the corner are on the sides of both sectors.
+TEST(FillGap, EndsSectorsWhereALineIsNearest) {
+  Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  gap.add({1.5, 1, 1}, kY);
+  gap.add({1, 1, 0.5}, kX);
+  gap.add({1, 1.3, 1}, kX);
+  gap.add({1, 1.5, 1}, kZ);
+  gap.add({0.6, 1.4, 1}, kZ);
+  gap.add({0.6, 0.6, 1}, kZ);
+  gap.add({1.4, 0.6, 1}, kZ);
+  const std::optional<GapFill> fill = gap.filled(1, Vec3{1, 1, 1});
+  ASSERT_TRUE(fill);
+  EXPECT_NEAR(gap.area(*fill, kX), 0.5 * 0.5 * 0.3, 1e-12);
+  EXPECT_NEAR(gap.area(*fill, kZ), 0.52, 1e-12);
+}
+
+TEST(FillGap, LeavesWhatDoesNotGoAroundTheCorner) {
+  const Gap gap = gap_of_step();
+  EXPECT_FALSE(gap.filled(1, Vec3{1, 1, 0.5}));  // is not in the top
+  EXPECT_FALSE(gap.filled(1, Vec3{1, 1.5, 1}));  // is on the loop
 }
 
 // The planes of a step meet where there is no mesh; so do those of a hole in the top.

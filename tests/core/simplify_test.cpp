@@ -43,7 +43,7 @@ double farthest(const TriangleMesh& of, const TriangleMesh& to) {
 }
 
 TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
-  const TriangleMesh mesh = weld(test::sphere(8), {});
+  const TriangleMesh mesh = weld(test::sphere(16), {});
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice_around_sphere(14));
   SurfaceOptions options;

@@ -594,6 +594,14 @@ MUTANTS = [
         ("core/surface/patch_merger.cpp", "kBackToBack = -0.866;", "kBackToBack = -1 + 0x1p-21;")]),
     Mutant("hits_by_rounding", "where a segment is nearly in a plane, the place where it meets that is exact", [
         ("core/surface/edge_crossing.cpp", "kSure = 0x1p-10;", "kSure = 0;")]),
+    Mutant("sectors_end_anywhere", "a line between sectors leads to the nearest corner of the loop on it", [
+        ("core/surface/fill_gap.cpp", "ends.push_back(nearest_end(run.first, corner));",
+         "ends.push_back(run.first + count);")]),
+    Mutant("corners_without_rings", "faces that reach beyond a corner are part of the gap there", [
+        ("core/surface/corner_gaps.cpp", "is_off(face) || std::ranges::any_of(", "is_off(face) && std::ranges::any_of(")]),
+    Mutant("edges_joined_twice", "a new line joins no corners that an edge joins", [
+        ("core/surface/corner_gaps.cpp", "!std::ranges::binary_search(gap.faces, face)) return true;",
+         "!std::ranges::binary_search(gap.faces, face)) return false;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

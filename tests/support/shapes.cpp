@@ -101,35 +101,30 @@ TriangleMesh lattice_soup(Random& random, int triangles, int size) {
   return weld(mesh, {});
 }
 
-TriangleMesh random_cells(Random& random, int size) {
+TriangleMesh cells_mesh(const std::vector<std::array<int, 3>>& cells) {
   TriangleMesh mesh;
-  const auto n = static_cast<std::size_t>(size + 2);
-  std::vector<bool> filled(n * n * n, false);  // with an empty layer around
-  const auto cell = [&](int i, int j, int k) {
-    return (static_cast<std::size_t>(i + 1) * n + static_cast<std::size_t>(j + 1)) * n +
-           static_cast<std::size_t>(k + 1);
-  };
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) {
-      for (int k = 0; k < size; ++k) filled[cell(i, j, k)] = below(random, 2) == 1;
-    }
-  }
-  filled[cell(0, 0, 0)] = true;
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) {
-      for (int k = 0; k < size; ++k) {
-        if (!filled[cell(i, j, k)]) continue;
-        const Vec3 lower{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
-        const Vec3 upper = lower + Vec3{1, 1, 1};
-        const std::array<std::size_t, 6> beyond{cell(i - 1, j, k), cell(i + 1, j, k), cell(i, j - 1, k),
-                                                cell(i, j + 1, k), cell(i, j, k - 1), cell(i, j, k + 1)};
-        for (int side = 0; side < 6; ++side) {
-          if (!filled[beyond[static_cast<std::size_t>(side)]]) add_side(mesh, lower, upper, side);
-        }
-      }
+  const auto is_filled = [&](const std::array<int, 3>& cell) { return std::ranges::find(cells, cell) != cells.end(); };
+  for (const auto& [i, j, k] : cells) {
+    const Vec3 lower{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
+    for (int side = 0; side < 6; ++side) {
+      std::array<int, 3> beyond{i, j, k};
+      beyond[static_cast<std::size_t>(side / 2)] += side % 2 == 0 ? -1 : 1;
+      if (!is_filled(beyond)) add_side(mesh, lower, lower + Vec3{1, 1, 1}, side);
     }
   }
   return weld(mesh, {});
+}
+
+TriangleMesh random_cells(Random& random, int size) {
+  std::vector<std::array<int, 3>> cells;
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < size; ++j) {
+      for (int k = 0; k < size; ++k) {
+        if (below(random, 2) == 1 || (i == 0 && j == 0 && k == 0)) cells.push_back({i, j, k});
+      }
+    }
+  }
+  return cells_mesh(cells);
 }
 
 TriangleMesh notched_fan() {

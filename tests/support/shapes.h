@@ -1,8 +1,10 @@
 // Meshes for tests.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include "core/data/triangle_mesh.h"
 
@@ -24,6 +26,8 @@ using Random = std::mt19937_64;
 [[nodiscard]] TriangleMesh soup(Random& random, int triangles);
 // Unrelated triangles with corners on the integer lattice {0 .. size}^3: every kind of degeneracy.
 [[nodiscard]] TriangleMesh lattice_soup(Random& random, int triangles, int size);
+// The boundary of unit cubes, given by their lowest corners, each once.
+[[nodiscard]] TriangleMesh cells_mesh(const std::vector<std::array<int, 3>>& cells);
 // The closed boundary of a random set of unit cells of {0 .. size}^3: every lattice ray through it is degenerate, and
 // cells touch in edges and vertices only.
 [[nodiscard]] TriangleMesh random_cells(Random& random, int size);

@@ -1,0 +1,299 @@
+#include "core/surface/corner_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/machine/numbers_where.h"
+#include "core/machine/threads.h"
+#include "core/surface/face_placement.h"
+#include "core/surface/fill_gap.h"
+#include "core/surface/filled_gaps.h"
+#include "core/surface/gap.h"
+#include "core/surface/source_plane.h"
+
+namespace raycone {
+namespace {
+
+using Faces = std::vector<std::uint32_t>;
+
+// The faces at each vertex of a mesh.
+class FacesAt {
+ public:
+  explicit FacesAt(const TriangleMesh& mesh)
+      : mesh_(mesh), begin_(mesh.vertices.size() + 1, 0), faces_(3 * mesh.triangles.size()) {
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) ++begin_[v + 1];
+    }
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+      for (const std::uint32_t v : mesh.triangles[face]) faces_[next[v]++] = face;
+    }
+  }
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+    return std::span(faces_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
+  }
+
+  // For gap.h.
+  [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return mesh_.triangles[face]; }
+  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
+  [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const {
+    for (const std::uint32_t face : of(from)) {
+      const Triangle& t = triangle(face);
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (t[i] == from && t[(i + 1) % 3] == to) return face;
+      }
+    }
+    return kNoFace;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  std::vector<std::uint32_t> begin_;  // of each vertex
+  Faces faces_;
+};
+
+class CornerGaps {
+ public:
+  CornerGaps(const SurfaceMesh& surface, const TriangleMesh& input, const DistanceEvaluator& distance,
+             const SharpenLimits& limits, const std::vector<Placed>& placed)
+      : surface_(surface), input_(input), distance_(distance), limits_(limits), placed_(placed) {}
+
+  // What fills gaps that have no face in common; and whether there are others, which have one with these.
+  struct Found {
+    std::vector<FilledGap> fills;
+    bool overlap = false;
+  };
+  [[nodiscard]] Found find() const {
+    const Faces off = numbers_where(placed_.size(), [&](std::uint32_t face) { return is_off(face); });
+    if (off.empty()) return {};
+    distance_.prepare_points();
+    const FacesAt faces_at(surface_.mesh);
+    const std::vector<Faces> gaps = gaps_of(off, faces_at);
+    std::vector<std::optional<FilledGap>> found(gaps.size());
+    parallel_for_each(gaps.size(), [&](std::size_t n) { found[n] = fill_of(gaps[n], faces_at); });
+    Found result;
+    std::vector<bool> taken(placed_.size(), false);
+    for (std::optional<FilledGap>& fill : found) {
+      if (!fill) continue;
+      if (std::ranges::any_of(fill->faces, [&](std::uint32_t face) { return taken[face]; })) {
+        result.overlap = true;
+        continue;
+      }
+      for (const std::uint32_t face : fill->faces) taken[face] = true;
+      result.fills.push_back(*std::move(fill));
+    }
+    return result;
+  }
+
+ private:
+  // How far around a corner faces are made anew, beside those of the gap: some steps, by these parts of reach.
+  static constexpr int kSteps = 9;
+  static constexpr double kStep = 0.125;
+  static constexpr std::size_t kMostAround = 128;  // faces
+
+  [[nodiscard]] bool is_off(std::uint32_t face) const { return placed_[face] != Placed::kInPlane; }
+
+  // Large ones are not at a corner.
+  [[nodiscard]] std::vector<Faces> gaps_of(const Faces& off, const FacesAt& faces_at) const {
+    constexpr std::size_t kMostFaces = 64;
+    std::vector<bool> seen(placed_.size(), false);
+    const auto joins = [&](std::uint32_t face) {
+      if (!is_off(face) || seen[face]) return false;
+      seen[face] = true;
+      return true;
+    };
+    std::vector<Faces> gaps;
+    for (const std::uint32_t first : off) {
+      if (!joins(first)) continue;
+      Faces gap = faces_joined_to(first, faces_at, joins);
+      if (gap.size() <= kMostFaces) gaps.push_back(std::move(gap));
+    }
+    return gaps;
+  }
+
+  // The gap as it is; else all that is around a corner of the mesh, ever farther.
+  [[nodiscard]] std::optional<FilledGap> fill_of(const Faces& gap, const FacesAt& faces_at) const {
+    const auto fill_alone = [&](const GapLoop& loop, const GapLimits& limits) {
+      return fill_gap(loop, input_, limits);
+    };
+    if (std::optional<FilledGap> fill = filled(gap, faces_at, fill_alone)) return fill;
+    for (const auto& [square, corner] : corners_near(gap, faces_at)) {
+      const auto fill_from = [&](const GapLoop& loop, const GapLimits& limits) {
+        return fill_gap_from(corner, loop, input_, limits);
+      };
+      Region region(gap);
+      for (int step = 0; step < kSteps && region.faces.size() <= kMostAround; ++step) {
+        const double radius = step * kStep * limits_.reach;
+        if (!grow(region, corner, radius, faces_at) && step > 0) continue;
+        Faces faces = region.faces;
+        std::ranges::sort(faces);
+        if (std::optional<FilledGap> fill = filled(faces, faces_at, fill_from)) return fill;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Corners of the triangles that are sources of the gap's faces, or of faces beyond, which are in the planes of all of
+  // these, with the square of the distance of its vertices; the nearest ones, none farther than reach.
+  using Corner = std::pair<double, Vec3>;
+  [[nodiscard]] std::vector<Corner> corners_near(const Faces& gap, const FacesAt& faces_at) const {
+    constexpr std::size_t kMost = 3;
+    std::vector<std::int32_t> sources, all;
+    for (const GapSide& side : border_of(gap, faces_at)) sources.push_back(surface_.sources[side.beyond]);
+    if (std::ranges::find(sources, kHole) != sources.end()) return {};
+    std::ranges::sort(sources);
+    sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+    all = sources;
+    for (const std::uint32_t face : gap) all.push_back(surface_.sources[face]);
+    std::vector<SourcePlane> planes;
+    for (const std::int32_t source : sources) planes.push_back(source_plane(input_, source));
+    std::vector<Corner> corners;
+    for (const std::int32_t source : all) {
+      for (const std::uint32_t v : input_.triangles[static_cast<std::size_t>(source)]) {
+        const Vec3& p = input_.vertices[v];
+        const auto has_corner = [&](const SourcePlane& plane) { return std::abs(plane.height(p)) <= limits_.off; };
+        const bool is_known = std::ranges::find(corners, p, &Corner::second) != corners.end();
+        if (is_known || !std::ranges::all_of(planes, has_corner)) continue;
+        const double square = square_to(p, gap, faces_at);
+        if (square <= limits_.reach * limits_.reach) corners.emplace_back(square, p);
+      }
+    }
+    std::ranges::stable_sort(corners, {}, &Corner::first);
+    corners.resize(std::min(corners.size(), kMost));
+    return corners;
+  }
+
+  [[nodiscard]] static double square_to(const Vec3& p, const Faces& gap, const FacesAt& faces_at) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t face : gap) {
+      for (const std::uint32_t v : faces_at.triangle(face)) {
+        const Vec3 step = faces_at.position(v) - p;
+        nearest = std::min(nearest, dot(step, step));
+      }
+    }
+    return nearest;
+  }
+
+  // Faces that hang together, and those beside them that did not belong to them when they were looked at last.
+  struct Region {
+    explicit Region(const Faces& gap) : faces(gap), known(gap) {}
+    Faces faces, beside;
+    Faces known;                // all of these; increasing
+    std::size_t looked_at = 0;  // of the faces, beyond how many has been looked
+  };
+
+  // Adds what has a vertex within the radius, or is another gap. Returns whether there is any.
+  bool grow(Region& region, const Vec3& corner, double radius, const FacesAt& faces_at) const {
+    const auto is_within = [&](std::uint32_t v) {
+      const Vec3 step = faces_at.position(v) - corner;
+      return dot(step, step) <= radius * radius;
+    };
+    const std::size_t before = region.faces.size();
+    std::size_t next = region.looked_at;
+    Faces waiting = std::exchange(region.beside, {});
+    for (;;) {
+      for (const std::uint32_t face : waiting) {
+        const bool joins = is_off(face) || std::ranges::any_of(faces_at.triangle(face), is_within);
+        (joins ? region.faces : region.beside).push_back(face);
+      }
+      waiting.clear();
+      if (next == region.faces.size() || region.faces.size() > kMostAround) break;
+      for (; next < region.faces.size(); ++next) {
+        const Triangle& t = faces_at.triangle(region.faces[next]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::uint32_t face = faces_at.face_with(t[(i + 1) % 3], t[i]);
+          const auto place = std::ranges::lower_bound(region.known, face);
+          if (place != region.known.end() && *place == face) continue;
+          region.known.insert(place, face);
+          waiting.push_back(face);
+        }
+      }
+    }
+    region.looked_at = next;
+    return region.faces.size() > before;
+  }
+
+  [[nodiscard]] static std::vector<GapSide> border_of(const Faces& gap, const FacesAt& faces_at) {
+    constexpr std::size_t kMostSides = 64;
+    return border_of_gap(gap, faces_at, kMostSides);
+  }
+
+  template <class FillLoop>
+  [[nodiscard]] std::optional<FilledGap> filled(const Faces& gap, const FacesAt& faces_at,
+                                                const FillLoop& fill_loop) const {
+    const std::vector<GapSide> border = border_of(gap, faces_at);
+    if (border.empty() || !vertices_within(gap, border, faces_at)) return std::nullopt;
+    GapLoop loop;
+    FilledGap fill{gap, {}, {}};
+    for (const GapSide& side : border) {
+      if (surface_.sources[side.beyond] == kHole) return std::nullopt;
+      const Triangle& t = faces_at.triangle(side.beyond);
+      const Vec3& corner = faces_at.position(t[0]);
+      fill.loop.push_back(side.from);
+      loop.corners.push_back(faces_at.position(side.from));
+      loop.sources.push_back(surface_.sources[side.beyond]);
+      loop.fronts.push_back(cross(faces_at.position(t[1]) - corner, faces_at.position(t[2]) - corner));
+    }
+    const auto are_on_mesh = [&](std::span<const Vec3> points) {
+      std::vector<double> distances(points.size());
+      distance_.evaluate(points, distances, limits_.off);
+      return std::ranges::all_of(distances, [&](double distance) { return distance <= limits_.off; });
+    };
+    constexpr std::size_t kMostCorners = 4;
+    std::optional<GapFill> found =
+        fill_loop(loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_on_mesh});
+    if (!found || has_edge_elsewhere(*found, fill, faces_at)) return std::nullopt;
+    fill.filled = *std::move(found);
+    return fill;
+  }
+
+  // Whether a new line leads from one corner of the loop to another one as an edge beyond does, which would have four
+  // faces then.
+  [[nodiscard]] static bool has_edge_elsewhere(const GapFill& filled, const FilledGap& gap, const FacesAt& faces_at) {
+    const std::size_t count = gap.loop.size();
+    for (const Triangle& t : filled.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t u = t[i], v = t[(i + 1) % 3];
+        if (u >= count || v >= count || (u + 1) % count == v) continue;
+        const std::uint32_t face = faces_at.face_with(gap.loop[u], gap.loop[v]);
+        if (face != kNoFace && !std::ranges::binary_search(gap.faces, face)) return true;
+      }
+    }
+    return false;
+  }
+
+  const SurfaceMesh& surface_;
+  const TriangleMesh& input_;
+  const DistanceEvaluator& distance_;
+  const SharpenLimits& limits_;
+  const std::vector<Placed>& placed_;
+};
+
+}  // namespace
+
+// Gaps may widen into the same faces. Then the first one is filled, and others are looked at again.
+bool fill_corner_gaps(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
+                      const DistanceEvaluator& distance, const Lattice& lattice, const SharpenLimits& limits) {
+  constexpr int kTimes = 2;
+  bool any = false;
+  for (int time = 0; time < kTimes; ++time) {
+    const std::vector<Placed> placed = placements(surface, input, normals, limits.off);
+    if (!are_mostly_in_planes(placed, limits.fewer)) break;
+    auto [fills, overlap] = CornerGaps(surface, input, distance, limits, placed).find();
+    if (fills.empty() || !fill_without_faults(surface, std::move(fills), lattice)) break;
+    any = true;
+    if (!overlap) break;
+  }
+  return any;
+}
+
+}  // namespace raycone

@@ -1,0 +1,23 @@
+// What is left of gaps at corners of the mesh where some edges are concave.
+#pragma once
+
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
+#include "core/surface/contour.h"
+#include "core/surface/sharpen.h"
+#include "core/surface/triangle_normals.h"
+
+namespace raycone {
+
+// Fills gaps that fill_gap() alone cannot: faces of a plane reach beyond a corner of the mesh there, and planes would
+// have to be folded. These faces are taken into the gap, a ring at a time. What makes faults is left as it was; only
+// what is near a change is looked at (faults_near(), changed_nodes()). Nothing is done where it is not planes that the
+// mesh is made of. `input`: the mesh that the surface is of; `normals`: its triangles'; `distance`: from it. Returns
+// whether any gap has been filled; else the surface is as it was. The same for any number of threads. Needs
+// DefaultFloatingPoint.
+[[nodiscard]] bool fill_corner_gaps(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
+                                    const DistanceEvaluator& distance, const Lattice& lattice,
+                                    const SharpenLimits& limits);
+
+}  // namespace raycone

@@ -22,7 +22,7 @@ struct GapSide {
   std::uint32_t from, to, face, beyond;
 };
 
-// The faces that `joins` says of, which is asked of each once, and that hang together with `first`; increasing.
+// `first`, and the faces that hang together with it for which joins(face) holds; increasing. It must hold once for each.
 template <class Faces, class Joins>
 [[nodiscard]] std::vector<std::uint32_t> faces_joined_to(std::uint32_t first, const Faces& faces, const Joins& joins) {
   std::vector<std::uint32_t> gap{first};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -26,13 +27,17 @@ using Faces = std::vector<std::uint32_t>;
 // The faces at each vertex of a mesh.
 class FacesAt {
  public:
-  explicit FacesAt(const TriangleMesh& mesh)
-      : mesh_(mesh), begin_(mesh.vertices.size() + 1, 0), faces_(3 * mesh.triangles.size()) {
+  explicit FacesAt(const SurfaceMesh& surface)
+      : mesh_(surface.mesh),
+        sources_(surface.sources),
+        begin_(surface.mesh.vertices.size() + 1, 0),
+        faces_(3 * surface.mesh.triangles.size()) {
+    const TriangleMesh& mesh = surface.mesh;
     for (const Triangle& t : mesh.triangles) {
       for (const std::uint32_t v : t) ++begin_[v + 1];
     }
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
     for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
       for (const std::uint32_t v : mesh.triangles[face]) faces_[next[v]++] = face;
     }
@@ -44,6 +49,7 @@ class FacesAt {
 
   // For gap.h.
   [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return mesh_.triangles[face]; }
+  [[nodiscard]] std::int32_t source(std::uint32_t face) const { return sources_[face]; }
   [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
   [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const {
     for (const std::uint32_t face : of(from)) {
@@ -57,7 +63,8 @@ class FacesAt {
 
  private:
   const TriangleMesh& mesh_;
-  std::vector<std::uint32_t> begin_;  // of each vertex
+  const std::vector<std::int32_t>& sources_;
+  std::vector<std::size_t> begin_;  // of each vertex
   Faces faces_;
 };
 
@@ -67,31 +74,38 @@ class CornerGaps {
              const SharpenLimits& limits, const std::vector<Placed>& placed)
       : surface_(surface), input_(input), distance_(distance), limits_(limits), placed_(placed) {}
 
-  // What fills gaps that have no face in common; and whether there are others, which have one with these.
-  struct Found {
-    std::vector<FilledGap> fills;
-    bool overlap = false;
+  // Fills what can be filled without faults. Returns whether a gap has been; and whether there are others, which might
+  // be, too, but have a face in common with these.
+  struct Filled {
+    bool any = false, overlap = false;
   };
-  [[nodiscard]] Found find() const {
+  [[nodiscard]] Filled fill(SurfaceMesh& surface, const Lattice& lattice) const {
+    constexpr int kRounds = 12, kGiveUp = 8;  // what is at faults then is left
     const Faces off = numbers_where(placed_.size(), [&](std::uint32_t face) { return is_off(face); });
     if (off.empty()) return {};
     distance_.prepare_points();
-    const FacesAt faces_at(surface_.mesh);
+    const FacesAt faces_at(surface);
     const std::vector<Faces> gaps = gaps_of(off, faces_at);
     std::vector<std::optional<FilledGap>> found(gaps.size());
-    parallel_for_each(gaps.size(), [&](std::size_t n) { found[n] = fill_of(gaps[n], faces_at); });
-    Found result;
-    std::vector<bool> taken(placed_.size(), false);
-    for (std::optional<FilledGap>& fill : found) {
-      if (!fill) continue;
-      if (std::ranges::any_of(fill->faces, [&](std::uint32_t face) { return taken[face]; })) {
-        result.overlap = true;
-        continue;
+    std::vector<int> passed_over(gaps.size(), 0);
+    std::vector<std::size_t> wanted(gaps.size());
+    std::iota(wanted.begin(), wanted.end(), std::size_t{0});
+    for (int round = 0; round < kRounds; ++round) {
+      parallel_for_each(wanted.size(), [&](std::size_t n) {
+        const std::size_t gap = wanted[n];
+        found[gap] = round < kGiveUp ? fill_of(gaps[gap], faces_at, passed_over[gap]) : std::nullopt;
+      });
+      auto [fills, numbers, overlap] = disjoint(found);
+      if (fills.empty()) break;
+      const std::vector<std::size_t> at_faults = fill_all(surface, fills, lattice);
+      if (at_faults.empty()) return {true, overlap};
+      wanted.clear();
+      for (const std::size_t n : at_faults) {
+        wanted.push_back(numbers[n]);
+        ++passed_over[numbers[n]];
       }
-      for (const std::uint32_t face : fill->faces) taken[face] = true;
-      result.fills.push_back(*std::move(fill));
     }
-    return result;
+    return {};
   }
 
  private:
@@ -99,6 +113,29 @@ class CornerGaps {
   static constexpr int kSteps = 9;
   static constexpr double kStep = 0.125;
   static constexpr std::size_t kMostAround = 128;  // faces
+
+  // Of what has been found, what has no face in common with others before it, and their numbers.
+  struct Disjoint {
+    std::vector<FilledGap> fills;
+    std::vector<std::size_t> numbers;
+    bool overlap = false;  // whether there are others
+  };
+  [[nodiscard]] Disjoint disjoint(const std::vector<std::optional<FilledGap>>& found) const {
+    Disjoint result;
+    std::vector<bool> taken(placed_.size(), false);
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      if (!found[n]) continue;
+      const Faces& faces = found[n]->faces;
+      if (std::ranges::any_of(faces, [&](std::uint32_t face) { return taken[face]; })) {
+        result.overlap = true;
+        continue;
+      }
+      for (const std::uint32_t face : faces) taken[face] = true;
+      result.fills.push_back(*found[n]);
+      result.numbers.push_back(n);
+    }
+    return result;
+  }
 
   [[nodiscard]] bool is_off(std::uint32_t face) const { return placed_[face] != Placed::kInPlane; }
 
@@ -120,30 +157,32 @@ class CornerGaps {
     return gaps;
   }
 
-  // The gap as it is; else all that is around a corner of the mesh, ever farther.
-  [[nodiscard]] std::optional<FilledGap> fill_of(const Faces& gap, const FacesAt& faces_at) const {
+  // The gap as it is; else all that is around a corner of the mesh, ever farther. The first of these that can be
+  // filled, but for those that are passed over.
+  [[nodiscard]] std::optional<FilledGap> fill_of(const Faces& gap, const FacesAt& faces_at, int passed_over) const {
     const auto fill_alone = [&](const GapLoop& loop, const GapLimits& limits) {
       return fill_gap(loop, input_, limits);
     };
-    if (std::optional<FilledGap> fill = filled(gap, faces_at, fill_alone)) return fill;
+    if (std::optional<FilledGap> fill = filled(gap, faces_at, fill_alone); fill && passed_over-- == 0) return fill;
     for (const auto& [square, corner] : corners_near(gap, faces_at)) {
       const auto fill_from = [&](const GapLoop& loop, const GapLimits& limits) {
         return fill_gap_from(corner, loop, input_, limits);
       };
       Region region(gap);
-      for (int step = 0; step < kSteps && region.faces.size() <= kMostAround; ++step) {
+      for (int step = 0; step < kSteps; ++step) {
         const double radius = step * kStep * limits_.reach;
         if (!grow(region, corner, radius, faces_at) && step > 0) continue;
-        Faces faces = region.faces;
-        std::ranges::sort(faces);
-        if (std::optional<FilledGap> fill = filled(faces, faces_at, fill_from)) return fill;
+        if (region.faces.size() > kMostAround) break;
+        std::optional<FilledGap> fill = filled(closed(region.faces, faces_at), faces_at, fill_from);
+        if (fill && passed_over-- == 0) return fill;
       }
     }
     return std::nullopt;
   }
 
   // Corners of the triangles that are sources of the gap's faces, or of faces beyond, which are in the planes of all of
-  // these, with the square of the distance of its vertices; the nearest ones, none farther than reach.
+  // the latter, where the gap has one border; with the square of the distance of its vertices; the nearest ones, none
+  // farther than reach.
   using Corner = std::pair<double, Vec3>;
   [[nodiscard]] std::vector<Corner> corners_near(const Faces& gap, const FacesAt& faces_at) const {
     constexpr std::size_t kMost = 3;
@@ -222,27 +261,61 @@ class CornerGaps {
     return region.faces.size() > before;
   }
 
+  // With what lies between them: faces of which they have all corners, and those around a corner that their border
+  // comes to twice. Increasing.
+  [[nodiscard]] static Faces closed(Faces faces, const FacesAt& faces_at) {
+    constexpr int kRounds = 4;
+    std::ranges::sort(faces);
+    for (int round = 0; round < kRounds && faces.size() <= kMostAround; ++round) {
+      Faces ends, corners;  // of the border, where each side begins; all
+      for (const std::uint32_t face : faces) {
+        const Triangle& t = faces_at.triangle(face);
+        corners.insert(corners.end(), t.begin(), t.end());
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (!std::ranges::binary_search(faces, faces_at.face_with(t[(i + 1) % 3], t[i]))) ends.push_back(t[i]);
+        }
+      }
+      std::ranges::sort(corners);
+      std::ranges::sort(ends);
+      Faces added;
+      for (std::size_t n = 0; n < ends.size(); ++n) {
+        const bool comes_twice = n > 0 && ends[n] == ends[n - 1];
+        for (const std::uint32_t face : faces_at.of(ends[n])) {
+          const auto is_there = [&](std::uint32_t v) { return std::ranges::binary_search(corners, v); };
+          const bool is_between = comes_twice || std::ranges::all_of(faces_at.triangle(face), is_there);
+          if (is_between && !std::ranges::binary_search(faces, face)) added.push_back(face);
+        }
+      }
+      if (added.empty()) break;
+      faces.insert(faces.end(), added.begin(), added.end());
+      std::ranges::sort(faces);
+      faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    }
+    return faces;
+  }
+
   [[nodiscard]] static std::vector<GapSide> border_of(const Faces& gap, const FacesAt& faces_at) {
     constexpr std::size_t kMostSides = 64;
     return border_of_gap(gap, faces_at, kMostSides);
+  }
+
+  // Whether no corner comes twice. Then what is within may be anything, also a tunnel, which vanishes.
+  [[nodiscard]] static bool is_simple(const std::vector<GapSide>& border) {
+    Faces corners(border.size());
+    std::ranges::transform(border, corners.begin(), &GapSide::from);
+    std::ranges::sort(corners);
+    return std::ranges::adjacent_find(corners) == corners.end();
   }
 
   template <class FillLoop>
   [[nodiscard]] std::optional<FilledGap> filled(const Faces& gap, const FacesAt& faces_at,
                                                 const FillLoop& fill_loop) const {
     const std::vector<GapSide> border = border_of(gap, faces_at);
-    if (border.empty() || !vertices_within(gap, border, faces_at)) return std::nullopt;
-    GapLoop loop;
+    if (border.empty() || !is_simple(border)) return std::nullopt;
+    const std::optional<GapLoop> loop = loop_along(border, faces_at);
+    if (!loop) return std::nullopt;
     FilledGap fill{gap, {}, {}};
-    for (const GapSide& side : border) {
-      if (surface_.sources[side.beyond] == kHole) return std::nullopt;
-      const Triangle& t = faces_at.triangle(side.beyond);
-      const Vec3& corner = faces_at.position(t[0]);
-      fill.loop.push_back(side.from);
-      loop.corners.push_back(faces_at.position(side.from));
-      loop.sources.push_back(surface_.sources[side.beyond]);
-      loop.fronts.push_back(cross(faces_at.position(t[1]) - corner, faces_at.position(t[2]) - corner));
-    }
+    for (const GapSide& side : border) fill.loop.push_back(side.from);
     const auto are_on_mesh = [&](std::span<const Vec3> points) {
       std::vector<double> distances(points.size());
       distance_.evaluate(points, distances, limits_.off);
@@ -250,7 +323,7 @@ class CornerGaps {
     };
     constexpr std::size_t kMostCorners = 4;
     std::optional<GapFill> found =
-        fill_loop(loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_on_mesh});
+        fill_loop(*loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_on_mesh});
     if (!found || has_edge_elsewhere(*found, fill, faces_at)) return std::nullopt;
     fill.filled = *std::move(found);
     return fill;
@@ -288,9 +361,8 @@ bool fill_corner_gaps(SurfaceMesh& surface, const TriangleMesh& input, const Tri
   for (int time = 0; time < kTimes; ++time) {
     const std::vector<Placed> placed = placements(surface, input, normals, limits.off);
     if (!are_mostly_in_planes(placed, limits.fewer)) break;
-    auto [fills, overlap] = CornerGaps(surface, input, distance, limits, placed).find();
-    if (fills.empty() || !fill_without_faults(surface, std::move(fills), lattice)) break;
-    any = true;
+    const auto [filled, overlap] = CornerGaps(surface, input, distance, limits, placed).fill(surface, lattice);
+    any = any || filled;
     if (!overlap) break;
   }
   return any;

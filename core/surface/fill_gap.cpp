@@ -93,19 +93,19 @@ class GapFiller {
       : limits_(limits), loop_corners_(loop.corners.size()), points_(loop.corners) {
     const std::size_t count = points_.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const SourcePlane plane = source_plane(input, loop.sources[i]);
+      SourcePlane plane = source_plane(input, loop.sources[i]);
+      const double front = dot(plane.normal, loop.fronts[i]);
+      if (front < 0.0) plane.normal = -1.0 * plane.normal;
       const Vec3 &from = points_[i], &to = points_[(i + 1) % count];
       const auto is_same = [&](const Label& label) {
-        return is_same_plane(label.plane, plane, from, 2 * limits_.off) &&
+        return dot(label.plane.normal, plane.normal) > 0.0 &&
+               is_same_plane(label.plane, plane, from, 2 * limits_.off) &&
                is_same_plane(label.plane, plane, to, 2 * limits_.off);
       };
       auto label = std::ranges::find_if(labels_, is_same);
       if (label == labels_.end()) label = labels_.insert(label, {plane, 0.0});
-      label->front += dot(label->plane.normal, loop.fronts[i]);
+      label->front += std::abs(front);
       sides_.push_back({i, static_cast<std::size_t>(label - labels_.begin()), loop.sources[i]});
-    }
-    for (Label& label : labels_) {
-      if (label.front < 0.0) label.plane.normal = -1.0 * label.plane.normal;
     }
   }
 
@@ -120,9 +120,10 @@ class GapFiller {
   }
 
  private:
+  // A plane, from one side: it may have faces that look either way.
   struct Label {
     SourcePlane plane;  // which shows its front
-    double front;
+    double front;       // 0 where that is not known
   };
   struct Side {
     std::size_t corner;  // where it begins

@@ -38,8 +38,9 @@ struct GapLimits {
 // triangles meet others, or each other, is not looked at beyond their planes.
 [[nodiscard]] std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits);
 
-// The planes behind a loop that goes around a corner of the mesh, continued to that: sectors of them. Nothing where it
-// is not in all these planes, or the rest is as above.
+// The planes behind a loop that goes around a corner of the mesh, continued to that, the one new corner: sectors of
+// them. Nothing where it is not in all these planes, or they lead off the mesh or would have to be folded. `reach` only
+// says how closely lines and triangles are looked at.
 [[nodiscard]] std::optional<GapFill> fill_gap_from(const Vec3& corner, const GapLoop& loop, const TriangleMesh& input,
                                                    const GapLimits& limits);
 

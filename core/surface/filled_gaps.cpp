@@ -1,6 +1,6 @@
 #include "core/surface/filled_gaps.h"
 
-#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "core/surface/certificate.h"
@@ -11,79 +11,70 @@
 namespace raycone {
 namespace {
 
-// A surface with some of the fills, which can be taken back.
+// A surface with fills, which can be taken back.
 class FilledSurface {
  public:
-  // Adds vertices and faces to the surface for all fills; these faces are gone at first.
-  FilledSurface(SurfaceMesh& surface, std::vector<FilledGap> fills)
-      : surface_(surface),
-        fills_(std::move(fills)),
-        first_vertices_(surface.mesh.vertices.size()),
-        first_faces_(surface.mesh.triangles.size()) {
-    for (FilledGap& fill : fills_) {
+  // Adds vertices and faces for the fills, and replaces the faces of all gaps.
+  FilledSurface(SurfaceMesh& surface, const std::vector<FilledGap>& fills)
+      : surface_(surface), first_vertices_(surface.mesh.vertices.size()), first_faces_(surface.mesh.triangles.size()) {
+    std::vector<Triangle>& triangles = surface.mesh.triangles;
+    for (const FilledGap& fill : fills) {
+      std::vector<std::uint32_t> loop = fill.loop, faces = fill.faces;
       for (const Vec3& corner : fill.filled.corners) {
-        fill.loop.push_back(static_cast<std::uint32_t>(surface.mesh.vertices.size()));
+        loop.push_back(static_cast<std::uint32_t>(surface.mesh.vertices.size()));
         surface.mesh.vertices.push_back(corner);
       }
-      while (fill.faces.size() < fill.filled.triangles.size()) {
-        fill.faces.push_back(static_cast<std::uint32_t>(surface.mesh.triangles.size()));
-        surface.mesh.triangles.push_back({});
+      while (faces.size() < fill.filled.triangles.size()) {
+        faces.push_back(static_cast<std::uint32_t>(triangles.size()));
+        triangles.push_back({});
         surface.sources.push_back(kHole);
       }
-    }
-    before_ = surface.mesh.triangles;
-  }
-
-  // Replaces the faces of all gaps that are left. Returns what that makes of the surface as it was at first.
-  SurfaceEdit fill() {
-    SurfaceEdit edit;
-    surface_.mesh.triangles = before_;
-    for (const FilledGap& fill : fills_) {
-      for (std::size_t n = 0; n < fill.faces.size(); ++n) {
-        Triangle& t = surface_.mesh.triangles[fill.faces[n]];
-        t = n < fill.filled.triangles.size() ? triangle(fill, n) : Triangle{};
-        edit.faces.push_back(fill.faces[n]);
-        edit.corners.push_back({before_[fill.faces[n]], t});
+      begin_.push_back(edit_.faces.size());
+      for (std::size_t n = 0; n < faces.size(); ++n) {
+        Triangle after{};
+        if (n < fill.filled.triangles.size()) {
+          const auto [a, b, c] = fill.filled.triangles[n];
+          after = {loop[a], loop[b], loop[c]};
+        }
+        edit_.faces.push_back(faces[n]);
+        edit_.corners.push_back({triangles[faces[n]], after});
       }
     }
-    return edit;
+    begin_.push_back(edit_.faces.size());
+    edit_.apply(surface.mesh);
   }
 
-  // Drops what has a vertex that is at faults, or a face beside a node that is misplaced; all if that is none.
-  void drop(const std::vector<std::uint32_t>& at_faults, const NodeSet& misplaced) {
+  // What that makes of the surface as it was.
+  [[nodiscard]] const SurfaceEdit& edit() const { return edit_; }
+
+  // The fills that have a vertex at faults, or a face beside a node that is misplaced, before or after.
+  [[nodiscard]] std::vector<std::size_t> at_faults(const std::vector<std::uint32_t>& vertices,
+                                                   const NodeSet& misplaced) const {
     std::vector<bool> touched(surface_.mesh.vertices.size(), false);
-    for (const std::uint32_t v : at_faults) touched[v] = true;
-    std::vector<Triangle> faces;     // before and after
-    std::vector<std::size_t> begin;  // of each fill
-    for (const FilledGap& fill : fills_) {
-      begin.push_back(faces.size());
-      for (std::size_t n = 0; n < fill.faces.size(); ++n) {
-        if (!is_gone(before_[fill.faces[n]])) faces.push_back(before_[fill.faces[n]]);
-        if (n < fill.filled.triangles.size()) faces.push_back(triangle(fill, n));
-      }
+    for (const std::uint32_t v : vertices) touched[v] = true;
+    std::vector<Triangle> faces;
+    for (const SurfaceEdit::Corners& corners : edit_.corners) {
+      faces.push_back(corners.before);
+      faces.push_back(corners.after);
     }
-    begin.push_back(faces.size());
     const std::vector<bool> beside = faces_beside(surface_.mesh.vertices, faces, misplaced);
-    std::vector<FilledGap> left;
-    for (std::size_t fill = 0; fill < fills_.size(); ++fill) {
+    std::vector<std::size_t> found;
+    for (std::size_t fill = 0; fill + 1 < begin_.size(); ++fill) {
       bool is_at_fault = false;
-      for (std::size_t n = begin[fill]; n < begin[fill + 1]; ++n) {
+      for (std::size_t n = 2 * begin_[fill]; n < 2 * begin_[fill + 1]; ++n) {
         const auto& [a, b, c] = faces[n];
-        is_at_fault = is_at_fault || beside[n] || touched[a] || touched[b] || touched[c];
+        is_at_fault = is_at_fault || (!is_gone(faces[n]) && (beside[n] || touched[a] || touched[b] || touched[c]));
       }
-      if (!is_at_fault) left.push_back(std::move(fills_[fill]));
+      if (is_at_fault) found.push_back(fill);
     }
-    if (left.size() == fills_.size()) left.clear();
-    fills_ = std::move(left);
+    return found;
   }
 
-  [[nodiscard]] bool empty() const { return fills_.empty(); }
-
-  // The last call. Drops what is gone.
-  void finish() {
-    for (const FilledGap& fill : fills_) {
-      for (std::size_t n = 0; n < fill.filled.triangles.size(); ++n)
-        surface_.sources[fill.faces[n]] = fill.filled.sources[n];
+  // One of these comes last. Drops what is gone; or back to the surface as it was.
+  void finish(const std::vector<FilledGap>& fills) {
+    for (std::size_t fill = 0; fill < fills.size(); ++fill) {
+      const std::vector<std::int32_t>& sources = fills[fill].filled.sources;
+      for (std::size_t n = 0; n < sources.size(); ++n) surface_.sources[edit_.faces[begin_[fill] + n]] = sources[n];
     }
     std::vector<std::int32_t> sources;
     std::vector<Triangle> triangles;
@@ -95,45 +86,38 @@ class FilledSurface {
     surface_.sources = std::move(sources);
     surface_.mesh = used_part(surface_.mesh.vertices, std::move(triangles));
   }
-  // Or this: back to the surface as it was.
   void undo() {
-    surface_.mesh.triangles = std::move(before_);
+    for (std::size_t n = 0; n < edit_.faces.size(); ++n)
+      surface_.mesh.triangles[edit_.faces[n]] = edit_.corners[n].before;
     surface_.mesh.triangles.resize(first_faces_);
     surface_.mesh.vertices.resize(first_vertices_);
     surface_.sources.resize(first_faces_);
   }
 
  private:
-  // The n-th that fills a gap.
-  static Triangle triangle(const FilledGap& fill, std::size_t n) {
-    Triangle t = fill.filled.triangles[n];
-    for (std::uint32_t& corner : t) corner = fill.loop[corner];
-    return t;
-  }
-
   SurfaceMesh& surface_;
-  std::vector<FilledGap> fills_;
   std::size_t first_vertices_, first_faces_;
-  std::vector<Triangle> before_;
+  SurfaceEdit edit_;                // fill by fill
+  std::vector<std::size_t> begin_;  // of each fill's faces there, and the end
 };
 
 }  // namespace
 
-bool fill_without_faults(SurfaceMesh& surface, std::vector<FilledGap> fills, const Lattice& lattice) {
-  constexpr int kRounds = 6;
-  FilledSurface filled(surface, std::move(fills));
-  for (int round = 0; round < kRounds && !filled.empty(); ++round) {
-    const SurfaceEdit edit = filled.fill();
-    const NearFaults near = faults_near(surface.mesh, edit, lattice);
-    const NodeSet misplaced = changed_nodes(surface.mesh, edit, lattice);
-    if (near.faults.none() && misplaced.empty()) {
-      filled.finish();
-      return true;
-    }
-    filled.drop(near.vertices, misplaced);
+std::vector<std::size_t> fill_all(SurfaceMesh& surface, const std::vector<FilledGap>& fills, const Lattice& lattice) {
+  FilledSurface filled(surface, fills);
+  const NearFaults near = faults_near(surface.mesh, filled.edit(), lattice);
+  const NodeSet misplaced = changed_nodes(surface.mesh, filled.edit(), lattice);
+  if (near.faults.none() && misplaced.empty()) {
+    filled.finish(fills);
+    return {};
+  }
+  std::vector<std::size_t> found = filled.at_faults(near.vertices, misplaced);
+  if (found.empty()) {
+    found.resize(fills.size());
+    std::iota(found.begin(), found.end(), std::size_t{0});
   }
   filled.undo();
-  return false;
+  return found;
 }
 
 }  // namespace raycone

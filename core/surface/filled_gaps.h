@@ -1,6 +1,7 @@
-// Gaps of a surface filled, as far as that does no harm.
+// Gaps of a surface, filled.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct FilledGap {
   GapFill filled;
 };
 
-// Fills gaps of a closed surface, of which no two have a face in common, without what makes faults: that is left as it
-// was. Only what is near a change is looked at (faults_near(), changed_nodes()). Returns whether any is filled; else
-// the surface is as it was. The same for any number of threads. Needs DefaultFloatingPoint.
-[[nodiscard]] bool fill_without_faults(SurfaceMesh& surface, std::vector<FilledGap> fills, const Lattice& lattice);
+// Fills gaps of a closed surface, of which no two have a face in common. If that makes faults, the surface is as it
+// was: returns the numbers of the fills that are at these, all where that is not known. Only what is near a change is
+// looked at (faults_near(), changed_nodes()). The same for any number of threads. Needs DefaultFloatingPoint.
+[[nodiscard]] std::vector<std::size_t> fill_all(SurfaceMesh& surface, const std::vector<FilledGap>& fills,
+                                                const Lattice& lattice);
 
 }  // namespace raycone

@@ -1,7 +1,7 @@
 // Gaps of a surface: faces in no plane of the mesh that hang together by sides, and what is around them.
 //
-// `Faces` gives what a function asks of a surface: triangle(face), position(vertex), and face_with(from, to), the face
-// that has a side in this direction, kNoFace where that is not known.
+// `Faces` gives what a function asks of a surface: triangle(face), source(face), position(vertex), and face_with(from,
+// to), the face that has a side in this direction, kNoFace where that is not known.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,8 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
+#include "core/surface/contour.h"
+#include "core/surface/fill_gap.h"
 
 namespace raycone {
 
@@ -22,7 +24,8 @@ struct GapSide {
   std::uint32_t from, to, face, beyond;
 };
 
-// `first`, and the faces that hang together with it for which joins(face) holds; increasing. It must hold once for each.
+// `first`, and the faces that hang together with it for which joins(face) holds; increasing. It must hold once for
+// each.
 template <class Faces, class Joins>
 [[nodiscard]] std::vector<std::uint32_t> faces_joined_to(std::uint32_t first, const Faces& faces, const Joins& joins) {
   std::vector<std::uint32_t> gap{first};
@@ -72,6 +75,21 @@ template <class Faces>
   }
   if (border.size() != all.size()) return {};
   return border;
+}
+
+// What fills a gap with this border goes along. Nothing at a hole.
+template <class Faces>
+[[nodiscard]] std::optional<GapLoop> loop_along(const std::vector<GapSide>& border, const Faces& faces) {
+  GapLoop loop;
+  for (const GapSide& side : border) {
+    if (faces.source(side.beyond) == kHole) return std::nullopt;
+    const Triangle& t = faces.triangle(side.beyond);
+    const Vec3& first = faces.position(t[0]);
+    loop.corners.push_back(faces.position(side.from));
+    loop.sources.push_back(faces.source(side.beyond));
+    loop.fronts.push_back(cross(faces.position(t[1]) - first, faces.position(t[2]) - first));
+  }
+  return loop;
 }
 
 // The vertices of a gap that are not on its border, increasing; none where the gap is no disc.

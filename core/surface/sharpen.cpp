@@ -1,16 +1,12 @@
 #include "core/surface/sharpen.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
-#include "core/surface/edge_crossing.h"
 #include "core/surface/fault_places.h"
-#include "core/surface/source_plane.h"
 #include "core/surface/strip_pulls.h"
 
 namespace raycone {

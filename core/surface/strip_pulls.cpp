@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -112,26 +113,15 @@ bool StripPulls::is_hopeless(const Faces& gap) {
       gap, [&](std::uint32_t face) { return std::ranges::any_of(state_.triangles[face], is_changed); });
 }
 
-// Nothing where vertices are to stay, or at a hole.
-std::optional<GapLoop> StripPulls::loop_along(const std::vector<GapSide>& border) const {
-  GapLoop loop;
-  for (const GapSide& side : border) {
-    const bool is_kept =
-        place(side.from) != Sharpener::kNoPlace && all_.kept_[place(side.from)] >= Sharpener::kKeptFrom;
-    if (is_kept || state_.sources[side.beyond] == kHole) return std::nullopt;
-    const Triangle& t = state_.triangles[side.beyond];
-    loop.corners.push_back(position(side.from));
-    loop.sources.push_back(state_.sources[side.beyond]);
-    loop.fronts.push_back(cross(position(t[1]) - position(t[0]), position(t[2]) - position(t[0])));
-  }
-  return loop;
-}
-
+// Nothing is filled where vertices are to stay.
 void StripPulls::find_fill(Gap& gap) const {
   constexpr std::size_t kMostSides = 256;
   const std::vector<GapSide> border = border_of_gap(gap.faces, *this, kMostSides);
-  const std::optional<GapLoop> around = loop_along(border);
-  if (border.empty() || !around) return;
+  const auto is_kept = [&](const GapSide& side) {
+    return place(side.from) != Sharpener::kNoPlace && all_.kept_[place(side.from)] >= Sharpener::kKeptFrom;
+  };
+  const std::optional<GapLoop> around = loop_along(border, *this);
+  if (border.empty() || !around || std::ranges::any_of(border, is_kept)) return;
   for (const GapSide& side : border) gap.loop.push_back(side.from);
   const std::optional<Faces> within = vertices_within(gap.faces, border, *this);
   if (!within) return;

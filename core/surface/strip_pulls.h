@@ -27,6 +27,7 @@ class StripPulls {
 
   // For gap.h.
   [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return state_.triangles[face]; }
+  [[nodiscard]] std::int32_t source(std::uint32_t face) const { return state_.sources[face]; }
   [[nodiscard]] const Vec3& position(std::uint32_t vertex) const {
     return place(vertex) == Sharpener::kNoPlace ? all_.surface_.mesh.vertices[vertex] : state_.places[place(vertex)];
   }
@@ -53,7 +54,6 @@ class StripPulls {
   };
   std::size_t fill_gaps();
   [[nodiscard]] bool is_hopeless(const Faces& gap);
-  [[nodiscard]] std::optional<GapLoop> loop_along(const std::vector<GapSide>& border) const;
   void find_fill(Gap& gap) const;
   bool fill(const Gap& gap);
   void replace(const Faces& gap, const Faces& loop, const GapFill& filled);

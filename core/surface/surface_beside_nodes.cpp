@@ -46,7 +46,7 @@ bool has_points(const SurfaceMesh& surface, std::span<const Vec3> points, double
 }  // namespace
 
 bool is_of_planes(const SurfaceMesh& surface, const TriangleMesh& input, double off) {
-  constexpr double kMost = 0.75;  // of the area, which scans stay below (see Sharpener)
+  constexpr double kMost = 0.75;  // of the area, which scans stay below (see face_placement.h)
   double all = 0.0, in_planes = 0.0;
   for (std::size_t face = 0; face < surface.sources.size(); ++face) {
     const Triangle& t = surface.mesh.triangles[face];

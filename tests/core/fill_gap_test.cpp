@@ -17,7 +17,8 @@
 namespace raycone {
 namespace {
 
-// A unit box, and loops on it whose sides name what is behind them by the direction of its front; corners are in its plane.
+// A unit box, and loops on it whose sides name what is behind them by the direction of its front; corners are in its
+// plane.
 class Gap {
  public:
   explicit Gap(TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1})) : mesh_(std::move(mesh)), distances_(mesh_) {}

@@ -602,6 +602,11 @@ MUTANTS = [
     Mutant("edges_joined_twice", "a new line joins no corners that an edge joins", [
         ("core/surface/corner_gaps.cpp", "!std::ranges::binary_search(gap.faces, face)) return true;",
          "!std::ranges::binary_search(gap.faces, face)) return false;")]),
+    Mutant("planes_from_either_side", "a plane that has faces on both sides is two", [
+        ("core/surface/fill_gap.cpp", "return dot(label.plane.normal, plane.normal) > 0.0 &&",
+         "return dot(label.plane.normal, plane.normal) != 0.0 &&")]),
+    Mutant("faulty_fills_come_again", "where a fill has faults, the next one is tried", [
+        ("core/surface/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

@@ -2,8 +2,9 @@
 
 usage: python3 tests/surfaces/sharp_edges.py RAYCONE [--resolution N] [--rotations R] [MESH.stl...]
 
-A cube, a wedge, a cylinder, a fan and the meshes are turned by R random rotations. Points on their sharp edges (15 degrees or
-more) are *resolved* if the tetrahedron of the lattice that holds them has samples of both kinds.
+A cube, a wedge, a cylinder, a fan, a step, a cross and the meshes are turned by R random rotations. Points on their
+sharp edges (15 degrees or more) are *resolved* if the tetrahedron of the lattice that holds them has samples of both
+kinds.
 """
 import argparse
 import json
@@ -54,6 +55,27 @@ def fan():
         b = (a + 1) % sides
         faces += [(a, b, sides + b), (a, sides + b, sides + a), (2 * sides, b, a), (2 * sides + 1, sides + a, sides + b)]
     return vertices, np.array(faces)
+
+
+def cubes(cells):
+    """The boundary of unit cubes: corners where edges are concave."""
+    numbers, faces = {}, []
+    for cell in cells:
+        for axis in range(3):
+            for side in (0, 1):
+                beyond = tuple(c + (2 * side - 1) * (a == axis) for a, c in enumerate(cell))
+                if beyond in cells:
+                    continue
+                u, v = [(a, b) for a, b in ((1, 2), (2, 0), (0, 1))][axis][::1 if side else -1]
+                quad = []
+                for du, dv in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                    p = list(cell)
+                    p[axis] += side
+                    p[u] += du
+                    p[v] += dv
+                    quad.append(numbers.setdefault(tuple(p), len(numbers)))
+                faces += [(quad[0], quad[1], quad[2]), (quad[0], quad[2], quad[3])]
+    return np.array(list(numbers), float), np.array(faces)
 
 
 def read_stl(path):
@@ -163,7 +185,9 @@ def main():
     parser.add_argument("--rotations", type=int, default=3)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        shapes = [("cube", box(1)), ("wedge", wedge()), ("cylinder", cylinder()), ("fan", fan())]
+        shapes = [("cube", box(1)), ("wedge", wedge()), ("cylinder", cylinder()), ("fan", fan()),
+                  ("step", cubes([(0, 0, 0), (1, 0, 0), (0, 1, 0)])),
+                  ("cross", cubes([(1, 1, 1), (0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2)]))]
         shapes += [(os.path.basename(path), read_stl(path)) for path in arguments.meshes]
         print("| mesh | edges resolved, % | of them kept, % | largest distance, voxels | rms | of all edges kept, % | "
               "largest distance, voxels | rms | of the surface | volume, % | faces |")

@@ -80,7 +80,7 @@ class CornerGaps {
     bool any = false, overlap = false;
   };
   [[nodiscard]] Filled fill(SurfaceMesh& surface, const Lattice& lattice) const {
-    constexpr int kRounds = 12, kGiveUp = 8;  // what is at faults then is left
+    constexpr int kRounds = 6, kGiveUp = 4;  // what is at faults then is left
     const Faces off = numbers_where(placed_.size(), [&](std::uint32_t face) { return is_off(face); });
     if (off.empty()) return {};
     distance_.prepare_points();

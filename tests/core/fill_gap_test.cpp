@@ -36,12 +36,14 @@ class Gap {
     }
   }
 
-  [[nodiscard]] std::optional<GapFill> filled(std::size_t new_corners, const std::optional<Vec3>& corner = {}) const {
+  // `anywhere`: also off the mesh.
+  [[nodiscard]] std::optional<GapFill> filled(std::size_t new_corners, const std::optional<Vec3>& corner = {},
+                                              bool anywhere = false) const {
     const DefaultFloatingPoint guard;
     const GapLimits limits{1e-9, 1.0, new_corners, false, [&](std::span<const Vec3> points) {
                              std::vector<double> distances(points.size());
                              distances_.evaluate(points, distances);
-                             return std::ranges::all_of(distances, [](double d) { return d <= 1e-9; });
+                             return anywhere || std::ranges::all_of(distances, [](double d) { return d <= 1e-9; });
                            }};
     return corner ? fill_gap_from(*corner, loop_, mesh_, limits) : fill_gap(loop_, mesh_, limits);
   }
@@ -179,8 +181,38 @@ TEST(FillGap, EndsSectorsWhereALineIsNearest) {
 
 TEST(FillGap, LeavesWhatDoesNotGoAroundTheCorner) {
   const Gap gap = gap_of_step();
-  EXPECT_FALSE(gap.filled(1, Vec3{1, 1, 0.5}));  // is not in the top
-  EXPECT_FALSE(gap.filled(1, Vec3{1, 1.5, 1}));  // is on the loop
+  EXPECT_FALSE(gap.filled(1, Vec3{1, 1, 0.5}, true));  // is not in the top
+  EXPECT_FALSE(gap.filled(1, Vec3{1, 1.5, 1}, true));  // is on the loop
+}
+
+TEST(FillGap, LeavesSectorsOffTheMesh) {
+  Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  gap.add({2.5, 1, 1}, kY);  // half a cell beyond the end of the edge
+  gap.add({1, 1, 0.5}, kX);
+  gap.add({1, 1.5, 1}, kZ);
+  gap.add({0.6, 0.6, 1}, kZ);
+  EXPECT_TRUE(gap.filled(1, Vec3{1, 1, 1}, true));
+  EXPECT_FALSE(gap.filled(1, Vec3{1, 1, 1}));
+}
+
+// At the middle of a chain of four cubes the plane y = 1 has faces that look up, and others that look down.
+TEST(FillGap, TellsTheFrontsOfOnePlaneApart) {
+  Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}));
+  gap.add({0.5, 1, 1}, kZ);
+  gap.add({0.5, 0.5, 1}, kZ);
+  gap.add({1.5, 0.5, 1}, kZ);
+  gap.add({1.5, 1, 1}, {0, -1, 0});
+  gap.add({1.5, 1, 1.5}, {0, -1, 0});
+  gap.add({1, 1, 1.5}, {-1, 0, 0});
+  gap.add({1, 1.5, 1.5}, {-1, 0, 0});
+  gap.add({1, 1.5, 0.5}, {-1, 0, 0});
+  gap.add({1, 1, 0.5}, kY);
+  gap.add({0.5, 1, 0.5}, kY);
+  const std::optional<GapFill> fill = gap.filled(1, Vec3{1, 1, 1});
+  ASSERT_TRUE(fill);
+  EXPECT_NEAR(gap.area(*fill, kY), 0.25 - 0.25, 1e-12);  // of both fronts
+  EXPECT_NEAR(gap.area(*fill, kZ), 0.5, 1e-12);
+  EXPECT_NEAR(gap.area(*fill, {-1, 0, 0}), 0.5, 1e-12);
 }
 
 // The planes of a step meet where there is no mesh; so do those of a hole in the top.

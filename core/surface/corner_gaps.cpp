@@ -14,6 +14,7 @@
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 #include "core/surface/face_placement.h"
+#include "core/surface/faces_at.h"
 #include "core/surface/fill_gap.h"
 #include "core/surface/filled_gaps.h"
 #include "core/surface/gap.h"
@@ -23,50 +24,6 @@ namespace raycone {
 namespace {
 
 using Faces = std::vector<std::uint32_t>;
-
-// The faces at each vertex of a mesh.
-class FacesAt {
- public:
-  explicit FacesAt(const SurfaceMesh& surface)
-      : mesh_(surface.mesh),
-        sources_(surface.sources),
-        begin_(surface.mesh.vertices.size() + 1, 0),
-        faces_(3 * surface.mesh.triangles.size()) {
-    const TriangleMesh& mesh = surface.mesh;
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t v : t) ++begin_[v + 1];
-    }
-    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-      for (const std::uint32_t v : mesh.triangles[face]) faces_[next[v]++] = face;
-    }
-  }
-
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
-    return std::span(faces_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
-  }
-
-  // For gap.h.
-  [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return mesh_.triangles[face]; }
-  [[nodiscard]] std::int32_t source(std::uint32_t face) const { return sources_[face]; }
-  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
-  [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const {
-    for (const std::uint32_t face : of(from)) {
-      const Triangle& t = triangle(face);
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (t[i] == from && t[(i + 1) % 3] == to) return face;
-      }
-    }
-    return kNoFace;
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  const std::vector<std::int32_t>& sources_;
-  std::vector<std::size_t> begin_;  // of each vertex
-  Faces faces_;
-};
 
 class CornerGaps {
  public:
@@ -80,7 +37,7 @@ class CornerGaps {
     bool any = false, overlap = false;
   };
   [[nodiscard]] Filled fill(SurfaceMesh& surface, const Lattice& lattice) const {
-    constexpr int kRounds = 6, kGiveUp = 4;  // what is at faults then is left
+    constexpr int kRounds = 10, kGiveUp = 4;  // what is at faults then is left
     const Faces off = numbers_where(placed_.size(), [&](std::uint32_t face) { return is_off(face); });
     if (off.empty()) return {};
     distance_.prepare_points();
@@ -251,7 +208,7 @@ class CornerGaps {
         for (std::size_t i = 0; i < 3; ++i) {
           const std::uint32_t face = faces_at.face_with(t[(i + 1) % 3], t[i]);
           const auto place = std::ranges::lower_bound(region.known, face);
-          if (place != region.known.end() && *place == face) continue;
+          if (face == kNoFace || (place != region.known.end() && *place == face)) continue;
           region.known.insert(place, face);
           waiting.push_back(face);
         }

@@ -1,0 +1,59 @@
+// The faces at each vertex of a surface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/surface/contour.h"
+#include "core/surface/gap.h"
+
+namespace raycone {
+
+// The surface must stay, though it may have more faces and vertices for a while, which this does not know.
+class FacesAt {
+ public:
+  explicit FacesAt(const SurfaceMesh& surface)
+      : mesh_(surface.mesh),
+        sources_(surface.sources),
+        begin_(surface.mesh.vertices.size() + 1, 0),
+        faces_(3 * surface.mesh.triangles.size()) {
+    const TriangleMesh& mesh = surface.mesh;
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) ++begin_[v + 1];
+    }
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+      for (const std::uint32_t v : mesh.triangles[face]) faces_[next[v]++] = face;
+    }
+  }
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+    return std::span(faces_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
+  }
+
+  // For gap.h.
+  [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return mesh_.triangles[face]; }
+  [[nodiscard]] std::int32_t source(std::uint32_t face) const { return sources_[face]; }
+  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
+  [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const {
+    for (const std::uint32_t face : of(from)) {
+      const Triangle& t = triangle(face);
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (t[i] == from && t[(i + 1) % 3] == to) return face;
+      }
+    }
+    return kNoFace;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const std::vector<std::int32_t>& sources_;
+  std::vector<std::size_t> begin_;  // of each vertex
+  std::vector<std::uint32_t> faces_;
+};
+
+}  // namespace raycone

@@ -31,6 +31,8 @@
 namespace raycone {
 namespace {
 
+constexpr double kMostOfFirst = 0x1p-5;  // of a voxel, of margins at first
+
 // One attempt at a surface after the other.
 class SurfaceMaker {
  public:
@@ -316,25 +318,28 @@ std::optional<FinishedSurface> surface_in_scale(const TriangleMesh& mesh, const 
 
 }  // namespace
 
+// Fewer roundings are enough where more would be too much; but they keep less apart what must not meet.
 double surface_margin(const Lattice& lattice, bool single_precision) {
-  constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8;
+  constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8, kFewest = 0x1p5;
   const double rounding = std::max((single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice), 0x1p-1074);
-  return std::max(kLeast, kRoundings * rounding / lattice.least_spacing());
+  const double voxels = rounding / lattice.least_spacing();
+  return std::max(kLeast, (kRoundings * voxels <= kMostOfFirst ? kRoundings : kFewest) * voxels);
 }
 
 FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr double kMost = 0x1p-5, kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
+  constexpr double kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
   const double largest = largest_coordinate(inside.lattice());
   const double margin = surface_margin(inside.lattice(), options.single_precision);
   const std::string precision = options.single_precision ? "single precision" : "double precision";
   const bool fits_float = largest < kLargestFloat && inside.lattice().least_spacing() > kLeastVoxel;
-  const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMost);
+  const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMostOfFirst);
   if (is_tiny || (options.single_precision && !fits_float)) {
     throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");
   }
-  if (!(margin <= kMost)) throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
+  if (!(margin <= kMostOfFirst))
+    throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
   if (std::optional<FinishedSurface> surface = surface_in_scale(mesh, inside, options)) return *std::move(surface);
   return SurfaceMaker(mesh, evaluators, inside, options).make();
 }

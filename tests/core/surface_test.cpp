@@ -1312,6 +1312,10 @@ TEST(Surface, OfALatticeThatIsTooFineOrOutOfRangeIsRefused) {
   EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
   SurfaceOptions single;
   single.single_precision = true;
+  // So far away that 256 roundings are a fifth of a voxel: there are surfaces all the same.
+  const TriangleMesh away = test::moved(test::sphere(8), {1, 1, 1}, {3000, -3000, 2000});
+  const auto [surface, lattice] = surface_of(away, 9, single);
+  EXPECT_TRUE(faults_of(surface.mesh, nodes_inside(WindingNumberEvaluator(away), Rule{}, lattice)).none());
   for (const double size : {1e-40, 1e-300, 1e39, 1e300}) {
     EXPECT_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8, single), LatticeOutOfRange) << size;
     EXPECT_NO_THROW(surface_of(test::box_mesh({0, 0, 0}, {size, size, size}), 8)) << size;

@@ -20,14 +20,13 @@ class FacesAt {
         sources_(surface.sources),
         begin_(surface.mesh.vertices.size() + 1, 0),
         faces_(3 * surface.mesh.triangles.size()) {
-    const TriangleMesh& mesh = surface.mesh;
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t v : t) ++begin_[v + 1];
+    for (const Triangle& t : mesh_.triangles) {
+      for (const std::uint32_t v : t) ++begin_[v];
     }
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-      for (const std::uint32_t v : mesh.triangles[face]) faces_[next[v]++] = face;
+    // From the end of each vertex's faces backwards.
+    for (auto face = static_cast<std::uint32_t>(mesh_.triangles.size()); face-- > 0;) {
+      for (const std::uint32_t v : mesh_.triangles[face]) faces_[--begin_[v]] = face;
     }
   }
 

@@ -613,9 +613,10 @@ TEST(Surface, KeepsConcaveCorners) {
       cross_of_cells{{1, 1, 1}, {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}};
   const Cells chain{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
   for (const Cells& cells : {step, pit, cross_of_cells, chain}) {
-    for (int n = 0; n < 8; ++n) {
-      const TriangleMesh mesh = turned(test::cells_mesh(cells), {1.0, 0.3 * n - 1.0, 0.7}, 0.4 + 0.9 * n);
-      const auto [surface, lattice] = surface_of(mesh, 32);
+    for (int n = 0; n < 24; ++n) {
+      const TriangleMesh mesh =
+          turned(test::cells_mesh(cells), {1.0, 0.3 * (n % 8) - 1.0, 0.7 - 0.1 * n}, 0.4 + 0.9 * n);
+      const auto [surface, lattice] = surface_of(mesh, 18 + n);
       // Points are kept off nodes by 4 2^-30 voxels at most.
       EXPECT_LE(largest_distance_of(points_of_edges(mesh), surface.mesh), 4e-9 * lattice.spacing.x) << n;
       EXPECT_LE(largest_distance_of(surface.mesh.vertices, mesh), 4e-9 * lattice.spacing.x) << n;

@@ -273,14 +273,10 @@ class CornerGaps {
     if (!loop) return std::nullopt;
     FilledGap fill{gap, {}, {}};
     for (const GapSide& side : border) fill.loop.push_back(side.from);
-    const auto are_on_mesh = [&](std::span<const Vec3> points) {
-      std::vector<double> distances(points.size());
-      distance_.evaluate(points, distances, limits_.off);
-      return std::ranges::all_of(distances, [&](double distance) { return distance <= limits_.off; });
-    };
+    const auto are_all = [&](std::span<const Vec3> points) { return are_on_mesh(points, distance_, limits_.off); };
     constexpr std::size_t kMostCorners = 4;
     std::optional<GapFill> found =
-        fill_loop(*loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_on_mesh});
+        fill_loop(*loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_all});
     if (!found || has_edge_elsewhere(*found, fill, faces_at)) return std::nullopt;
     fill.filled = *std::move(found);
     return fill;

@@ -390,6 +390,12 @@ bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side&
 
 }  // namespace
 
+bool are_on_mesh(std::span<const Vec3> points, const DistanceEvaluator& distance, double off) {
+  std::vector<double> distances(points.size());
+  distance.evaluate(points, distances, off);
+  return std::ranges::all_of(distances, [&](double d) { return d <= off; });
+}
+
 std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits) {
   return GapFiller(loop, input, limits).fill();
 }

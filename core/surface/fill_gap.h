@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
 
 namespace raycone {
 
@@ -24,6 +25,9 @@ struct GapFill {
   std::vector<std::int32_t> sources;
   std::vector<Vec3> corners;  // new ones
 };
+
+// Whether all points are within `off` of the mesh that `distance` is from.
+[[nodiscard]] bool are_on_mesh(std::span<const Vec3> points, const DistanceEvaluator& distance, double off);
 
 struct GapLimits {
   double off = 0.0;    // how far points of one plane are from it at most, world units

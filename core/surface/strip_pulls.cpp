@@ -127,10 +127,10 @@ void StripPulls::find_fill(Gap& gap) const {
   if (!within) return;
   gap.free = *within;
   if (std::ranges::any_of(gap.free, [&](std::uint32_t v) { return place(v) == Sharpener::kNoPlace; })) return;
-  const auto are_on_mesh = [&](std::span<const Vec3> points) { return this->are_on_mesh(points); };
-  gap.filled = fill_gap(*around, all_.input_,
-                        {all_.limits_.off, all_.limits_.reach, gap.free.size() + part_.spares,
-                         all_.limits_.single_precision, are_on_mesh});
+  const auto are_all = [&](std::span<const Vec3> points) { return are_all_on_mesh(points); };
+  gap.filled = fill_gap(
+      *around, all_.input_,
+      {all_.limits_.off, all_.limits_.reach, gap.free.size() + part_.spares, all_.limits_.single_precision, are_all});
 }
 
 bool StripPulls::fill(const Gap& gap) {
@@ -277,13 +277,11 @@ std::optional<Vec3> StripPulls::place_for(std::uint32_t u, std::uint32_t v) {
     const Vec3 step = *place - from;
     if (!(dot(step, step) <= all_.limits_.reach * all_.limits_.reach)) return std::nullopt;
   }
-  return are_on_mesh({&*place, 1}) ? place : std::nullopt;
+  return are_all_on_mesh({&*place, 1}) ? place : std::nullopt;
 }
 
-bool StripPulls::are_on_mesh(std::span<const Vec3> points) const {
-  std::vector<double> distances(points.size());
-  all_.distance_.evaluate(points, distances, all_.limits_.off);
-  return std::ranges::all_of(distances, [&](double distance) { return distance <= all_.limits_.off; });
+bool StripPulls::are_all_on_mesh(std::span<const Vec3> points) const {
+  return are_on_mesh(points, all_.distance_, all_.limits_.off);
 }
 
 // Adds a face's plane unless it is there. Planes at less than 15 degrees, where an edge is not sharp, meet nowhere for

@@ -67,7 +67,7 @@ class StripPulls {
   void join(std::uint32_t u, std::uint32_t v);
   [[nodiscard]] bool is_link_sound(std::uint32_t u, std::uint32_t v) const;
   [[nodiscard]] std::optional<Vec3> place_for(std::uint32_t u, std::uint32_t v);
-  [[nodiscard]] bool are_on_mesh(std::span<const Vec3> points) const;
+  [[nodiscard]] bool are_all_on_mesh(std::span<const Vec3> points) const;
   [[nodiscard]] bool keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const;
   [[nodiscard]] bool add_plane(std::uint32_t face, std::vector<SourcePlane>& planes) const;
 

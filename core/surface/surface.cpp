@@ -31,7 +31,7 @@
 namespace raycone {
 namespace {
 
-constexpr double kMostOfFirst = 0x1p-5;  // of a voxel, of margins at first
+constexpr double kMostOfFirst = 0x1p-5;  // voxels; of margins at first, as wider ones, to kMostMargin, may follow
 
 // One attempt at a surface after the other.
 class SurfaceMaker {

@@ -141,10 +141,12 @@ TEST(FillGap, StartsWithTheRunThatGoesOn) {
 }
 
 // A step: three planes meet in (1, 1, 1), where the edge along z is concave. The loop leaves three quarters of the top.
-Gap gap_of_step() {
+// `on_line`: with another corner on the line where the top ends.
+Gap gap_of_step(bool on_line = false) {
   Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   gap.add({1.5, 1, 1}, kY);
   gap.add({1, 1, 0.5}, kX);
+  if (on_line) gap.add({1, 1.3, 1}, kX);
   gap.add({1, 1.5, 1}, kZ);
   gap.add({0.6, 1.4, 1}, kZ);
   gap.add({0.6, 0.6, 1}, kZ);
@@ -165,14 +167,7 @@ TEST(FillGap, FillsSectorsAroundAConcaveCorner) {
 
 // Corners of the loop on a line from the corner are on the sides of both sectors.
 TEST(FillGap, EndsSectorsWhereALineIsNearest) {
-  Gap gap(test::cells_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  gap.add({1.5, 1, 1}, kY);
-  gap.add({1, 1, 0.5}, kX);
-  gap.add({1, 1.3, 1}, kX);
-  gap.add({1, 1.5, 1}, kZ);
-  gap.add({0.6, 1.4, 1}, kZ);
-  gap.add({0.6, 0.6, 1}, kZ);
-  gap.add({1.4, 0.6, 1}, kZ);
+  const Gap gap = gap_of_step(true);
   const std::optional<GapFill> fill = gap.filled(1, Vec3{1, 1, 1});
   ASSERT_TRUE(fill);
   EXPECT_NEAR(gap.area(*fill, kX), 0.5 * 0.5 * 0.3, 1e-12);

@@ -683,8 +683,8 @@ MUTANTS = [
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
         ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [
-        ("core/surface/strip_pulls.cpp", "return distance <= all_.limits_.off;",
-         "return distance <= 1e9 * all_.limits_.off;")]),
+        ("core/surface/fill_gap.cpp", "return d <= off;",
+         "return d <= 1e9 * off;")]),
     Mutant("gaps_from_the_shortest_run_on", "where one way to fill a gap leads nowhere, another one is tried", [
         ("core/surface/fill_gap.cpp", "if (++tries_ > kMostTries) return false;", "if (++tries_ > 1) return false;")]),
     Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [

@@ -9,6 +9,7 @@
 #include "app/options/field_options.h"
 #include "app/process/limits.h"
 #include "core/distance/distance.h"
+#include "core/surface/mesh_as_surface.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/thicken.h"
 #include "io/files/file_error.h"
@@ -30,10 +31,11 @@ void check_inside(const std::string& name, const NodeSet& inside, const Rule& ru
   }
 }
 
-FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, const FineAndRough& evaluators,
-                           const NodeSet& inside, const SurfaceOptions& options) {
+// What `make` returns, which may find that numbers do not do.
+template <class Make>
+auto within_limits(const std::string& name, const SurfaceOptions& options, const Make& make) {
   try {
-    return closed_surface(mesh, evaluators, inside, options);
+    return make();
   } catch (const LatticeTooFine& error) {
     const char* const other_format = options.single_precision ? ", or write PLY" : "";
     throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
@@ -45,9 +47,10 @@ FinishedSurface surface_of(const std::string& name, const TriangleMesh& mesh, co
   }
 }
 
-SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measures) {
-  return {surface.mesh.vertices.size(), surface.mesh.triangles.size(), measures.components, measures.max_distance,
-          measures.hole_area,           measures.dropped_area};
+SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measures, const DroppedArea& dropped) {
+  return {surface.mesh.vertices.size(), surface.mesh.triangles.size(),
+          measures.components,          measures.max_distance,
+          measures.hole_area,           dropped.area};
 }
 
 std::vector<Warning> warnings_about(const FinishedSurface& closed, const SurfaceOptions& options) {
@@ -87,6 +90,18 @@ EvaluatorOptions options_for(const Accuracy& accuracy, const std::vector<Exterio
   return {.accuracy = accuracy, .edges = &edges};
 }
 
+// `for_sides` found the nodes. Of open meshes, evaluators for points take its place.
+FinishedSurface contoured(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const NodeSet& inside,
+                          const SurfaceOptions& options, WindingNumberEvaluator& for_sides) {
+  if (edges.empty()) return closed_surface(mesh, for_sides, inside, options);  // values are exact anyway
+  constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
+  constexpr double kPerCell = 4.0;      // points that either is asked for, where there are few holes
+  const double points = kPerCell * static_cast<double>(mixed_cells(inside));
+  const WindingNumberEvaluator fine(mesh, options_for(for_points(kTolerance, points), edges));
+  for_sides = WindingNumberEvaluator(mesh, options_for(for_points(tolerance_for_sides(options.rule), points), edges));
+  return closed_surface(mesh, {fine, for_sides}, inside, options);
+}
+
 }  // namespace
 
 MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
@@ -96,27 +111,23 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
-  std::optional<WindingNumberEvaluator> fine, rough(std::in_place, mesh, options_for(for_sides, edges));
-  NodeSet inside = nodes_inside(*rough, options.rule, lattice, done);
+  WindingNumberEvaluator evaluator(mesh, options_for(for_sides, edges));
+  NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
-  check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
-  if (!edges.empty()) {                   // the values of a closed mesh are exact anyway
-    constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
-    constexpr double kPerCell = 4.0;      // points that either is asked for, where there are few holes
-    const double points = kPerCell * static_cast<double>(mixed_cells(inside));
-    fine.emplace(mesh, options_for(for_points(kTolerance, points), edges));
-    rough.emplace(mesh, options_for(for_points(for_sides.tolerance, points), edges));
-  }
-  FinishedSurface closed = surface_of(name, mesh, fine ? FineAndRough(*fine, *rough) : *rough, inside, options);
-  fine.reset();
+  FinishedSurface closed = within_limits(name, options, [&] {
+    std::optional<FinishedSurface> itself = mesh_as_surface(mesh, inside, options);
+    if (itself) return *std::move(itself);
+    check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
+    return contoured(mesh, edges, inside, options, evaluator);
+  });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  DroppedSamples dropped(made.surface, inside, options.thickness);
-  const SurfaceMeasures measures = measure_surface(made.surface, mesh, dropped);
-  made.report = report_of(made.surface, measures);
-  if (measures.drops) {
-    const ThinParts thin = thin_parts(mesh, {*rough, options.rule}, dropped);
+  DroppedSamples samples(made.surface, inside, options.thickness);
+  const DroppedArea dropped = closed.holds_mesh ? DroppedArea() : dropped_area(mesh, samples);
+  made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
+  if (dropped.is_some) {
+    const ThinParts thin = thin_parts(mesh, {evaluator, options.rule}, samples);
     if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   }
   return made;

@@ -33,6 +33,9 @@ struct SurfaceFaults {
 // triangle. Sets `misplaced`, where given, to the nodes on the wrong side: misplaced_nodes().
 [[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside, NodeSet* misplaced = nullptr);
 
+// Whether a mesh has none of these faults, but for nodes and places. Sooner where it has any.
+[[nodiscard]] bool is_closed_and_embedded(const TriangleMesh& mesh);
+
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
 // `edges`: its exterior edges, where known, to spare finding them.
 [[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside,

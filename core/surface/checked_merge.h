@@ -21,6 +21,23 @@ inline constexpr double kNearCorner = 16.0, kNearPlane = 2.5;
   return kNearCorner * margin + 2 * std::max(kNearPlane * margin, tolerance);
 }
 
+// How `simplify` is shared out, where that is not 0: a part is for merging, what is left is for pulls. World units.
+struct SurfaceBounds {
+  double margin = 0.0;     // how far points are kept off nodes
+  double tolerance = 0.0;  // plane_tolerance()
+  double simplify = 0.0;
+
+  // How far apart numbers of one plane may be: where `simplify` is less, so that half of that is left.
+  [[nodiscard]] double merge_tolerance() const {
+    return simplify > 0.0 ? std::min(tolerance, simplify / 4) : tolerance;
+  }
+  // How far a point may be pulled, as merging has moved points already. Not positive where nothing is left.
+  [[nodiscard]] double farthest_pull() const {
+    constexpr double kRounding = 1.0 - 1e-6;
+    return kRounding * simplify - most_merging(margin, merge_tolerance());
+  }
+};
+
 struct CheckedMerge {
   std::optional<SurfaceMesh> surface;
   // With all merged, and points moved, nodes were on the wrong side: planes of the mesh lead through nodes, as nearly

@@ -5,12 +5,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
 #include "core/surface/contour.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {
+
+// How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
+[[nodiscard]] inline double farthest_source(const Lattice& lattice, double thickness) {
+  return thickness + lattice.least_spacing() / 4;
+}
 
 class SourceSettler {
  public:

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/distance/distance.h"
-#include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 #include "core/surface/cell_polygons.h"
@@ -24,6 +23,7 @@
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_beside_nodes.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_in_scale.h"
 #include "core/surface/thicken.h"
 #include "core/surface/triangle_normals.h"
 #include "core/surface/vertex_places.h"
@@ -119,11 +119,11 @@ class SurfaceMaker {
     };
     std::vector<Vec3> points(points_.size());
     std::ranges::transform(points_, points.begin(), &EdgePoint::position);
-    const double margin = margins.inner * inside_.lattice().largest_spacing();
+    const SurfaceBounds limits = bounds(margins);
     std::optional<SurfaceMesh> surface =
         surface_beside_nodes(mesh_, inside_, points,
                              {kNearCorner * margins.inner * inside_.lattice().least_spacing(),
-                              most_merging(margin, merge_tolerance()), most, options_.single_precision},
+                              most_merging(limits.margin, limits.merge_tolerance()), most, options_.single_precision},
                              merged_surface);
     if (!surface) return std::nullopt;
     FinishedSurface made{*std::move(surface)};
@@ -189,11 +189,11 @@ class SurfaceMaker {
   bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
-    CheckedMerge result =
-        checked_merge(surface, mesh_, inside_,
-                      {margins.inner, merge_tolerance(), options_.single_precision, kind == ContourCells::kPolygons},
-                      is_right_unmerged);
-    const double margin = margins.inner * inside_.lattice().largest_spacing();
+    CheckedMerge result = checked_merge(
+        surface, mesh_, inside_,
+        {margins.inner, bounds(margins).merge_tolerance(), options_.single_precision, kind == ContourCells::kPolygons},
+        is_right_unmerged);
+    const double margin = bounds(margins).margin;
     attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, mesh_, std::max(kOff * margin, tolerance_));
     if (result.surface) surface = *std::move(result.surface);
     attempt.faces = surface.sources.size();
@@ -210,25 +210,12 @@ class SurfaceMaker {
     return fill_corner_gaps(surface, mesh_, normals_, distance_, lattice, limits) || is_pulled;
   }
 
-  // How far a face may be from its source: a quarter of a voxel, and what the set has grown by.
-  static double farthest_source(const Lattice& lattice, double thickness) {
-    return thickness + lattice.least_spacing() / 4;
-  }
-
-  // How far apart numbers of one plane may be: where `simplify` is less, so that half of that is left for pulls.
-  [[nodiscard]] double merge_tolerance() const {
-    return options_.simplify > 0.0 ? std::min(tolerance_, options_.simplify / 4) : tolerance_;
-  }
-
-  // What is left of `simplify` for pulls, as merging has moved points already.
-  [[nodiscard]] double farthest_pull(const SurfaceMargins& margins) const {
-    constexpr double kMargin = 1.0 - 1e-6;
-    return kMargin * options_.simplify -
-           most_merging(margins.inner * inside_.lattice().largest_spacing(), merge_tolerance());
+  [[nodiscard]] SurfaceBounds bounds(const SurfaceMargins& margins) const {
+    return {margins.inner * inside_.lattice().largest_spacing(), tolerance_, options_.simplify};
   }
 
   void simplify_within_bound(FinishedSurface& made, const SurfaceMargins& margins) {
-    const double most = farthest_pull(margins);
+    const double most = bounds(margins).farthest_pull();
     made.bound_too_small = !(most > 0.0);
     if (!made.bound_too_small) enter("simplifying");
     made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside_, most, options_.rounds);
@@ -267,55 +254,6 @@ class SurfaceMaker {
   std::vector<EdgePoint> points_;
 };
 
-// What the surface is made of.
-struct SurfaceInput {
-  TriangleMesh mesh;
-  NodeSet inside;
-  SurfaceOptions options;
-
-  // Of each number `in_scale` makes another one. Whether none has lost a bit.
-  bool scale(const PowerOfTwo& in_scale) {
-    const PowerOfTwo back(-in_scale.exponent());
-    bool is_exact = true;
-    const auto scale_number = [&](double& number) {
-      const double scaled = in_scale(number);
-      is_exact = is_exact && (back(scaled) == number || !std::isfinite(number));  // as unused vertices may be
-      number = scaled;
-    };
-    const auto scale_vector = [&](Vec3& v) {
-      for (int axis = 0; axis < 3; ++axis) scale_number(v[axis]);
-    };
-    Lattice lattice = inside.lattice();
-    scale_vector(lattice.origin);
-    scale_vector(lattice.spacing);
-    inside = inside.on(lattice);
-    for (Vec3& v : mesh.vertices) scale_vector(v);
-    scale_number(options.thickness);
-    scale_number(options.simplify);
-    return is_exact;
-  }
-};
-
-// The surface by way of a lattice whose coordinates are near 1, where they are far from it: products of four lengths
-// and more would over- or underflow. None where that would cost a number bits.
-std::optional<FinishedSurface> surface_in_scale(const TriangleMesh& mesh, const NodeSet& inside,
-                                                const SurfaceOptions& options) {
-  constexpr int kFar = 64;  // floats do not get there
-  const int exponent = std::ilogb(largest_coordinate(inside.lattice()));
-  if (options.single_precision || std::abs(exponent) <= kFar) return std::nullopt;
-  SurfaceInput input{mesh, inside, options};
-  if (!input.scale(PowerOfTwo(-exponent))) return std::nullopt;
-  const WindingNumberEvaluator evaluator(input.mesh);
-  FinishedSurface finished = SurfaceMaker(input.mesh, evaluator, input.inside, input.options).make();
-  const PowerOfTwo back(exponent), in_scale(-exponent);
-  for (Vec3& v : finished.surface.mesh.vertices) {
-    const Vec3 scaled = v;
-    v = back(v);
-    if (in_scale(v) != scaled) return std::nullopt;
-  }
-  return finished;
-}
-
 }  // namespace
 
 // Fewer roundings are enough where more would be too much; but they keep less apart what must not meet.
@@ -340,7 +278,14 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
   }
   if (!(margin <= kMostOfFirst))
     throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
-  if (std::optional<FinishedSurface> surface = surface_in_scale(mesh, inside, options)) return *std::move(surface);
+  if (is_out_of_scale(inside.lattice(), options)) {
+    std::optional<FinishedSurface> surface =
+        made_in_scale(mesh, inside, options, [](auto& scaled, auto& nodes, auto& as) {
+          const WindingNumberEvaluator evaluator(scaled);
+          return SurfaceMaker(scaled, evaluator, nodes, as).make();
+        });
+    if (surface) return *std::move(surface);
+  }
   return SurfaceMaker(mesh, evaluators, inside, options).make();
 }
 

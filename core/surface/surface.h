@@ -30,6 +30,7 @@ struct FinishedSurface {
   // left faults still: the surface is the one before.
   bool merged = true, simplified = true;
   bool bound_too_small = false;  // why it is not simplified: `simplify` is within what rounding needs
+  bool holds_mesh = false;       // no point of the mesh is farther from it than merging moves
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.

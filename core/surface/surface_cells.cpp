@@ -46,6 +46,19 @@ std::uint64_t mixed_cells(const NodeSet& nodes) {
   return count;
 }
 
+void for_each_mixed_cell(const NodeSet& nodes, const std::function<void(const NodeSet::Node&)>& visit) {
+  const std::int64_t words = nodes.words_per_row();
+  for (std::int64_t k = 0; k + 1 < nodes.count(2); ++k) {
+    for (std::int64_t j = 0; j + 1 < nodes.count(1); ++j) {
+      const std::array rows = rows_around(nodes, j, k);
+      for (std::int64_t word = 0; word < words; ++word) {
+        for (std::uint64_t left = mixed_among(rows, word, words); left != 0; left &= left - 1)
+          visit({word * 64 + std::countr_zero(left), j, k});
+      }
+    }
+  }
+}
+
 // Places of cells and edges are the layer's own.
 struct SurfaceCells::Layer {
   std::vector<SurfaceCell> cells;

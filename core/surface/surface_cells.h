@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/surface/kuhn.h"
@@ -46,6 +47,9 @@ struct MixedEdge {
 // How many cells have nodes of both kinds: those that SurfaceCells would hold. Takes no memory, and little
 // time. Precondition: !nodes.reaches_border().
 [[nodiscard]] std::uint64_t mixed_cells(const NodeSet& nodes);
+
+// Calls visit(node) for the lowest node of each of them, in the order of their numbers. Likewise.
+void for_each_mixed_cell(const NodeSet& nodes, const std::function<void(const NodeSet::Node&)>& visit);
 
 // All cells with nodes of both kinds, in the order of their nodes, and the mixed edges of the Kuhn subdivision: those
 // of one cell after the other, by direction. An edge, a face or a tetrahedron with nodes of both kinds has its lowest

@@ -26,9 +26,10 @@ double area_of_triangle(const TriangleMesh& mesh, const Triangle& t) {
 }
 
 // The distance of a point from some point of a triangle: that below it, or the nearest by its barycentric coordinates.
-// Off by a few roundings of the coordinates.
+// Off by a few roundings of the coordinates, but 0 for a corner.
 double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {
   const Triangle& t = mesh.triangles[triangle];
+  if (p == mesh.vertices[t[0]] || p == mesh.vertices[t[1]] || p == mesh.vertices[t[2]]) return 0.0;
   const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a, from = p - a;
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), pu = dot(from, u), pv = dot(from, v);
   const double determinant = uu * vv - uv * uv;
@@ -40,7 +41,7 @@ double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const 
   return safe_norm(from - second * u - third * v);
 }
 
-// Of each vertex from the sources of its faces, at most; -1 where it has none. `enough`: no need to look for less.
+// Of each vertex from the sources of its faces, at most; 0 where it has none. `enough`: no need to look for less.
 std::vector<double> distances_from_sources(const SurfaceMesh& surface, const TriangleMesh& mesh, double enough) {
   constexpr std::size_t kFacesPerTask = 1024;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -59,7 +60,7 @@ std::vector<double> distances_from_sources(const SurfaceMesh& surface, const Tri
       }
     }
   });
-  std::ranges::replace(distances, kInfinity, -1.0);
+  std::ranges::replace(distances, kInfinity, 0.0);
   return distances;
 }
 
@@ -73,7 +74,7 @@ double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, co
   const std::vector<double> at_most = distances_from_sources(surface, mesh, rounding);
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t v = 0; v < at_most.size(); ++v) {
-    if (at_most[v] >= 0.0) waiting.push_back(v);
+    if (at_most[v] > 0.0) waiting.push_back(v);
   }
   if (waiting.empty()) return 0.0;
   const DistanceEvaluator evaluator(mesh);
@@ -166,21 +167,26 @@ class MissedSamples {
 
 }  // namespace
 
-SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, DroppedSamples& dropped) {
+SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;
-  measures.max_distance = largest_distance(surface, mesh, dropped.inside().lattice());
+  measures.max_distance = largest_distance(surface, mesh, lattice);
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
     if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
   }
+  return measures;
+}
+
+DroppedArea dropped_area(const TriangleMesh& mesh, DroppedSamples& dropped) {
+  DroppedArea result;
   double area = 0.0;  // in squares of a step
   dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
     for (std::size_t n = 0; n < is_dropped.size(); ++n) area += is_dropped[n] ? samples.areas[n] : 0.0;
-    measures.dropped_samples += static_cast<std::uint64_t>(std::ranges::count(is_dropped, true));
+    result.samples += static_cast<std::uint64_t>(std::ranges::count(is_dropped, true));
   });
-  measures.dropped_area = area * dropped.step() * dropped.step();
-  measures.drops = area > 0.0;
-  return measures;
+  result.area = area * dropped.step() * dropped.step();
+  result.is_some = area > 0.0;
+  return result;
 }
 
 ThinParts thin_parts(const TriangleMesh& mesh, const RuleAlong& rule, DroppedSamples& dropped) {

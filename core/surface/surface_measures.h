@@ -14,12 +14,15 @@ struct SurfaceMeasures {
   std::uint64_t components = 0;  // sets of faces that are joined through vertices
   double max_distance = 0.0;     // of vertices of faces with a source from the mesh, world units
   double hole_area = 0.0;        // of faces without a source
-  // Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
-  // set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most. It separates nothing, or is of
-  // parts thinner than the lattice sees.
-  double dropped_area = 0.0;
-  std::uint64_t dropped_samples = 0;  // how many of these points are
-  bool drops = false;                 // whether there is such area, even if world units make it 0 or infinite
+};
+
+// Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
+// set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most. It separates nothing, or is of
+// parts thinner than the lattice sees.
+struct DroppedArea {
+  double area = 0.0;
+  std::uint64_t samples = 0;  // how many of these points are dropped
+  bool is_some = false;       // whether there is such area, even if world units make it 0 or infinite
 };
 
 // What a lattice is too coarse for.
@@ -29,9 +32,11 @@ struct ThinParts {
   std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
-// `dropped`: of the surface.
+// `lattice`: around the surface.
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,
-                                              DroppedSamples& dropped);
+                                              const Lattice& lattice);
+
+[[nodiscard]] DroppedArea dropped_area(const TriangleMesh& mesh, DroppedSamples& dropped);
 
 // Of a surface that drops area. A point of that separates where the rule differs a margin before and behind the
 // triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is outside of the

@@ -23,10 +23,13 @@ MadeSurface made(const SurfaceOptions& options) {
   return make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory);
 }
 
+// Two that pass through each other, so that they need a contour.
+TriangleMesh spheres() { return weld(joined(sphere(8), moved(sphere(8), {0.5, 0.5, 0.5}, {0.6, 0.0, 0.0})), {}); }
+
 // With the number, once the nodes are known, and before any other work. Half of what is predicted is too little; what
-// is predicted does.
+// is predicted does. A mesh that is its own surface needs less.
 TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
-  const TriangleMesh mesh = weld(sphere(8), {});
+  const TriangleMesh mesh = spheres();
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.025, 0.025, 0.025}, {0, 0, 0}, {101, 101, 101}};
   const WindingNumberEvaluator evaluator(mesh);
   const double predicted = surface_bytes(nodes_inside(evaluator, Rule{}, lattice), mesh.triangles.size());
@@ -34,18 +37,19 @@ TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
   int stages = 0;
   SurfaceOptions options;
   options.at_stage = [&](const char*) { ++stages; };
-  const auto make = [&](double share) {
-    return make_surface("m", mesh, exterior_edges(mesh), lattice, options,
+  const auto make = [&](double share, const TriangleMesh& of) {
+    return make_surface("m", of, exterior_edges(of), lattice, options,
                         static_cast<std::uint64_t>(memory_in_use() + share * predicted));
   };
   try {
-    make(0.5);
+    make(0.5, mesh);
     FAIL();
   } catch (const LimitError& error) {
     EXPECT_NE(std::string(error.what()).find("m: needs about "), std::string::npos) << error.what();
   }
-  EXPECT_EQ(stages, 0);
-  EXPECT_GT(make(1.1).report.faces, 0U);
+  EXPECT_EQ(stages, 1);  // a look at the mesh itself
+  EXPECT_GT(make(1.1, mesh).report.faces, 0U);
+  EXPECT_EQ(make(0.5, weld(sphere(8), {})).report.faces, 224U);
 }
 
 TEST(MakeSurface, TellsThatNothingIsSimplified) {
@@ -65,6 +69,10 @@ TEST(MakeSurface, TellsThatNothingIsSimplified) {
 
 TEST(MakeSurface, TellsThatADistanceIsTooSmallToSimplify) {
   SurfaceOptions options;
+  const auto made = [&](const SurfaceOptions& as) {
+    const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
+    return make_surface("m", spheres(), exterior_edges(spheres()), lattice, as, kAllMemory);
+  };
   options.simplify = 1e-9;  // 16 margins of 2^-30 voxels of 0.25 are 3.7e-9
   const MadeSurface left = made(options);
   ASSERT_EQ(left.warnings.size(), 1U);

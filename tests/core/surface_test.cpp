@@ -1262,9 +1262,9 @@ TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
   EXPECT_NEAR(of_surface[0], 0.0, 1e-12);
 }
 
-SurfaceMeasures measured(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
+DroppedArea dropped_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
   DroppedSamples dropped(surface, inside, 0.0);
-  return measure_surface(surface, mesh, dropped);
+  return dropped_area(mesh, dropped);
 }
 
 TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
@@ -1281,7 +1281,7 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
   const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
   EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-  EXPECT_GT(measured(surface, mesh, inside).hole_area, 0.0);
+  EXPECT_GT(measure_surface(surface, mesh, lattice).hole_area, 0.0);
 }
 
 TEST(Surface, InSinglePrecisionIsRightThere) {
@@ -1332,10 +1332,10 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   wall.triangles.push_back({first, first + 1, first + 2});
   const auto [surface, lattice] = surface_of(box, 20);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
-  EXPECT_NEAR(measured(surface, wall, inside).dropped_area, 0.18, 1e-12);
-  EXPECT_EQ(measured(surface, box, inside).dropped_area, 0.0);
-  EXPECT_TRUE(measured(surface, wall, inside).drops);
-  EXPECT_FALSE(measured(surface, box, inside).drops);
+  EXPECT_NEAR(dropped_of(surface, wall, inside).area, 0.18, 1e-12);
+  EXPECT_EQ(dropped_of(surface, box, inside).area, 0.0);
+  EXPECT_TRUE(dropped_of(surface, wall, inside).is_some);
+  EXPECT_FALSE(dropped_of(surface, box, inside).is_some);
 }
 
 // A triangle as one, and as a fan of needles, has the same area.
@@ -1351,7 +1351,7 @@ TEST(SurfaceMeasures, AddUpNeedles) {
   }
   const auto [surface, lattice] = surface_of(box, 20);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
-  EXPECT_NEAR(measured(surface, needles, inside).dropped_area, 0.18, 1e-12);  // a sum of some thousand parts
+  EXPECT_NEAR(dropped_of(surface, needles, inside).area, 0.18, 1e-12);  // a sum of some thousand parts
 }
 
 // They find most distances without a search.
@@ -1369,8 +1369,7 @@ TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
       if (surface.sources[i] == kHole) continue;
       for (const std::uint32_t corner : surface.mesh.triangles[i]) points.push_back(surface.mesh.vertices[corner]);
     }
-    const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-    EXPECT_EQ(measured(surface, mesh, inside).max_distance, largest_distance_of(points, mesh)) << round;
+    EXPECT_EQ(measure_surface(surface, mesh, lattice).max_distance, largest_distance_of(points, mesh)) << round;
   }
 }
 

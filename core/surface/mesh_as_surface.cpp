@@ -1,0 +1,129 @@
+#include "core/surface/mesh_as_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/distance/distance.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/volume_sign.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/components.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/surface/certificate.h"
+#include "core/surface/checked_merge.h"
+#include "core/surface/checked_simplify.h"
+#include "core/surface/face_points.h"
+#include "core/surface/face_sources.h"
+#include "core/surface/fault_places.h"
+#include "core/surface/seen_by_nodes.h"
+#include "core/surface/source_plane.h"
+#include "core/surface/surface_cells.h"
+#include "core/surface/surface_in_scale.h"
+#include "core/surface/triangle_normals.h"
+
+namespace raycone {
+namespace {
+
+using Parts = std::vector<std::vector<Triangle>>;  // of each component its triangles
+
+Parts parts_of(const TriangleMesh& mesh) {
+  const Components components = components_of(mesh);
+  Parts parts(components.count);
+  for (const Triangle& t : mesh.triangles) parts[components.of_vertex[t[0]]].push_back(t);
+  return parts;
+}
+
+// The vertex that is the last one by x, then y, then z.
+Vec3 last_vertex(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices) {
+  const auto is_before = [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  Vec3 last = vertices[triangles.front()[0]];
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) last = std::max(last, vertices[v], is_before);
+  }
+  return last;
+}
+
+// The winding numbers around each component. A sample at its last vertex counts as moved to where nothing else of the
+// component is, so it is outside of it: its winding number is what the others make of it.
+std::vector<double> winding_numbers_around(const Parts& components, const TriangleMesh& mesh) {
+  std::vector<double> around(components.size(), 0.0);
+  if (components.size() == 1) return around;  // there are no others
+  std::vector<Vec3> points(components.size());
+  std::ranges::transform(components, points.begin(),
+                         [&](const std::vector<Triangle>& part) { return last_vertex(part, mesh.vertices); });
+  const std::vector<ExteriorEdge> none;
+  WindingNumberEvaluator(mesh, {.edges = &none}).evaluate(points, around);
+  return around;
+}
+
+// Whether the winding number is 0 or 1 everywhere: around each component that faces outward it is 0, around each cavity
+// 1. Precondition: the mesh is closed and free of self-intersections.
+bool is_solid(const TriangleMesh& mesh) {
+  const Parts parts = parts_of(mesh);
+  const std::vector<double> around = winding_numbers_around(parts, mesh);
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    const int sign = volume_sign(parts[n], mesh.vertices);
+    if (sign == 0 || around[n] != (sign > 0 ? 0.0 : 1.0)) return false;
+  }
+  return true;
+}
+
+// Without vertices that no triangle uses.
+SurfaceMesh surface_of(const TriangleMesh& mesh) {
+  SurfaceMesh surface{used_part(mesh.vertices, mesh.triangles), std::vector<std::int32_t>(mesh.triangles.size())};
+  std::iota(surface.sources.begin(), surface.sources.end(), 0);
+  return surface;
+}
+
+// Of such a surface: whether it could be merged. The one that is returned has been checked, as all of them are.
+bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const MergeOptions& options) {
+  CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, [] { return true; });
+  made.merged = merged.surface.has_value();
+  if (!made.merged) return faults_of(made.surface.mesh, inside).none();
+  made.surface = *std::move(merged.surface);
+  return true;
+}
+
+void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, double most, int rounds) {
+  made.bound_too_small = !(most > 0.0);
+  made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside, most, rounds);
+  if (!made.simplified) return;
+  const TriangleNormals normals(mesh);
+  const DistanceEvaluator distance(mesh);
+  SourceSettler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0)).settle(made.surface);
+}
+
+std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSet& inside,
+                                          const SurfaceOptions& options) {
+  if (!are_seen_by(inside, parts_of(mesh), mesh.vertices)) return std::nullopt;
+  FinishedSurface made{surface_of(mesh)};
+  if (options.single_precision) round_to_float(made.surface.mesh.vertices);
+  if (!is_closed_and_embedded(made.surface.mesh) || !is_solid(made.surface.mesh)) return std::nullopt;
+  constexpr double kMargin = 0.0;  // no point is kept off nodes
+  const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
+  if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
+  made.holds_mesh = !(options.simplify > 0.0);
+  if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options.rounds);
+  return made;
+}
+
+}  // namespace
+
+std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
+                                               const SurfaceOptions& options) {
+  const DefaultFloatingPoint guard;
+  constexpr std::uint64_t kPerCell = 8;  // as many as a contour has there before its faces are merged
+  if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
+  if (mesh.triangles.size() > kPerCell * mixed_cells(inside)) return std::nullopt;
+  if (options.at_stage) options.at_stage("looking at the mesh itself");
+  return is_out_of_scale(inside.lattice(), options) ? made_in_scale(mesh, inside, options, whole_mesh)
+                                                    : whole_mesh(mesh, inside, options);
+}
+
+}  // namespace raycone

@@ -1,0 +1,65 @@
+#include "core/surface/surface_in_scale.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "core/exact/scale.h"
+
+namespace raycone {
+namespace {
+
+int exponent_of(const Lattice& lattice) { return std::ilogb(largest_coordinate(lattice)); }
+
+// What the surface is made of.
+struct SurfaceInput {
+  TriangleMesh mesh;
+  NodeSet inside;
+  SurfaceOptions options;
+
+  // Of each number `in_scale` makes another one. Whether none has lost a bit.
+  bool scale(const PowerOfTwo& in_scale) {
+    const PowerOfTwo back(-in_scale.exponent());
+    bool is_exact = true;
+    const auto scale_number = [&](double& number) {
+      const double scaled = in_scale(number);
+      is_exact = is_exact && (back(scaled) == number || !std::isfinite(number));  // as unused vertices may be
+      number = scaled;
+    };
+    const auto scale_vector = [&](Vec3& v) {
+      for (int axis = 0; axis < 3; ++axis) scale_number(v[axis]);
+    };
+    Lattice lattice = inside.lattice();
+    scale_vector(lattice.origin);
+    scale_vector(lattice.spacing);
+    inside = inside.on(lattice);
+    for (Vec3& v : mesh.vertices) scale_vector(v);
+    scale_number(options.thickness);
+    scale_number(options.simplify);
+    return is_exact;
+  }
+};
+
+}  // namespace
+
+bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options) {
+  constexpr int kFar = 64;  // powers of two from 1
+  return !options.single_precision && std::abs(exponent_of(lattice)) > kFar;
+}
+
+std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const NodeSet& inside,
+                                             const SurfaceOptions& options, const SurfaceOf& make) {
+  const int exponent = exponent_of(inside.lattice());
+  const PowerOfTwo back(exponent), in_scale(-exponent);
+  SurfaceInput input{mesh, inside, options};
+  if (!input.scale(in_scale)) return std::nullopt;
+  std::optional<FinishedSurface> finished = make(input.mesh, input.inside, input.options);
+  if (!finished) return std::nullopt;
+  for (Vec3& v : finished->surface.mesh.vertices) {
+    const Vec3 scaled = v;
+    v = back(v);
+    if (in_scale(v) != scaled) return std::nullopt;
+  }
+  return finished;
+}
+
+}  // namespace raycone

@@ -1,0 +1,301 @@
+#include "core/surface/mesh_as_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "core/distance/distance.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
+#include "core/surface/certificate.h"
+#include "core/surface/seen_by_nodes.h"
+#include "core/surface/source_plane.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+// By no angle that makes coordinates agree.
+TriangleMesh turned(TriangleMesh mesh) {
+  const double c = std::cos(0.7), s = std::sin(0.7), d = std::cos(1.1), e = std::sin(1.1);
+  for (Vec3& v : mesh.vertices) {
+    v = {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+    v = {v.x, d * v.y - e * v.z, e * v.y + d * v.z};
+  }
+  return mesh;
+}
+
+// About that many samples along the longest side, half a voxel from the box of the mesh, and a layer around.
+Lattice lattice_around(const TriangleMesh& mesh, double side) {
+  const Box box = bounding_box(mesh);
+  const Vec3 size = box.upper - box.lower;
+  const double h = std::max({size.x, size.y, size.z}) / side;
+  Lattice lattice{box.lower - Vec3{h / 2, h / 2, h / 2}, {h, h, h}, {-1, -1, -1}, {}};
+  for (int axis = 0; axis < 3; ++axis)
+    lattice.counts[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::ceil(size[axis] / h)) + 5;
+  return lattice;
+}
+
+NodeSet nodes_of(const TriangleMesh& mesh, double side, const Rule& rule = {}) {
+  return nodes_inside(WindingNumberEvaluator(mesh), rule, lattice_around(mesh, side));
+}
+
+// Of the mesh, with what it must be where there is one.
+std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const SurfaceOptions& options = {}) {
+  const NodeSet inside = nodes_of(mesh, side, options.rule);
+  EXPECT_FALSE(inside.empty());
+  EXPECT_FALSE(inside.reaches_border());
+  std::optional<FinishedSurface> made = mesh_as_surface(mesh, inside, options);
+  if (made) {
+    EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+    EXPECT_EQ(made->surface.sources.size(), made->surface.mesh.triangles.size());
+  }
+  return made;
+}
+
+std::vector<Vec3> sorted_vertices(const TriangleMesh& mesh) {
+  std::vector<Vec3> vertices = mesh.vertices;
+  std::ranges::sort(vertices, {}, [](const Vec3& v) { return std::tuple(v.x, v.y, v.z); });
+  return vertices;
+}
+
+// An upright prism over a polygon that is star-shaped from its first corner, counter-clockwise.
+TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, double height) {
+  const auto n = static_cast<std::uint32_t>(corners.size());
+  TriangleMesh mesh;
+  for (const double z : {0.0, height}) {
+    for (const auto& [x, y] : corners) mesh.vertices.push_back({x, y, z});
+  }
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    mesh.triangles.push_back({0, i + 1, i});
+    mesh.triangles.push_back({n, n + i, n + i + 1});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t next = (i + 1) % n;
+    mesh.triangles.push_back({i, next, n + next});
+    mesh.triangles.push_back({i, n + next, n + i});
+  }
+  return mesh;
+}
+
+TriangleMesh blade(double degrees) {
+  const double half = std::tan(degrees / 360.0 * std::numbers::pi);
+  return prism({{0.0, 0.0}, {1.0, -half}, {1.0, half}}, 1.0);
+}
+
+// A block with a fin of this thickness and length; the block is 1 by 1 by 1.
+TriangleMesh finned(double thickness, double length) {
+  return prism({{0.0, 0.0}, {1.0 + length, 0.0}, {1.0 + length, thickness}, {1.0, thickness}, {1.0, 1.0}, {0.0, 1.0}},
+               1.0);
+}
+
+TriangleMesh box_at(double x, double size, bool outward = true) {
+  const TriangleMesh box = test::box_mesh({x, 0.3, 0.4}, {x + size, 0.3 + size, 0.4 + size});
+  return outward ? box : test::reversed(box);
+}
+
+TEST(MeshAsSurface, IsTheMeshWhereThatIsASolid) {
+  const TriangleMesh cavity = test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), box_at(0.2, 0.4, false));
+  for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 2, 3}), weld(test::sphere(6), {}), blade(60), blade(5),
+                                   cavity, test::joined(box_at(0, 0.5), box_at(0.6, 0.3))}) {
+    for (const double side : {13.0, 40.7}) {
+      const std::optional<FinishedSurface> made = kept(turned(mesh), side);
+      ASSERT_TRUE(made);
+      EXPECT_TRUE(made->holds_mesh);
+      EXPECT_TRUE(made->merged);
+      EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(turned(mesh)));
+    }
+  }
+}
+
+// Samples are on faces then, and edges, and corners.
+TEST(MeshAsSurface, HasSamplesOnItsFacesOnTheirSides) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const TriangleMesh box = test::box_mesh({0, 0, 0}, {4, 4, 4});
+    const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {-2, -2, -2}, {9, 9, 9}};
+    const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+    EXPECT_EQ(inside.size(), 64U);
+    EXPECT_TRUE(mesh_as_surface(box, inside, {}));
+  }
+}
+
+TEST(MeshAsSurface, MergesFacesOfAPlane) {
+  std::vector<std::array<int, 3>> cells;
+  for (int n = 0; n < 27; ++n) cells.push_back({n % 3, n / 3 % 3, n / 9});
+  const TriangleMesh box = test::cells_mesh(cells);
+  EXPECT_GT(box.triangles.size(), 50U);
+  const std::optional<FinishedSurface> made = kept(turned(box), 30);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->surface.mesh.triangles.size(), 12U);
+  for (std::size_t face = 0; face < 12; ++face) {
+    const SourcePlane plane = source_plane(turned(box), made->surface.sources[face]);
+    for (const std::uint32_t v : made->surface.mesh.triangles[face])
+      EXPECT_LT(std::abs(plane.height(made->surface.mesh.vertices[v])), 4e-15);  // some roundings of 4
+  }
+}
+
+TEST(MeshAsSurface, IsNoneOfWhatIsNoSolid) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto is_kept = [](const TriangleMesh& mesh, const Rule& rule = {}) {
+    return kept(turned(mesh), 20, {.rule = rule}).has_value();
+  };
+  EXPECT_TRUE(is_kept(box));
+  EXPECT_FALSE(is_kept(test::open_box()));
+  EXPECT_FALSE(is_kept(test::joined(box, box_at(0.2, 0.4))));        // twice inside
+  EXPECT_FALSE(is_kept(test::joined(box, box_at(0.5, 0.7))));        // passes through itself
+  EXPECT_FALSE(is_kept(test::reversed(box), {RuleKind::kNonzero}));  // inside out
+  EXPECT_FALSE(is_kept(test::joined(box, box_at(1.5, 0.4, false)), {RuleKind::kNonzero}));
+  EXPECT_FALSE(is_kept(test::cells_mesh({{0, 0, 0}, {1, 1, 0}})));                 // two blocks that share an edge
+  EXPECT_FALSE(is_kept(test::joined(box, test::box_mesh({1, 0, 0}, {2, 1, 1}))));  // and a side
+  TriangleMesh split = box;                                                        // a face of no area at an edge
+  const Triangle first = split.triangles[0];
+  split.vertices.push_back(0.5 * (split.vertices[first[0]] + split.vertices[first[1]]));
+  const auto middle = static_cast<std::uint32_t>(split.vertices.size() - 1);
+  split.triangles[0] = {first[0], middle, first[2]};
+  split.triangles.push_back({middle, first[1], first[2]});
+  split.triangles.push_back({first[0], first[1], middle});
+  EXPECT_EQ(exterior_edges(split).size(), 0U);
+  EXPECT_FALSE(is_kept(split));
+}
+
+// A bubble so small that no sample is in it, but next to the side of the box, so that cells there are of both kinds.
+TEST(MeshAsSurface, LooksIntoComponentsWithoutSamples) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  for (const bool outward : {false, true}) {
+    for (const double x : {0.9996, 1.0001}) {
+      const TriangleMesh mesh = turned(test::joined(box, box_at(x, 0.0003, outward)));
+      EXPECT_EQ(nodes_of(mesh, 20).size(), nodes_of(turned(box), 20).size());
+      const bool is_solid = outward == (x > 1.0);
+      EXPECT_EQ(kept(mesh, 20).has_value(), is_solid) << outward << ' ' << x;
+    }
+  }
+}
+
+TEST(MeshAsSurface, IsNoneWithOtherNodes) {
+  const TriangleMesh box = turned(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  NodeSet inside = nodes_of(box, 12);
+  ASSERT_TRUE(mesh_as_surface(box, inside, {}));
+  NodeSet one(inside.lattice());
+  one.insert(2, 2, 2);
+  inside.flip(one);
+  EXPECT_FALSE(mesh_as_surface(box, inside, {}));
+}
+
+TEST(MeshAsSurface, IsNoneOfWhatTheLatticeDoesNotSee) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const double voxel = 1.0 / 16.0;
+  // `samples`: along z. Those of a plate that is 0.6 voxels thick lie before and behind it, or within.
+  const auto with_plate = [&](double samples, double gap) {
+    return test::joined(box, test::box_mesh({0, 0, 1.0 + gap * voxel}, {1, 1, samples * voxel}));
+  };
+  EXPECT_TRUE(kept(with_plate(20.8, 4.2), 20.8));
+  EXPECT_FALSE(kept(with_plate(21.2, 4.6), 21.2));
+  EXPECT_FALSE(kept(with_plate(18.2, 1.6), 18.2));  // near, but in no cell with both
+  const auto fin = [&](double voxels) { return finned(0.3 * voxel, voxels * voxel); };
+  EXPECT_TRUE(kept(fin(3.9), 16.0 + 3.9));
+  EXPECT_FALSE(kept(fin(12.1), 16.0 + 12.1));
+}
+
+TEST(MeshAsSurface, IsNoneOfFineMeshes) {
+  const TriangleMesh fine = weld(test::sphere(40), {});
+  EXPECT_FALSE(kept(fine, 8));
+  EXPECT_TRUE(kept(fine, 40));
+}
+
+TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {
+  const TriangleMesh ball = weld(test::sphere(6), {});
+  EXPECT_FALSE(kept(ball, 20, {.rule = {}, .thickness = 0.01}));
+  EXPECT_FALSE(kept(ball, 20, {.rule = {}, .merge_planes = false}));
+}
+
+TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
+  const TriangleMesh ball = weld(test::sphere(6), {});
+  const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .single_precision = true});
+  ASSERT_TRUE(made);
+  TriangleMesh rounded = ball;
+  round_to_float(rounded.vertices);
+  EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(rounded));
+  // Where floats are a tenth of a unit apart, vertices meet.
+  const TriangleMesh far = test::moved(ball, {1, 1, 1}, {1e6, 0, 0});
+  EXPECT_FALSE(kept(far, 20, {.rule = {}, .single_precision = true}));
+  EXPECT_TRUE(kept(far, 20));
+  // A contour is refused so far from the origin; floats that are those of the mesh need no margin.
+  const TriangleMesh whole = test::box_mesh({1e7, 0, 0}, {1e7 + 64, 64, 64});
+  EXPECT_TRUE(kept(whole, 200, {.rule = {}, .single_precision = true}));
+}
+
+TEST(MeshAsSurface, IsSimplified) {
+  const TriangleMesh ball = weld(test::sphere(16), {});
+  SurfaceOptions options;
+  options.simplify = 0.02;
+  const std::optional<FinishedSurface> made = kept(ball, 40, options);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->simplified);
+  EXPECT_FALSE(made->holds_mesh);
+  EXPECT_LT(made->surface.mesh.triangles.size(), ball.triangles.size() - 50);
+  std::vector<double> distances(ball.vertices.size());
+  DistanceEvaluator(made->surface.mesh).evaluate(ball.vertices, distances);
+  EXPECT_LE(std::ranges::max(distances), 0.02);
+  EXPECT_GT(std::ranges::max(distances), 0.001);  // else nothing has been simplified
+  options.simplify = 1e-20;
+  const std::optional<FinishedSurface> left = kept(ball, 40, options);
+  ASSERT_TRUE(left);
+  EXPECT_TRUE(left->bound_too_small || left->simplified);
+  EXPECT_EQ(left->surface.mesh.triangles.size(), ball.triangles.size());
+}
+
+TEST(MeshAsSurface, IsTheSameInEveryUnitOfLength) {
+  const TriangleMesh mesh = turned(test::joined(finned(0.3, 0.4), box_at(1.6, 0.4)));
+  SurfaceOptions options;
+  options.simplify = 0.01;
+  const std::optional<FinishedSurface> expected = kept(mesh, 40, options);
+  ASSERT_TRUE(expected);
+  for (const int exponent : {-900, -70, 70, 900}) {
+    const double unit = std::ldexp(1.0, exponent);
+    options.simplify = 0.01 * unit;
+    const std::optional<FinishedSurface> made = kept(test::moved(mesh, {unit, unit, unit}, {}), 40, options);
+    ASSERT_TRUE(made) << exponent;
+    EXPECT_EQ(made->surface.mesh.triangles, expected->surface.mesh.triangles) << exponent;
+  }
+}
+
+// What is judged at parts of triangles, at all places of a lattice.
+TEST(SeenByNodes, TellsHowFarTrianglesAreFromNodesOfBothKinds) {
+  const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {30, 30, 30}};
+  NodeSet inside(lattice);
+  inside.insert(15, 15, 15);
+  const auto is_seen = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return are_seen_by(inside, {{{0, 1, 2}}}, {a, b, c});
+  };
+  const Vec3 at{15, 15, 15};
+  for (double far = 0.0; far < 14.0; far += 0.5) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        Vec3 to = at;
+        to[axis] += sign * far;
+        const Vec3 beside = to + Vec3{0.1, 0.1, 0.1};
+        const bool seen = is_seen(at, to, beside);
+        if (far <= 4.0) {
+          EXPECT_TRUE(seen) << far << ' ' << axis;
+        }
+        if (far >= 11.0) {  // eight and a cell, and half of a part
+          EXPECT_FALSE(seen) << far << ' ' << axis;
+        }
+      }
+    }
+  }
+  EXPECT_FALSE(is_seen({17.5, 15, 15}, {18, 15, 15}, {17.5, 16, 15}));  // near, but in no such cell
+  EXPECT_TRUE(is_seen({16.5, 15, 15}, {15.5, 15, 15}, {15.5, 16, 15}));
+  for (const double beyond : {-1e-9, 29.001, 1e300})
+    EXPECT_FALSE(is_seen(at, {15, beyond, 15}, {16, 15, 15})) << beyond;
+}
+
+}  // namespace
+}  // namespace raycone

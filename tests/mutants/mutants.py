@@ -92,7 +92,7 @@ MUTANTS = [
     Mutant("cap_areas_vanish", "squares of areas underflow", [
         ("core/boundary/change_bound.cpp", "safe_norm(normal)", "norm(normal)")]),
     Mutant("surfaces_unscaled", "products of areas overflow far from 1", [
-        ("core/surface/surface.cpp", "std::abs(exponent) <= kFar", "true || std::abs(exponent) <= kFar")]),
+        ("core/surface/surface_in_scale.cpp", "> kFar", "> 64 * kFar")]),
     Mutant("boxes_without_slack", "Embree drops boxes whose face contains the ray, unless enlarged", [
         ("core/crossings/ray_caster.cpp", "kSlack = 4.0F * 0x1p-23F", "kSlack = 0.0F")]),
     Mutant("no_floating_point_guard", "predicates need gradual underflow, whatever the caller has set", [
@@ -604,6 +604,15 @@ MUTANTS = [
          "return dot(label.plane.normal, plane.normal) != 0.0 &&")]),
     Mutant("faulty_fills_come_again", "where a fill has faults, the next one is tried", [
         ("core/surface/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
+    Mutant("bubbles_in_solids", "a mesh is no solid where a component is inside of another one, or inside out", [
+        ("core/surface/mesh_as_surface.cpp", "sign == 0 || around[n] != (sign > 0 ? 0.0 : 1.0)", "sign == 0")]),
+    Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
+        ("core/surface/mesh_as_surface.cpp", "  if (options.single_precision) round_to_float(made.surface.mesh.vertices);\n",
+         "")]),
+    Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
+        ("core/surface/seen_by_nodes.cpp", "unseen > 0 || !mixed.are_met_by(component, vertices)", "unseen > 0")]),
+    Mutant("far_parts_kept", "no part of a mesh may be far from nodes of both kinds", [
+        ("core/surface/seen_by_nodes.cpp", "unseen > 0 || !mixed", "unseen > component.size() || !mixed")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

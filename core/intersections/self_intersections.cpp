@@ -398,13 +398,13 @@ SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order
   return {pairs, pair_at(tree, first), {marked.begin(), marked.end()}};
 }
 
-std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh) {
+std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh, const std::vector<std::uint8_t>* graphs) {
   const PairTree tree(mesh, SearchOrder::kRuns);
   std::mutex mutex;
   Places first;
   std::atomic<std::size_t> first_place{first.place};
   parallel_for(tree.runs(), kGrain, [&](std::size_t begin, std::size_t end) {
-    PairMeeting meet(tree);
+    PairMeeting meet(tree, graphs);
     std::vector<std::size_t> runs;
     // A thread that is ahead of the first pair stops there; one behind it goes on, for there may be an earlier one.
     for (std::size_t run = begin; run < end && run * kWidth < first_place; ++run) {

@@ -36,7 +36,8 @@ enum class SearchOrder {
                                                    const std::vector<std::uint8_t>* graphs = nullptr,
                                                    const std::vector<std::uint8_t>* of = nullptr);
 
-// The `first` of these pairs alone. The search ends with it.
-[[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh);
+// The `first` of these pairs alone, in runs. The search ends with it.
+[[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh,
+                                                                  const std::vector<std::uint8_t>* graphs = nullptr);
 
 }  // namespace raycone

@@ -261,8 +261,9 @@ LatticeBlock rows_at(const Box& box, const Lattice& lattice) {
 }  // namespace
 
 bool is_closed_and_embedded(const TriangleMesh& mesh) {
-  return fans_of(mesh).count_of_wrong() == 0 && degenerate_faces(mesh) == 0 && equal_vertices(mesh.vertices) == 0 &&
-         !first_self_intersection(mesh);
+  const Fans fans = fans_of(mesh);
+  return fans.count_of_wrong() == 0 && degenerate_faces(mesh) == 0 && equal_vertices(mesh.vertices) == 0 &&
+         !first_self_intersection(mesh, &fans.graphs);
 }
 
 NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const std::vector<ExteriorEdge>* edges) {

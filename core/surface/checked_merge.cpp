@@ -58,6 +58,7 @@ class CheckedMerger {
     kept_ = KeptVertices(surface_);
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most, kNearCorner * unit_});
     RepeatedCheck check(inside_, vertices.size());
+    if (options_.is_right) check.remember_whole(surface_);
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     moves_ = PointMoves::kNone;

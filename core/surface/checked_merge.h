@@ -50,6 +50,7 @@ struct MergeOptions {
   double tolerance = 0.0;         // how far apart numbers of one plane may be, world units (plane_tolerance())
   bool single_precision = false;  // vertices are floats, and stay so
   bool once = false;              // not again within less, as who calls can make another surface
+  bool is_right = false;          // the surface is known to have no faults, but perhaps nodes on the wrong side
 };
 
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more

@@ -81,11 +81,12 @@ SurfaceMesh surface_of(const TriangleMesh& mesh) {
   return surface;
 }
 
-// Of such a surface: whether it could be merged. The one that is returned has been checked, as all of them are.
-bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const MergeOptions& options) {
+// Of a surface without faults, but perhaps with nodes on the wrong side: whether it has none. Merged, if it could be.
+bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, MergeOptions options) {
+  options.is_right = true;
   CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, [] { return true; });
   made.merged = merged.surface.has_value();
-  if (!made.merged) return faults_of(made.surface.mesh, inside).none();
+  if (!made.merged) return misplaced_nodes(made.surface.mesh, inside).empty();
   made.surface = *std::move(merged.surface);
   return true;
 }

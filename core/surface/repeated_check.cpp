@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "core/mesh/exterior_edges.h"
@@ -19,6 +20,15 @@ SurfaceFaults RepeatedCheck::faults(const MergedFaces& merged, const TriangleMes
   misplaced = misplaced_nodes(mesh, inside_, faults.links > 0 ? nullptr : &none);
   faults.nodes = misplaced.size();
   return faults;
+}
+
+void RepeatedCheck::remember_whole(const SurfaceMesh& surface) {
+  is_known_ = true;
+  faces_.resize(surface.sources.size());
+  std::iota(faces_.begin(), faces_.end(), 0U);
+  triangles_ = surface.mesh.triangles;
+  mesh_ = surface.mesh;
+  faulty_.assign(faces_.size(), false);
 }
 
 void RepeatedCheck::remember(const MergedFaces& merged, const TriangleMesh& mesh, const SurfaceFaults& faults) {

@@ -20,6 +20,9 @@ class RepeatedCheck {
   // What faults_of() says of a mesh. Faces that were in the last one, with corners of the same numbers in the same
   // places, are looked at with new ones only, unless they had faults. `merged`: the faces of the mesh, in its order.
   [[nodiscard]] SurfaceFaults faults(const MergedFaces& merged, const TriangleMesh& mesh, NodeSet& misplaced) const;
+  // Makes a surface the last one whose faces and vertices are all numbered as they are. It has no faults, but perhaps
+  // nodes on the wrong side.
+  void remember_whole(const SurfaceMesh& surface);
   // Makes it the last one.
   void remember(const MergedFaces& merged, const TriangleMesh& mesh, const SurfaceFaults& faults);
 

@@ -1,10 +1,10 @@
 """Measures how well surfaces keep sharp edges, and prints a table of docs/surfaces.md.
 
-usage: python3 tests/surfaces/sharp_edges.py RAYCONE [--resolution N] [--rotations R] [MESH.stl...]
+usage: python3 tests/surfaces/sharp_edges.py RAYCONE [--resolution N] [--rotations R] [--contour] [MESH.stl...]
 
-A cube, a wedge, a cylinder, a fan, a step, a cross and the meshes are turned by R random rotations. Points on their
-sharp edges (15 degrees or more) are *resolved* if the tetrahedron of the lattice that holds them has samples of both
-kinds.
+A cube, a wedge, a blade, a cylinder, a fan, a step, a cross and the meshes are turned by R random rotations. Points on
+their sharp edges (15 degrees or more) are *resolved* if the tetrahedron of the lattice that holds them has samples of
+both kinds. With --contour each mesh gets two more faces, which cancel, so that it is not its own surface.
 """
 import argparse
 import json
@@ -28,6 +28,12 @@ def wedge():
     vertices, faces = box((3, 1, 1))
     vertices[vertices[:, 0] > 1, 2] *= 0.25
     return vertices, faces
+
+
+def blade():
+    """Two faces at 12 degrees."""
+    vertices = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, -0.105), (1, 0.105))])
+    return vertices, np.array([(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)])
 
 
 def cylinder(sides=32):
@@ -159,9 +165,9 @@ def volume(raycone, path):
     return json.loads(run.stdout)["signed_volume"]
 
 
-def measure(raycone, vertices, faces, resolution, work):
+def measure(raycone, vertices, faces, resolution, work, contour=False):
     path, surface, report = (os.path.join(work, name) for name in ("in.obj", "out.ply", "out.json"))
-    write_obj(path, vertices, faces)
+    write_obj(path, vertices, np.vstack([faces, faces[:1], faces[:1, ::-1]]) if contour else faces)
     subprocess.run([raycone, "surface", path, "-o", surface, "--report", report, "--resolution", str(resolution),
                     "--quiet"], check=True)
     run = json.load(open(report))
@@ -183,9 +189,10 @@ def main():
     parser.add_argument("meshes", nargs="*")
     parser.add_argument("--resolution", type=int, default=48)
     parser.add_argument("--rotations", type=int, default=3)
+    parser.add_argument("--contour", action="store_true")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        shapes = [("cube", box(1)), ("wedge", wedge()), ("cylinder", cylinder()), ("fan", fan()),
+        shapes = [("cube", box(1)), ("wedge", wedge()), ("blade", blade()), ("cylinder", cylinder()), ("fan", fan()),
                   ("step", cubes([(0, 0, 0), (1, 0, 0), (0, 1, 0)])),
                   ("cross", cubes([(1, 1, 1), (0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2)]))]
         shapes += [(os.path.basename(path), read_stl(path)) for path in arguments.meshes]
@@ -194,8 +201,8 @@ def main():
         print("|---|---|---|---|---|---|---|---|---|---|---|")
         for name, (vertices, faces) in shapes:
             random = np.random.default_rng(1)
-            runs = [measure(arguments.raycone, vertices @ rotation(random).T, faces, arguments.resolution, work)
-                    for _ in range(arguments.rotations)]
+            runs = [measure(arguments.raycone, vertices @ rotation(random).T, faces, arguments.resolution, work,
+                            arguments.contour) for _ in range(arguments.rotations)]
             off = np.concatenate([run["off"] for run in runs])
             resolved = np.concatenate([run["resolved"] for run in runs])
             kept = off <= 2e-9

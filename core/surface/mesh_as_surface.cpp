@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/rule.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/volume_sign.h"
@@ -32,8 +34,7 @@ namespace {
 
 using Parts = std::vector<std::vector<Triangle>>;  // of each component its triangles
 
-Parts parts_of(const TriangleMesh& mesh) {
-  const Components components = components_of(mesh);
+Parts parts_of(const TriangleMesh& mesh, const Components& components) {
   Parts parts(components.count);
   for (const Triangle& t : mesh.triangles) parts[components.of_vertex[t[0]]].push_back(t);
   return parts;
@@ -62,16 +63,31 @@ std::vector<double> winding_numbers_around(const Parts& components, const Triang
   return around;
 }
 
-// Whether the winding number is 0 or 1 everywhere: around each component that faces outward it is 0, around each cavity
-// 1. Precondition: the mesh is closed and free of self-intersections.
-bool is_solid(const TriangleMesh& mesh) {
-  const Parts parts = parts_of(mesh);
+// Leaves the components at which the rule ceases to hold: it does behind them, and not in front. Returns whether no
+// other one is its border, too, the wrong way around, and any is left. Precondition: the mesh is closed and free of
+// self-intersections.
+bool keep_border(SurfaceMesh& surface, const Rule& rule) {
+  const TriangleMesh& mesh = surface.mesh;
+  const Components components = components_of(mesh);
+  const Parts parts = parts_of(mesh, components);
   const std::vector<double> around = winding_numbers_around(parts, mesh);
+  std::vector<bool> is_border(parts.size());
   for (std::size_t n = 0; n < parts.size(); ++n) {
     const int sign = volume_sign(parts[n], mesh.vertices);
-    if (sign == 0 || around[n] != (sign > 0 ? 0.0 : 1.0)) return false;
+    const double front = sign > 0 ? around[n] : around[n] - 1.0, behind = front + 1.0;
+    if (sign == 0 || (holds(rule, front) && !holds(rule, behind))) return false;
+    is_border[n] = !holds(rule, front) && holds(rule, behind);
   }
-  return true;
+  SurfaceMesh border;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const Triangle& t = mesh.triangles[face];
+    if (!is_border[components.of_vertex[t[0]]]) continue;
+    border.mesh.triangles.push_back(t);
+    border.sources.push_back(surface.sources[face]);
+  }
+  border.mesh = used_part(mesh.vertices, std::move(border.mesh.triangles));
+  surface = std::move(border);
+  return !surface.sources.empty();
 }
 
 // Without vertices that no triangle uses.
@@ -102,14 +118,16 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
 
 std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSet& inside,
                                           const SurfaceOptions& options) {
-  if (!are_seen_by(inside, parts_of(mesh), mesh.vertices)) return std::nullopt;
   FinishedSurface made{surface_of(mesh)};
+  const TriangleMesh& surface = made.surface.mesh;
   if (options.single_precision) round_to_float(made.surface.mesh.vertices);
-  if (!is_closed_and_embedded(made.surface.mesh) || !is_solid(made.surface.mesh)) return std::nullopt;
+  if (!std::isfinite(largest_coordinate(bounding_box(surface)))) return std::nullopt;  // beyond floats
+  if (!is_closed_and_embedded(surface) || !keep_border(made.surface, options.rule)) return std::nullopt;
+  made.holds_mesh = surface.triangles.size() == mesh.triangles.size() && !(options.simplify > 0.0);
+  if (!are_seen_by(inside, parts_of(surface, components_of(surface)), surface.vertices)) return std::nullopt;
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
-  made.holds_mesh = !(options.simplify > 0.0);
   if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options.rounds);
   return made;
 }

@@ -148,7 +148,6 @@ TEST(MeshAsSurface, IsNoneOfWhatIsNoSolid) {
   };
   EXPECT_TRUE(is_kept(box));
   EXPECT_FALSE(is_kept(test::open_box()));
-  EXPECT_FALSE(is_kept(test::joined(box, box_at(0.2, 0.4))));        // twice inside
   EXPECT_FALSE(is_kept(test::joined(box, box_at(0.5, 0.7))));        // passes through itself
   EXPECT_FALSE(is_kept(test::reversed(box), {RuleKind::kNonzero}));  // inside out
   EXPECT_FALSE(is_kept(test::joined(box, box_at(1.5, 0.4, false)), {RuleKind::kNonzero}));
@@ -172,10 +171,35 @@ TEST(MeshAsSurface, LooksIntoComponentsWithoutSamples) {
     for (const double x : {0.9996, 1.0001}) {
       const TriangleMesh mesh = turned(test::joined(box, box_at(x, 0.0003, outward)));
       EXPECT_EQ(nodes_of(mesh, 20).size(), nodes_of(turned(box), 20).size());
-      const bool is_solid = outward == (x > 1.0);
-      EXPECT_EQ(kept(mesh, 20).has_value(), is_solid) << outward << ' ' << x;
+      const std::optional<FinishedSurface> made = kept(mesh, 20);
+      ASSERT_TRUE(made);
+      const bool is_border = outward == (x > 1.0);
+      EXPECT_EQ(made->surface.mesh.triangles.size(), is_border ? 24U : 12U) << outward << ' ' << x;
+      EXPECT_EQ(made->holds_mesh, is_border) << outward << ' ' << x;
     }
   }
+}
+
+// What is within another solid, or inside out beside it, is no border of what the rule asks for.
+TEST(MeshAsSurface, IsWithoutComponentsThatSeparateNothing) {
+  const TriangleMesh box = turned(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  const TriangleMesh within = turned(box_at(0.2, 0.4)), beside = turned(box_at(1.5, 0.4, false));
+  const auto is_left = [](const TriangleMesh& mesh, const Rule& rule, const TriangleMesh& left) {
+    const std::optional<FinishedSurface> made = kept(mesh, 20, {.rule = rule});
+    ASSERT_TRUE(made);
+    EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(left));
+    EXPECT_FALSE(made->holds_mesh);
+    for (std::size_t face = 0; face < made->surface.sources.size(); ++face) {
+      const SourcePlane plane = source_plane(mesh, made->surface.sources[face]);
+      for (const std::uint32_t v : made->surface.mesh.triangles[face])
+        EXPECT_LT(std::abs(plane.height(made->surface.mesh.vertices[v])), 1e-15);  // some roundings
+    }
+  };
+  is_left(test::joined(within, box), {}, box);
+  is_left(test::joined(within, box), {RuleKind::kThreshold, 1.5}, within);
+  is_left(test::joined(test::joined(beside, within), box), {}, box);
+  EXPECT_FALSE(kept(test::joined(box, beside), 20, {.rule = {RuleKind::kNonzero}}));
+  EXPECT_FALSE(kept(test::joined(box, within), 20, {.rule = {RuleKind::kOdd}}));  // a cavity, the wrong way around
 }
 
 TEST(MeshAsSurface, IsNoneWithOtherNodes) {

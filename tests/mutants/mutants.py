@@ -604,8 +604,9 @@ MUTANTS = [
          "return dot(label.plane.normal, plane.normal) != 0.0 &&")]),
     Mutant("faulty_fills_come_again", "where a fill has faults, the next one is tried", [
         ("core/surface/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
-    Mutant("bubbles_in_solids", "a mesh is no solid where a component is inside of another one, or inside out", [
-        ("core/surface/mesh_as_surface.cpp", "sign == 0 || around[n] != (sign > 0 ? 0.0 : 1.0)", "sign == 0")]),
+    Mutant("bubbles_in_solids", "what is within a solid, or inside out beside it, is no part of its border", [
+        ("core/surface/mesh_as_surface.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
+         "is_border[n] = true;")]),
     Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
         ("core/surface/mesh_as_surface.cpp", "  if (options.single_precision) round_to_float(made.surface.mesh.vertices);\n",
          "")]),

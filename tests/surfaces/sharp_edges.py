@@ -1,6 +1,6 @@
 """Measures how well surfaces keep sharp edges, and prints a table of docs/surfaces.md.
 
-usage: python3 tests/surfaces/sharp_edges.py RAYCONE [--resolution N] [--rotations R] [--contour] [MESH.stl...]
+usage: python3 tests/surfaces/sharp_edges.py [--resolution N] [--rotations R] [--contour] RAYCONE [MESH.stl...]
 
 A cube, a wedge, a blade, a cylinder, a fan, a step, a cross and the meshes are turned by R random rotations. Points on
 their sharp edges (15 degrees or more) are *resolved* if the tetrahedron of the lattice that holds them has samples of

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/machine/threads.h"
+#include "core/mesh/components.h"
 #include "core/mesh/triangle_runs.h"
 #include "core/surface/surface.h"
 
@@ -12,6 +13,7 @@ namespace raycone {
 namespace {
 
 constexpr double kMostParts = 180.0 * 180.0;  // of a triangle, rows times parts of a row: each is a small part then
+constexpr double kOnSurface = 0x1p-9;         // voxels: more than planes of one surface are off each other
 constexpr double kPerStep = 1.4;              // rows, and parts of a row: two of them to a square of a step
 
 double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostParts); }
@@ -141,10 +143,12 @@ DroppedSamples::DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside
       inside_(inside),
       thickness_(thickness),
       step_(0.5 * safe_norm(inside.lattice().spacing)),
-      most_(safe_norm(inside.lattice().spacing) + thickness) {}
+      most_(safe_norm(inside.lattice().spacing) + thickness),
+      on_surface_(kOnSurface * inside.lattice().least_spacing()) {}
 
 void DroppedSamples::for_each(const TriangleMesh& mesh, const Visit& visit) {
   constexpr std::size_t kPartsAtOnce = 64;
+  if (!(thickness_ > 0.0)) find_lost_components(mesh);
   for (std::size_t next = 0; next < mesh.triangles.size();) {
     std::vector<Part> parts;
     while (parts.size() < kPartsAtOnce && next < mesh.triangles.size()) {
@@ -155,6 +159,17 @@ void DroppedSamples::for_each(const TriangleMesh& mesh, const Visit& visit) {
     decide(parts);
     for (const Part& part : parts) visit(part.samples, part.dropped);
   }
+}
+
+void DroppedSamples::find_lost_components(const TriangleMesh& mesh) {
+  const Components components = components_of(mesh);
+  const auto component_of = [&](std::size_t triangle) { return components.of_vertex[mesh.triangles[triangle][0]]; };
+  std::vector<bool> has_face(components.count, false);
+  for (const std::int32_t source : surface_.sources) {
+    if (source != kHole) has_face[component_of(static_cast<std::size_t>(source))] = true;
+  }
+  is_of_lost_.resize(mesh.triangles.size());
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) is_of_lost_[n] = !has_face[component_of(n)];
 }
 
 // As many triangles as a task has enough to do with.
@@ -174,7 +189,7 @@ void DroppedSamples::take_samples(const TriangleMesh& mesh, Part& part) const {
   }
   part.dropped.resize(part.samples.points.size(), false);
   for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
-    if (!nodes.is_near(part.samples.points[n])) part.doubtful.push_back(n);
+    if (is_of_lost(part.samples.triangles[n]) || !nodes.is_near(part.samples.points[n])) part.doubtful.push_back(n);
   }
 }
 
@@ -189,7 +204,8 @@ void DroppedSamples::decide(std::span<Part> parts) {
   distance_->evaluate(points, distances, most_);
   auto distance = distances.cbegin();
   for (Part& part : parts) {
-    for (const std::size_t n : part.doubtful) part.dropped[n] = *distance++ > most_;
+    for (const std::size_t n : part.doubtful)
+      part.dropped[n] = *distance++ > (is_of_lost(part.samples.triangles[n]) ? on_surface_ : most_);
   }
 }
 

@@ -24,6 +24,7 @@ struct AreaSamples {
 };
 
 // Finds the points that are dropped: farther from the surface than a cell's diagonal and the thickness of the set.
+// Where that is 0, also those that are not on the surface, of components of the mesh that no face of the surface is of.
 class DroppedSamples {
  public:
   // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay.
@@ -41,12 +42,15 @@ class DroppedSamples {
  private:
   struct Part;
   [[nodiscard]] Part part_from(const TriangleMesh& mesh, std::size_t begin) const;
+  void find_lost_components(const TriangleMesh& mesh);
+  [[nodiscard]] bool is_of_lost(std::uint32_t triangle) const { return !is_of_lost_.empty() && is_of_lost_[triangle]; }
   void take_samples(const TriangleMesh& mesh, Part& part) const;
   void decide(std::span<Part> parts);
 
   const SurfaceMesh& surface_;
   const NodeSet& inside_;
-  double thickness_, step_, most_;
+  double thickness_, step_, most_, on_surface_;
+  std::vector<bool> is_of_lost_;               // of each triangle, whether no face is of its component
   std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
 };
 

@@ -32,6 +32,8 @@
 namespace raycone {
 namespace {
 
+constexpr std::uint64_t kMostPerCell = 8;  // triangles: as many as a contour has there before its faces are merged
+
 using Parts = std::vector<std::vector<Triangle>>;  // of each component its triangles
 
 Parts parts_of(const TriangleMesh& mesh, const Components& components) {
@@ -128,6 +130,7 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
+  if (made.surface.sources.size() > kMostPerCell * mixed_cells(inside)) return std::nullopt;
   if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options.rounds);
   return made;
 }
@@ -137,9 +140,9 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
 std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
                                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr std::uint64_t kPerCell = 8;  // as many as a contour has there before its faces are merged
+  constexpr std::uint64_t kBeforeMerging = 4;  // times as many: of more, a look takes longer than a contour
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
-  if (mesh.triangles.size() > kPerCell * mixed_cells(inside)) return std::nullopt;
+  if (mesh.triangles.size() > kBeforeMerging * kMostPerCell * mixed_cells(inside)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
   return is_out_of_scale(inside.lattice(), options) ? made_in_scale(mesh, inside, options, whole_mesh)
                                                     : whole_mesh(mesh, inside, options);

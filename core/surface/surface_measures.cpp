@@ -105,6 +105,7 @@ class MissedSamples {
     step_ = surface_margin(inside_.lattice(), false) * inside_.lattice().least_spacing();
   }
 
+  // Where many are asked about, those that follow on a triangle are asked about together, ever more of them.
   void add(const AreaSamples& samples, const std::vector<bool>& dropped) {
     constexpr std::size_t kAtOnce = std::size_t{1} << 16;
     for (std::size_t n = 0; n < dropped.size(); ++n) {
@@ -137,6 +138,14 @@ class MissedSamples {
   };
 
   void ask(const Vec3& p, double area, std::uint32_t triangle) {
+    constexpr std::size_t kMany = std::size_t{1} << 17;
+    if (!asked_.empty() && asked_.back().triangle == triangle && in_last_ < std::size_t{1} << asked_ever_ / kMany) {
+      asked_.back().area += area;
+      ++in_last_;
+      return;
+    }
+    in_last_ = 1;
+    ++asked_ever_;
     const Triangle& t = mesh_.triangles[triangle];
     const Vec3 normal = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
     asked_.push_back({area, triangle});
@@ -162,7 +171,8 @@ class MissedSamples {
   double thickness_, step_ = 0.0;
   Visit visit_;
   std::vector<Asked> asked_;
-  std::vector<Vec3> sides_;  // two of each: before its triangle and behind it
+  std::size_t asked_ever_ = 0, in_last_ = 0;  // points that were asked about, and how many stand for the last one
+  std::vector<Vec3> sides_;                   // two of each: before its triangle and behind it
 };
 
 }  // namespace

@@ -17,8 +17,8 @@ struct SurfaceMeasures {
 };
 
 // Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
-// set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most. It separates nothing, or is of
-// parts thinner than the lattice sees.
+// set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most; and what is not on the surface
+// of components that no face is of. It separates nothing, or is of parts thinner than the lattice sees.
 struct DroppedArea {
   double area = 0.0;
   std::uint64_t samples = 0;  // how many of these points are dropped

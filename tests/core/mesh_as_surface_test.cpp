@@ -17,6 +17,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/seen_by_nodes.h"
 #include "core/surface/source_plane.h"
+#include "core/surface/surface_cells.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -229,8 +230,16 @@ TEST(MeshAsSurface, IsNoneOfWhatTheLatticeDoesNotSee) {
 
 TEST(MeshAsSurface, IsNoneOfFineMeshes) {
   const TriangleMesh fine = weld(test::sphere(40), {});
+  EXPECT_FALSE(kept(fine, 4));
   EXPECT_FALSE(kept(fine, 8));
   EXPECT_TRUE(kept(fine, 40));
+  // Only what is left after merging counts.
+  std::vector<std::array<int, 3>> cells;
+  for (int n = 0; n < 1000; ++n) cells.push_back({n % 10, n / 10 % 10, n / 100});
+  const TriangleMesh box = turned(test::cells_mesh(cells));
+  const NodeSet inside = nodes_of(box, 4);
+  EXPECT_GT(box.triangles.size(), 8 * mixed_cells(inside));
+  EXPECT_EQ(kept(box, 4).value().surface.mesh.triangles.size(), 12U);
 }
 
 TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {

@@ -1402,5 +1402,45 @@ TEST(SurfaceMeasures, TellWhatIsTooThin) {
   EXPECT_EQ(thin(test::moved(plate, {1, 1, 1}, {5, 0, 0}), h / 4).area, 0.0);
 }
 
+// Nearer to what is left than a cell's diagonal, and still lost.
+TEST(SurfaceMeasures, TellComponentsThatNoFaceIsOf) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto [surface, lattice] = surface_of(box, 20);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  const double h = lattice.spacing.x;
+  const TriangleMesh cavity =
+      test::joined(box, test::reversed(test::box_mesh({0.3, 0.3, 0.2 * h}, {0.7, 0.7, 0.6 * h})));
+  const double area = 2 * 0.16 + 4 * 0.4 * 0.4 * h;
+  EXPECT_NEAR(dropped_of(surface, cavity, inside).area, area, 1e-12);
+  DroppedSamples dropped(surface, inside, 0.0);
+  const WindingNumberEvaluator evaluator(cavity);
+  const ThinParts thin = thin_parts(cavity, RuleAlong(evaluator, Rule{}), dropped);
+  EXPECT_NEAR(thin.area, area, 1e-12);
+  EXPECT_EQ(thin.lost, 1U);
+  // What is there twice is not lost, but for what is off.
+  const TriangleMesh twice = test::joined(box, test::moved(box, {1, 1, 1}, {1e-4 * h, 0, 0}));
+  EXPECT_EQ(dropped_of(surface, twice, inside).area, 0.0);
+}
+
+// Where they are many, one is asked about for several.
+TEST(SurfaceMeasures, AddUpManyThinParts) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto [surface, lattice] = surface_of(box, 128);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  const double h = lattice.spacing.x;
+  TriangleMesh mesh = box;
+  constexpr int kGaps = 40;
+  for (int n = 0; n < kGaps; ++n) {
+    const double z = (n + 30) * h;
+    mesh = test::joined(mesh, test::reversed(test::box_mesh({0.2, 0.2, z + 0.2 * h}, {0.8, 0.8, z + 0.3 * h})));
+  }
+  DroppedSamples dropped(surface, inside, 0.0);
+  EXPECT_GT(dropped_area(mesh, dropped).samples, std::uint64_t{1} << 18);
+  const WindingNumberEvaluator evaluator(mesh);
+  const ThinParts thin = thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);
+  EXPECT_NEAR(thin.area, kGaps * (2 * 0.36 + 4 * 0.6 * 0.1 * h), 1e-9);  // a sum of some 500 000
+  EXPECT_EQ(thin.lost, std::uint64_t{kGaps});
+}
+
 }  // namespace
 }  // namespace raycone

@@ -3,7 +3,7 @@
 usage: python3 tests/surfaces/measure.py RAYCONE MESH-DIRECTORY [--resolution N] [--most-bytes B] [--timeout S]
 
 Each mesh is written as PLY and as STL. A mesh that cannot be read, or of which no sample is inside, is counted and left
-out. The exit status is 1 where a surface is refused by `info --require`, or where raycone reports an error of its own.
+out. Distances are from random points on one to the other; those on faces that close holes do not count. The exit status is 1 where a surface is refused by `info --require`, or where raycone reports an error of its own.
 """
 import argparse
 import json
@@ -12,6 +12,9 @@ import subprocess
 import sys
 import tempfile
 
+import numpy as np
+
+POINTS = 10000  # on either mesh
 REQUIRED = "closed,oriented,outward,manifold,embedded"
 EXTENSIONS = ("obj", "ply", "stl", "off", "glb", "gltf")
 
@@ -34,11 +37,41 @@ def measured(words):
         return process.returncode, errors.read().strip(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
+def sources_of(path):
+    """Of each face of a PLY file that raycone surface wrote."""
+    with open(path, "rb") as file:
+        counts = {}
+        while (line := file.readline().split()) != [b"end_header"]:
+            if line[0] == b"element":
+                counts[line[1]] = int(line[2])
+        file.seek(24 * counts[b"vertex"], os.SEEK_CUR)
+        faces = np.fromfile(file, np.dtype([("corners", "u1"), ("vertices", "<i4", 3), ("source", "<i4")]))
+    assert len(faces) == counts[b"face"]
+    return faces["source"]
+
+
+def distances(raycone, sampled, to, work, sources=None):
+    """The largest, and the root of the mean square, of random points on a mesh, on faces with a source, to another."""
+    samples, points, values = (os.path.join(work, name) for name in ("samples.npz", "points.npy", "values.npy"))
+    subprocess.run([raycone, "points", sampled, "--sample", "surface=%d" % POINTS, "--field", "inside", "-o", samples,
+                    "--quiet"], check=True)
+    drawn = np.load(samples)
+    on_mesh = slice(None) if sources is None else sources[drawn["faces"]] >= 0
+    np.save(points, drawn["points"][on_mesh])
+    if len(drawn["points"][on_mesh]) == 0:
+        return 0.0, 0.0
+    subprocess.run([raycone, "points", to, points, "--field", "sdf", "--dtype", "f64", "-o", values, "--quiet"], check=True)
+    off = np.abs(np.load(values))
+    return off.max(), np.sqrt((off ** 2).mean())
+
+
 def print_percentiles(rows):
     print("\n| of %d meshes | median | 90 %% | 95 %% | largest |" % len(rows))
     print("|---|---|---|---|---|")
     for name, number_format in (("surface faces", "%.0f"), ("max. distance, voxels", "%.2g"), ("holes, %", "%.2g"),
-                                ("dropped, %", "%.2g"), ("CPU, s", "%.2f"), ("peak, MB", "%.0f")):
+                                ("dropped, %", "%.2g"), ("CPU, s", "%.2f"), ("peak, MB", "%.0f"),
+                                ("surface to mesh, max.", "%.2g"), ("rms", "%.2g"), ("mesh to surface, max.", "%.2g"),
+                                ("rms ", "%.2g")):
         numbers = sorted(row[name] for row in rows)
         at = [numbers[int(part * (len(numbers) - 1))] for part in (0.5, 0.9, 0.95, 1)]
         print("| %s | %s |" % (name, " | ".join(number_format % number for number in at)))
@@ -54,8 +87,8 @@ def main():
     arguments = parser.parse_args()
     refused, failed, limits, rows, left_out, made = [], [], [], [], 0, 0
     print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
-          "dropped, % | CPU, s | peak, MB |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+          "dropped, % | CPU, s | peak, MB | surface to mesh, max. | rms | mesh to surface, max. | rms |")
+    print("|---" * 14 + "|")
     with tempfile.TemporaryDirectory() as work:
         for path in meshes_in(arguments.directory, arguments.most_bytes):
             report = os.path.join(work, "report.json")
@@ -92,8 +125,12 @@ def main():
                        "max. distance, voxels": surface["max_distance"] / voxel,
                        "holes, %": 100 * surface["hole_area"] / area,
                        "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds, "peak, MB": memory}
+                there = distances(arguments.raycone, out, path, work, sources_of(out))
+                back = distances(arguments.raycone, path, out, work)
+                row.update(zip(("surface to mesh, max.", "rms", "mesh to surface, max.", "rms "),
+                               (off / voxel for off in there + back)))
                 rows.append(row)
-                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f |" % (
+                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f | %.2g | %.2g | %.2g | %.2g |" % (
                     os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], *row.values()),
                       flush=True)
     if rows:

@@ -32,7 +32,8 @@
 namespace raycone {
 namespace {
 
-constexpr std::uint64_t kMostPerCell = 8;  // triangles: as many as a contour has there before its faces are merged
+// Contours of meshes that are finer than the lattice have 12 to 15 triangles to a cell.
+constexpr std::uint64_t kMostPerCell = 12;
 
 using Parts = std::vector<std::vector<Triangle>>;  // of each component its triangles
 
@@ -140,7 +141,7 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
 std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
                                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr std::uint64_t kBeforeMerging = 4;  // times as many: of more, a look takes longer than a contour
+  constexpr std::uint64_t kBeforeMerging = 3;  // times as many: of more, a look takes longer than a contour
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
   if (mesh.triangles.size() > kBeforeMerging * kMostPerCell * mixed_cells(inside)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");

@@ -11,7 +11,7 @@ namespace raycone {
 
 // The mesh itself, where it is closed, 2-manifold and free of self-intersections: those of its components at which the
 // rule ceases to hold. All of these must face outward then, and have the `inside` nodes, and no others, behind their
-// fronts. Only if the lattice sees all of them (are_seen_by()), and there are no more than eight triangles, once
+// fronts. Only if the lattice sees all of them (are_seen_by()), and there are no more than twelve triangles, once
 // merged, to a cell with nodes of both kinds: walls and parts that are too thin for the lattice are dropped as ever,
 // and of fine meshes a coarse lattice makes coarse surfaces. Faces of one plane are merged, then `options.simplify`
 // holds, as closed_surface() does it. None otherwise, and where that function would do something else: where the set

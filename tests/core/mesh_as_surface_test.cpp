@@ -235,11 +235,12 @@ TEST(MeshAsSurface, IsNoneOfFineMeshes) {
   EXPECT_TRUE(kept(fine, 40));
   // Only what is left after merging counts.
   std::vector<std::array<int, 3>> cells;
-  for (int n = 0; n < 1000; ++n) cells.push_back({n % 10, n / 10 % 10, n / 100});
+  constexpr int kSide = 13;
+  for (int n = 0; n < kSide * kSide * kSide; ++n) cells.push_back({n % kSide, n / kSide % kSide, n / kSide / kSide});
   const TriangleMesh box = turned(test::cells_mesh(cells));
-  const NodeSet inside = nodes_of(box, 4);
-  EXPECT_GT(box.triangles.size(), 8 * mixed_cells(inside));
-  EXPECT_EQ(kept(box, 4).value().surface.mesh.triangles.size(), 12U);
+  const NodeSet inside = nodes_of(box, 5);
+  EXPECT_GT(box.triangles.size(), 12 * mixed_cells(inside));
+  EXPECT_EQ(kept(box, 5).value().surface.mesh.triangles.size(), 12U);
 }
 
 TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {

@@ -154,6 +154,7 @@ TEST(SelfIntersections, AreTheSameWithoutThePairsAtGraphs) {
     const SelfIntersections found = self_intersections(mesh, SearchOrder::kCurve, &graphs);
     EXPECT_EQ(found.pairs, all.pairs) << by;
     EXPECT_EQ(found.of_triangle, all.of_triangle) << by;
+    EXPECT_EQ(first_self_intersection(mesh, &graphs), first_self_intersection(mesh)) << by;
     pairs_in_all += all.pairs;
   }
   EXPECT_GT(graphs_in_all, 100U);

@@ -1060,6 +1060,34 @@ TEST(RepeatedCheck, FindsWhatFaultsOfFinds) {
   EXPECT_GT(still_wrong, 5);
 }
 
+// Of a surface that is known to have no faults before: few vertices are merged, and one is moved.
+TEST(RepeatedCheck, FindsWhatFaultsOfFindsAfterAWholeSurface) {
+  const DefaultFloatingPoint guard;
+  Random random(8);
+  const TriangleMesh mesh = rotated(test::box_mesh({0, 0, 0}, {1, 1.5, 0.7}));
+  const auto [fine, lattice] = surface_of(mesh, 24, {.rule = {}, .merge_planes = false});
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  int right = 0, wrong = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::vector<bool> kept(fine.mesh.vertices.size(), true);
+    std::vector<Vec3> vertices = fine.mesh.vertices;
+    for (int n = 0; n < 20; ++n)
+      kept[static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(kept.size())))] = false;
+    const MergedFaces merged = merge_planes(fine, mesh, lattice, kept, {1e-9 * lattice.spacing.x, 0.0});
+    const auto face = static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(merged.faces.size())));
+    if (round % 2 == 1) vertices[merged.triangles[face][0]].x += uniform(random, -9.0, 9.0) * lattice.spacing.x;
+    const TriangleMesh now = used_part(vertices, merged.triangles);
+    RepeatedCheck check(inside, kept.size());
+    check.remember_whole(fine);
+    NodeSet misplaced(lattice);
+    const SurfaceFaults found = check.faults(merged, now, misplaced);
+    EXPECT_EQ(described(found), described(faults_of(now, inside))) << round;
+    ++(found.none() ? right : wrong);
+  }
+  EXPECT_GT(right, 10);
+  EXPECT_GT(wrong, 5);
+}
+
 // Whether a vertex among `ring`, all of whose faces are in a patch, is settled there. Each face is its own source. Only
 // the vertex itself has all of its faces in it.
 bool is_settled_among(const std::vector<Vec3>& ring) {

@@ -97,6 +97,7 @@ FinishedSurface contoured(const TriangleMesh& mesh, const std::vector<ExteriorEd
   constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
   constexpr double kPerCell = 4.0;      // points that either is asked for, where there are few holes
   const double points = kPerCell * static_cast<double>(mixed_cells(inside));
+  for_sides = WindingNumberEvaluator(TriangleMesh());  // what it held is free for those that follow
   const WindingNumberEvaluator fine(mesh, options_for(for_points(kTolerance, points), edges));
   for_sides = WindingNumberEvaluator(mesh, options_for(for_points(tolerance_for_sides(options.rule), points), edges));
   return closed_surface(mesh, {fine, for_sides}, inside, options);

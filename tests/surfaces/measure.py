@@ -28,13 +28,13 @@ def meshes_in(directory, most_bytes):
 
 
 def measured(words):
-    """The exit status, standard error, seconds of user and system time, and the peak of memory in MB."""
+    """The exit status, standard error, and seconds of user and system time."""
     with tempfile.TemporaryFile("w+") as errors:
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=errors)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         errors.seek(0)
-        return process.returncode, errors.read().strip(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+        return process.returncode, errors.read().strip(), usage.ru_utime + usage.ru_stime
 
 
 def sources_of(path):
@@ -94,7 +94,7 @@ def main():
             report = os.path.join(work, "report.json")
             for ending in ("ply", "stl"):
                 out = os.path.join(work, "out." + ending)
-                status, errors, seconds, memory = measured(
+                status, errors, seconds = measured(
                     [arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient", "auto",
                      "--resolution", str(arguments.resolution), "--timeout", str(arguments.timeout), "--quiet"])
                 if status == 4:
@@ -124,7 +124,8 @@ def main():
                 row = {"surface faces": surface["faces"], "parts": surface["components"],
                        "max. distance, voxels": surface["max_distance"] / voxel,
                        "holes, %": 100 * surface["hole_area"] / area,
-                       "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds, "peak, MB": memory}
+                       "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds,
+                       "peak, MB": run["peak_memory_bytes"] / 2**20}
                 there = distances(arguments.raycone, out, path, work, sources_of(out))
                 back = distances(arguments.raycone, path, out, work)
                 row.update(zip(("surface to mesh, max.", "rms", "mesh to surface, max.", "rms "),

@@ -58,7 +58,7 @@ class CheckedMerger {
     kept_ = KeptVertices(surface_);
     PlaneMerger merger(surface_, input_, inside_.lattice(), {most, kNearCorner * unit_});
     RepeatedCheck check(inside_, vertices.size());
-    if (options_.is_right) check.remember_whole(surface_);
+    if (!is_right_) check.remember_whole(surface_);
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     moves_ = PointMoves::kNone;
@@ -131,7 +131,7 @@ class CheckedMerger {
   static std::uint64_t count_of(const SurfaceFaults& faults) { return faults.nodes + faults.intersections.pairs; }
 
   bool is_right() {
-    is_wrong_ = !is_right_();
+    is_wrong_ = is_right_ && !is_right_();
     return !is_wrong_;
   }
 

@@ -50,14 +50,13 @@ struct MergeOptions {
   double tolerance = 0.0;         // how far apart numbers of one plane may be, world units (plane_tolerance())
   bool single_precision = false;  // vertices are floats, and stay so
   bool once = false;              // not again within less, as who calls can make another surface
-  bool is_right = false;          // the surface is known to have no faults, but perhaps nodes on the wrong side
 };
 
 // merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
 // of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
 // fewer, points are moved (move_points()). No surface where all that did not help. `input`: the mesh that it is of;
-// `inside`: its nodes; `is_right`: whether the surface has no faults before, asked where that matters. The same for any
-// number of threads.
+// `inside`: its nodes; `is_right`: whether the surface has no faults before, asked where that matters; none
+// where it is known to have none, but perhaps nodes on the wrong side. The same for any number of threads.
 [[nodiscard]] CheckedMerge checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
                                          const MergeOptions& options, const std::function<bool()>& is_right);
 

@@ -101,9 +101,8 @@ SurfaceMesh surface_of(const TriangleMesh& mesh) {
 }
 
 // Of a surface without faults, but perhaps with nodes on the wrong side: whether it has none. Merged, if it could be.
-bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, MergeOptions options) {
-  options.is_right = true;
-  CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, [] { return true; });
+bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const MergeOptions& options) {
+  CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, {});
   made.merged = merged.surface.has_value();
   if (!made.merged) return misplaced_nodes(made.surface.mesh, inside).empty();
   made.surface = *std::move(merged.surface);
@@ -119,8 +118,9 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
   SourceSettler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0)).settle(made.surface);
 }
 
+// `most`: triangles, once merged.
 std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSet& inside,
-                                          const SurfaceOptions& options) {
+                                          const SurfaceOptions& options, std::uint64_t most) {
   FinishedSurface made{surface_of(mesh)};
   const TriangleMesh& surface = made.surface.mesh;
   if (options.single_precision) round_to_float(made.surface.mesh.vertices);
@@ -131,7 +131,7 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
-  if (made.surface.sources.size() > kMostPerCell * mixed_cells(inside)) return std::nullopt;
+  if (made.surface.sources.size() > most) return std::nullopt;
   if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options.rounds);
   return made;
 }
@@ -143,10 +143,14 @@ std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const N
   const DefaultFloatingPoint guard;
   constexpr std::uint64_t kBeforeMerging = 3;  // times as many: of more, a look takes longer than a contour
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
-  if (mesh.triangles.size() > kBeforeMerging * kMostPerCell * mixed_cells(inside)) return std::nullopt;
+  const std::uint64_t most = kMostPerCell * mixed_cells(inside);
+  if (mesh.triangles.size() > kBeforeMerging * most) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
-  return is_out_of_scale(inside.lattice(), options) ? made_in_scale(mesh, inside, options, whole_mesh)
-                                                    : whole_mesh(mesh, inside, options);
+  const auto make = [&](const TriangleMesh& input, const NodeSet& nodes, const SurfaceOptions& as) {
+    return whole_mesh(input, nodes, as, most);
+  };
+  return is_out_of_scale(inside.lattice(), options) ? made_in_scale(mesh, inside, options, make)
+                                                    : make(mesh, inside, options);
 }
 
 }  // namespace raycone

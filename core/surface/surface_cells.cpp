@@ -32,31 +32,30 @@ std::array<const std::uint64_t*, 4> rows_around(const NodeSet& nodes, std::int64
   return {nodes.row(j, k), nodes.row(j + 1, k), nodes.row(j, k + 1), nodes.row(j + 1, k + 1)};
 }
 
+// Calls visit(cells, word, j, k) for the cells of each row (j, k) with nodes of both kinds, as mixed_among() tells.
+template <class Visit>
+void for_each_mixed_word(const NodeSet& nodes, const Visit& visit) {
+  const std::int64_t words = nodes.words_per_row();
+  for (std::int64_t k = 0; k + 1 < nodes.count(2); ++k) {
+    for (std::int64_t j = 0; j + 1 < nodes.count(1); ++j) {
+      const std::array rows = rows_around(nodes, j, k);
+      for (std::int64_t word = 0; word < words; ++word) visit(mixed_among(rows, word, words), word, j, k);
+    }
+  }
+}
+
 }  // namespace
 
 std::uint64_t mixed_cells(const NodeSet& nodes) {
   std::uint64_t count = 0;
-  const std::int64_t words = nodes.words_per_row();
-  for (std::int64_t k = 0; k + 1 < nodes.count(2); ++k) {
-    for (std::int64_t j = 0; j + 1 < nodes.count(1); ++j) {
-      const std::array rows = rows_around(nodes, j, k);
-      for (std::int64_t word = 0; word < words; ++word) count += bits_of(mixed_among(rows, word, words));
-    }
-  }
+  for_each_mixed_word(nodes, [&](std::uint64_t cells, auto...) { count += bits_of(cells); });
   return count;
 }
 
 void for_each_mixed_cell(const NodeSet& nodes, const std::function<void(const NodeSet::Node&)>& visit) {
-  const std::int64_t words = nodes.words_per_row();
-  for (std::int64_t k = 0; k + 1 < nodes.count(2); ++k) {
-    for (std::int64_t j = 0; j + 1 < nodes.count(1); ++j) {
-      const std::array rows = rows_around(nodes, j, k);
-      for (std::int64_t word = 0; word < words; ++word) {
-        for (std::uint64_t left = mixed_among(rows, word, words); left != 0; left &= left - 1)
-          visit({word * 64 + std::countr_zero(left), j, k});
-      }
-    }
-  }
+  for_each_mixed_word(nodes, [&](std::uint64_t cells, std::int64_t word, std::int64_t j, std::int64_t k) {
+    for (; cells != 0; cells &= cells - 1) visit({word * 64 + std::countr_zero(cells), j, k});
+  });
 }
 
 // Places of cells and edges are the layer's own.

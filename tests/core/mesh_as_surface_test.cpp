@@ -116,14 +116,23 @@ TEST(MeshAsSurface, IsTheMeshWhereThatIsASolid) {
   }
 }
 
-// Samples are on faces then, and edges, and corners.
+// Samples are on faces then, and edges, and corners: of a box, and of an octahedron, whose faces are oblique.
 TEST(MeshAsSurface, HasSamplesOnItsFacesOnTheirSides) {
-  for (int corner = 0; corner < 8; ++corner) {
-    const TriangleMesh box = test::box_mesh({0, 0, 0}, {4, 4, 4});
-    const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {-2, -2, -2}, {9, 9, 9}};
-    const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
-    EXPECT_EQ(inside.size(), 64U);
-    EXPECT_TRUE(mesh_as_surface(box, inside, {}));
+  const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {-6, -6, -6}, {13, 13, 13}};
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {4, 4, 4});
+  TriangleMesh octahedron{{{4, 0, 0}, {-4, 0, 0}, {0, 4, 0}, {0, -4, 0}, {0, 0, 4}, {0, 0, -4}}, {}};
+  for (const std::uint32_t x : {0U, 1U}) {
+    for (const std::uint32_t y : {2U, 3U}) {
+      for (const std::uint32_t z : {4U, 5U})
+        octahedron.triangles.push_back((x + y + z) % 2 == 0 ? Triangle{x, y, z} : Triangle{x, z, y});
+    }
+  }
+  for (const TriangleMesh& mesh : {box, octahedron}) {
+    const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+    const std::optional<FinishedSurface> made = mesh_as_surface(mesh, inside, {});
+    ASSERT_TRUE(made);
+    EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+    EXPECT_EQ(made->surface.mesh.triangles.size(), mesh.triangles.size());
   }
 }
 

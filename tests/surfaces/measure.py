@@ -3,7 +3,8 @@
 usage: python3 tests/surfaces/measure.py RAYCONE MESH-DIRECTORY [--resolution N] [--most-bytes B] [--timeout S]
 
 Each mesh is written as PLY and as STL. A mesh that cannot be read, or of which no sample is inside, is counted and left
-out. Distances are from random points on one to the other; those on faces that close holes do not count. The exit status is 1 where a surface is refused by `info --require`, or where raycone reports an error of its own.
+out. Distances are from random points on one to the other; those on faces that close holes do not count. The exit status
+is 1 where a surface is refused by `info --require`, or where raycone reports an error of its own.
 """
 import argparse
 import json
@@ -57,10 +58,11 @@ def distances(raycone, sampled, to, work, sources=None):
                     "--quiet"], check=True)
     drawn = np.load(samples)
     on_mesh = slice(None) if sources is None else sources[drawn["faces"]] >= 0
-    np.save(points, drawn["points"][on_mesh])
     if len(drawn["points"][on_mesh]) == 0:
         return 0.0, 0.0
-    subprocess.run([raycone, "points", to, points, "--field", "sdf", "--dtype", "f64", "-o", values, "--quiet"], check=True)
+    np.save(points, drawn["points"][on_mesh])
+    subprocess.run([raycone, "points", to, points, "--field", "sdf", "--dtype", "f64", "-o", values, "--quiet"],
+                   check=True)
     off = np.abs(np.load(values))
     return off.max(), np.sqrt((off ** 2).mean())
 
@@ -70,8 +72,8 @@ def print_percentiles(rows):
     print("|---|---|---|---|---|")
     for name, number_format in (("surface faces", "%.0f"), ("max. distance, voxels", "%.2g"), ("holes, %", "%.2g"),
                                 ("dropped, %", "%.2g"), ("CPU, s", "%.2f"), ("peak, MB", "%.0f"),
-                                ("surface to mesh, max.", "%.2g"), ("rms", "%.2g"), ("mesh to surface, max.", "%.2g"),
-                                ("rms ", "%.2g")):
+                                ("surface to mesh, max.", "%.2g"), ("surface to mesh, rms", "%.2g"),
+                                ("mesh to surface, max.", "%.2g"), ("mesh to surface, rms", "%.2g")):
         numbers = sorted(row[name] for row in rows)
         at = [numbers[int(part * (len(numbers) - 1))] for part in (0.5, 0.9, 0.95, 1)]
         print("| %s | %s |" % (name, " | ".join(number_format % number for number in at)))
@@ -128,7 +130,8 @@ def main():
                        "peak, MB": run["peak_memory_bytes"] / 2**20}
                 there = distances(arguments.raycone, out, path, work, sources_of(out))
                 back = distances(arguments.raycone, path, out, work)
-                row.update(zip(("surface to mesh, max.", "rms", "mesh to surface, max.", "rms "),
+                row.update(zip(("surface to mesh, max.", "surface to mesh, rms", "mesh to surface, max.",
+                                "mesh to surface, rms"),
                                (off / voxel for off in there + back)))
                 rows.append(row)
                 print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f | %.2g | %.2g | %.2g | %.2g |" % (

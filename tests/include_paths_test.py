@@ -17,8 +17,9 @@ STEPS = ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings
 BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings"],
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],
+          "core/arrangement": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections"],
           "core/surface": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections",
-                           "core/crossings", "core/boundary", "core/far", "core/evaluation", "core/distance"],
+                           "core/arrangement", "core/crossings", "core/boundary", "core/far", "core/evaluation", "core/distance"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]

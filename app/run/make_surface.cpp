@@ -124,8 +124,8 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  DroppedSamples samples(made.surface, inside, options.thickness);
-  const DroppedArea dropped = closed.holds_mesh ? DroppedArea() : dropped_area(mesh, samples);
+  DroppedSamples samples(made.surface, inside, options.thickness, std::move(closed.held));
+  const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
   if (dropped.is_some) {
     const ThinParts thin = thin_parts(mesh, {evaluator, options.rule}, samples);

@@ -398,6 +398,30 @@ SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order
   return {pairs, pair_at(tree, first), {marked.begin(), marked.end()}};
 }
 
+std::optional<std::vector<TrianglePair>> intersecting_pairs(const TriangleMesh& mesh, std::size_t most) {
+  const PairTree tree(mesh, SearchOrder::kRuns);
+  std::mutex mutex;
+  std::vector<TrianglePair> pairs;
+  std::atomic<std::size_t> count{0};
+  parallel_for(tree.runs(), kGrain, [&](std::size_t begin, std::size_t end) {
+    PairMeeting meet(tree);
+    std::vector<std::size_t> runs;
+    std::vector<TrianglePair> found;
+    for (std::size_t run = begin; run < end && count <= most; ++run) {
+      tree.for_each_pair(run, runs, [&](std::size_t place, std::size_t other) {
+        if (!meet(place, other)) return count <= most;
+        found.push_back(*pair_at(tree, {place, other}));
+        return ++count <= most;
+      });
+    }
+    const std::scoped_lock lock(mutex);
+    pairs.insert(pairs.end(), found.begin(), found.end());
+  });
+  if (count > most) return std::nullopt;
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
 std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh, const std::vector<std::uint8_t>* graphs) {
   const PairTree tree(mesh, SearchOrder::kRuns);
   std::mutex mutex;

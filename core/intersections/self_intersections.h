@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -35,6 +36,9 @@ enum class SearchOrder {
 [[nodiscard]] SelfIntersections self_intersections(const TriangleMesh& mesh, SearchOrder order = SearchOrder::kRuns,
                                                    const std::vector<std::uint8_t>* graphs = nullptr,
                                                    const std::vector<std::uint8_t>* of = nullptr);
+
+// All of these pairs, in increasing order; none if they are more than `most`. The search ends there.
+[[nodiscard]] std::optional<std::vector<TrianglePair>> intersecting_pairs(const TriangleMesh& mesh, std::size_t most);
 
 // The `first` of these pairs alone, in runs. The search ends with it.
 [[nodiscard]] std::optional<TrianglePair> first_self_intersection(const TriangleMesh& mesh,

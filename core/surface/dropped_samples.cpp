@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
@@ -14,7 +15,8 @@ namespace {
 
 constexpr double kMostParts = 180.0 * 180.0;  // of a triangle, rows times parts of a row: each is a small part then
 constexpr double kOnSurface = 0x1p-9;         // voxels: more than planes of one surface are off each other
-constexpr double kPerStep = 1.4;              // rows, and parts of a row: two of them to a square of a step
+constexpr std::size_t kMostRemembered = std::size_t{1} << 27;  // samples, a bit each
+constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a square of a step
 
 double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostParts); }
 
@@ -38,6 +40,15 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
       samples.triangles.push_back(triangle);
     }
   }
+}
+
+// One for all of it.
+void add_sample(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vec3 &first = mesh.vertices[a], &second = mesh.vertices[b], &third = mesh.vertices[c];
+  samples.points.push_back((1.0 / 3.0) * (first + second + third));
+  samples.areas.push_back(safe_norm(cross((1.0 / step) * (second - first), (1.0 / step) * (third - first))) / 2.0);
+  samples.triangles.push_back(triangle);
 }
 
 // That many or fewer, found in far less time than they are.
@@ -138,26 +149,52 @@ struct DroppedSamples::Part {
   std::vector<std::size_t> doubtful{};  // samples
 };
 
-DroppedSamples::DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness)
+DroppedSamples::DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness,
+                               std::vector<bool> held)
     : surface_(surface),
       inside_(inside),
+      held_(std::move(held)),
       thickness_(thickness),
       step_(0.5 * safe_norm(inside.lattice().spacing)),
       most_(safe_norm(inside.lattice().spacing) + thickness),
       on_surface_(kOnSurface * inside.lattice().least_spacing()) {}
 
+bool DroppedSamples::holds_all() const {
+  return !held_.empty() && std::ranges::all_of(held_, [](bool is_held) { return is_held; });
+}
+
 void DroppedSamples::for_each(const TriangleMesh& mesh, const Visit& visit) {
   constexpr std::size_t kPartsAtOnce = 64;
-  if (!(thickness_ > 0.0)) find_lost_components(mesh);
+  if (!(thickness_ > 0.0) && !is_decided_) find_lost_components(mesh);
+  std::size_t sample = 0;
   for (std::size_t next = 0; next < mesh.triangles.size();) {
     std::vector<Part> parts;
     while (parts.size() < kPartsAtOnce && next < mesh.triangles.size()) {
       parts.push_back(part_from(mesh, next));
       next = parts.back().end;
     }
-    parallel_for_each(parts.size(), [&](std::size_t n) { take_samples(mesh, parts[n]); });
-    decide(parts);
+    parallel_for_each(parts.size(), [&](std::size_t n) {
+      take_samples(mesh, parts[n]);
+      if (!is_decided_) find_doubtful(parts[n]);
+    });
+    if (is_decided_) {
+      for (Part& part : parts) {
+        for (std::size_t n = 0; n < part.dropped.size(); ++n) part.dropped[n] = dropped_[sample++];
+      }
+    } else {
+      decide(parts);
+      remember(parts);
+    }
     for (const Part& part : parts) visit(part.samples, part.dropped);
+  }
+  is_decided_ = dropped_.size() <= kMostRemembered;
+}
+
+// Until they are too many.
+void DroppedSamples::remember(std::span<const Part> parts) {
+  for (const Part& part : parts) {
+    if (dropped_.size() > kMostRemembered) return;
+    dropped_.insert(dropped_.end(), part.dropped.begin(), part.dropped.end());
   }
 }
 
@@ -177,18 +214,27 @@ DroppedSamples::Part DroppedSamples::part_from(const TriangleMesh& mesh, std::si
   constexpr double kEnough = 4096.0;
   Part part{begin, begin};
   for (double samples = 0.0; part.end < mesh.triangles.size() && samples < kEnough; ++part.end) {
-    samples += most_samples(mesh, static_cast<std::uint32_t>(part.end), step_);
+    samples += is_held(part.end) ? 1.0 : most_samples(mesh, static_cast<std::uint32_t>(part.end), step_);
   }
   return part;
 }
 
 void DroppedSamples::take_samples(const TriangleMesh& mesh, Part& part) const {
-  const NearByNodes nodes(inside_);
   for (std::size_t i = part.begin; i < part.end; ++i) {
-    add_samples(part.samples, mesh, static_cast<std::uint32_t>(i), step_);
+    const auto triangle = static_cast<std::uint32_t>(i);
+    if (is_held(i)) {
+      add_sample(part.samples, mesh, triangle, step_);
+    } else {
+      add_samples(part.samples, mesh, triangle, step_);
+    }
   }
   part.dropped.resize(part.samples.points.size(), false);
+}
+
+void DroppedSamples::find_doubtful(Part& part) const {
+  const NearByNodes nodes(inside_);
   for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
+    if (is_held(part.samples.triangles[n])) continue;
     if (is_of_lost(part.samples.triangles[n]) || !nodes.is_near(part.samples.points[n])) part.doubtful.push_back(n);
   }
 }

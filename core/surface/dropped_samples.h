@@ -27,31 +27,42 @@ struct AreaSamples {
 // Where that is 0, also those that are not on the surface, of components of the mesh that no face of the surface is of.
 class DroppedSamples {
  public:
-  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay.
-  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness);
+  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay. `held`: of
+  // each triangle of the mesh, whether no point of it is dropped, as is known; none may be known of.
+  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness, std::vector<bool> held);
 
   [[nodiscard]] const NodeSet& inside() const { return inside_; }
   [[nodiscard]] double thickness() const { return thickness_; }  // world units
   [[nodiscard]] double step() const { return step_; }            // of points, half a cell's diagonal
 
+  // Whether no point at all is dropped, as is known.
+  [[nodiscard]] bool holds_all() const;
+
   using Visit = std::function<void(const AreaSamples& samples, const std::vector<bool>& dropped)>;
-  // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order. The same
-  // for any number of threads. Builds a search structure for the surface when that is first needed.
+  // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order; one point
+  // stands for all of a triangle that is held. The same for any number of threads. Builds a search structure for the
+  // surface when that is first needed. Sooner the second time. Precondition: it is the same mesh each time.
   void for_each(const TriangleMesh& mesh, const Visit& visit);
 
  private:
   struct Part;
   [[nodiscard]] Part part_from(const TriangleMesh& mesh, std::size_t begin) const;
   void find_lost_components(const TriangleMesh& mesh);
+  [[nodiscard]] bool is_held(std::size_t triangle) const { return !held_.empty() && held_[triangle]; }
   [[nodiscard]] bool is_of_lost(std::uint32_t triangle) const { return !is_of_lost_.empty() && is_of_lost_[triangle]; }
   void take_samples(const TriangleMesh& mesh, Part& part) const;
+  void find_doubtful(Part& part) const;
   void decide(std::span<Part> parts);
+  void remember(std::span<const Part> parts);
 
   const SurfaceMesh& surface_;
   const NodeSet& inside_;
+  std::vector<bool> held_;
   double thickness_, step_, most_, on_surface_;
   std::vector<bool> is_of_lost_;               // of each triangle, whether no face is of its component
   std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
+  std::vector<bool> dropped_;                  // of each sample, in order, since it was decided
+  bool is_decided_ = false;                    // of all samples
 };
 
 }  // namespace raycone

@@ -20,6 +20,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_simplify.h"
+#include "core/surface/embedded_border.h"
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
@@ -34,6 +35,8 @@ namespace {
 
 // Contours of meshes that are finer than the lattice have 12 to 15 triangles to a cell.
 constexpr std::uint64_t kMostPerCell = 12;
+// Before merging there may be so many times as many: of more, a look takes longer than a contour.
+constexpr double kBeforeMerging = 3.0, kBeforeBorder = 1.5;
 
 using Parts = std::vector<std::vector<Triangle>>;  // of each component its triangles
 
@@ -66,31 +69,48 @@ std::vector<double> winding_numbers_around(const Parts& components, const Triang
   return around;
 }
 
+// Leaves these components.
+void keep(SurfaceMesh& surface, const Components& components, const std::vector<bool>& kept) {
+  SurfaceMesh left;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const Triangle& t = surface.mesh.triangles[face];
+    if (!kept[components.of_vertex[t[0]]]) continue;
+    left.mesh.triangles.push_back(t);
+    left.sources.push_back(surface.sources[face]);
+  }
+  left.mesh = used_part(surface.mesh.vertices, std::move(left.mesh.triangles));
+  surface = std::move(left);
+}
+
 // Leaves the components at which the rule ceases to hold: it does behind them, and not in front. Returns whether no
 // other one is its border, too, the wrong way around, and any is left. Precondition: the mesh is closed and free of
 // self-intersections.
 bool keep_border(SurfaceMesh& surface, const Rule& rule) {
-  const TriangleMesh& mesh = surface.mesh;
-  const Components components = components_of(mesh);
-  const Parts parts = parts_of(mesh, components);
-  const std::vector<double> around = winding_numbers_around(parts, mesh);
+  const Components components = components_of(surface.mesh);
+  const Parts parts = parts_of(surface.mesh, components);
+  const std::vector<double> around = winding_numbers_around(parts, surface.mesh);
   std::vector<bool> is_border(parts.size());
   for (std::size_t n = 0; n < parts.size(); ++n) {
-    const int sign = volume_sign(parts[n], mesh.vertices);
+    const int sign = volume_sign(parts[n], surface.mesh.vertices);
     const double front = sign > 0 ? around[n] : around[n] - 1.0, behind = front + 1.0;
     if (sign == 0 || (holds(rule, front) && !holds(rule, behind))) return false;
     is_border[n] = !holds(rule, front) && holds(rule, behind);
   }
-  SurfaceMesh border;
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    const Triangle& t = mesh.triangles[face];
-    if (!is_border[components.of_vertex[t[0]]]) continue;
-    border.mesh.triangles.push_back(t);
-    border.sources.push_back(surface.sources[face]);
-  }
-  border.mesh = used_part(mesh.vertices, std::move(border.mesh.triangles));
-  surface = std::move(border);
+  keep(surface, components, is_border);
   return !surface.sources.empty();
+}
+
+// Leaves the components that the lattice sees, as keep_border() does. Returns whether it sees all of each, and any is
+// left.
+bool keep_seen(SurfaceMesh& surface, const NodeSet& inside, const Rule& rule) {
+  const Components components = components_of(surface.mesh);
+  const std::vector<Sight> sights = sights_of(inside, parts_of(surface.mesh, components), surface.mesh.vertices);
+  if (std::ranges::find(sights, Sight::kInPart) != sights.end()) return false;
+  if (std::ranges::find(sights, Sight::kUnseen) == sights.end()) return true;
+  std::vector<bool> is_seen;
+  for (const Sight sight : sights) is_seen.push_back(sight == Sight::kWhole);
+  keep(surface, components, is_seen);
+  return keep_border(surface, rule);  // what was within an unseen one may separate nothing now
 }
 
 // Without vertices that no triangle uses.
@@ -118,6 +138,20 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
   SourceSettler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0)).settle(made.surface);
 }
 
+// Of each triangle of the mesh, whether it is a face, with all three corners.
+std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMesh& mesh, bool single_precision) {
+  std::vector<bool> held(mesh.triangles.size(), false);
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const auto source = static_cast<std::size_t>(surface.sources[face]);
+    held[source] = std::ranges::all_of(mesh.triangles[source], [&](std::uint32_t corner) {
+      const Vec3 place = single_precision ? rounded_to_float(mesh.vertices[corner]) : mesh.vertices[corner];
+      return std::ranges::any_of(surface.mesh.triangles[face],
+                                 [&](std::uint32_t vertex) { return surface.mesh.vertices[vertex] == place; });
+    });
+  }
+  return held;
+}
+
 // `most`: triangles, once merged.
 std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSet& inside,
                                           const SurfaceOptions& options, std::uint64_t most) {
@@ -125,9 +159,16 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
   const TriangleMesh& surface = made.surface.mesh;
   if (options.single_precision) round_to_float(made.surface.mesh.vertices);
   if (!std::isfinite(largest_coordinate(bounding_box(surface)))) return std::nullopt;  // beyond floats
-  if (!is_closed_and_embedded(surface) || !keep_border(made.surface, options.rule)) return std::nullopt;
-  made.holds_mesh = surface.triangles.size() == mesh.triangles.size() && !(options.simplify > 0.0);
-  if (!are_seen_by(inside, parts_of(surface, components_of(surface)), surface.vertices)) return std::nullopt;
+  Rule rule = options.rule;
+  if (!is_closed_and_embedded(surface) || !keep_border(made.surface, rule)) {
+    if (static_cast<double>(mesh.triangles.size()) > kBeforeBorder * static_cast<double>(most)) return std::nullopt;
+    std::optional<SurfaceMesh> border = embedded_border(mesh, inside.lattice(), options);
+    if (!border) return std::nullopt;
+    made.surface = *std::move(border);
+    rule = Rule{};  // it goes once around what it is the border of
+  }
+  if (!keep_seen(made.surface, inside, rule)) return std::nullopt;
+  if (!(options.simplify > 0.0)) made.held = triangles_held_by(made.surface, mesh, options.single_precision);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
@@ -141,10 +182,9 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
 std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
                                                const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
-  constexpr std::uint64_t kBeforeMerging = 3;  // times as many: of more, a look takes longer than a contour
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
   const std::uint64_t most = kMostPerCell * mixed_cells(inside);
-  if (mesh.triangles.size() > kBeforeMerging * most) return std::nullopt;
+  if (static_cast<double>(mesh.triangles.size()) > kBeforeMerging * static_cast<double>(most)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
   const auto make = [&](const TriangleMesh& input, const NodeSet& nodes, const SurfaceOptions& as) {
     return whole_mesh(input, nodes, as, most);

@@ -42,14 +42,17 @@ class MixedCells {
         component, [&](const Triangle& t) { return !holds_for_parts(corners_of(t, vertices), 1.0, is_not_mixed); });
   }
 
-  // Whether all of a triangle is within the lattice, and in or beside a block of cells with one of them.
+  [[nodiscard]] bool is_within_lattice(const Triangle& t, const std::vector<Vec3>& vertices) const {
+    return std::ranges::all_of(corners_of(t, vertices), [&](const Vec3& p) { return is_within(p); });
+  }
+
+  // Whether all of a triangle is in or beside a block of cells with one of them. Precondition: it is within the
+  // lattice.
   [[nodiscard]] bool are_near_to(const Triangle& t, const std::vector<Vec3>& vertices) const {
-    const Corners corners = corners_of(t, vertices);
-    return std::ranges::all_of(corners, [&](const Vec3& p) { return is_within(p); }) &&
-           holds_for_parts(corners, static_cast<double>(kSide), [&](const Vec3& p) {
-             const NodeSet::Node cell = cell_at(p);
-             return near_.holds(cell[0] / kSide, cell[1] / kSide, cell[2] / kSide);
-           });
+    return holds_for_parts(corners_of(t, vertices), static_cast<double>(kSide), [&](const Vec3& p) {
+      const NodeSet::Node cell = cell_at(p);
+      return near_.holds(cell[0] / kSide, cell[1] / kSide, cell[2] / kSide);
+    });
   }
 
  private:
@@ -108,15 +111,20 @@ class MixedCells {
 
 }  // namespace
 
-bool are_seen_by(const NodeSet& inside, const std::vector<std::vector<Triangle>>& components,
-                 const std::vector<Vec3>& vertices) {
+std::vector<Sight> sights_of(const NodeSet& inside, const std::vector<std::vector<Triangle>>& components,
+                             const std::vector<Vec3>& vertices) {
   const MixedCells mixed(inside);
-  for (const std::vector<Triangle>& component : components) {
-    const std::uint64_t unseen =
-        sum_over(component.size(), [&](std::size_t n) { return !mixed.are_near_to(component[n], vertices); });
-    if (unseen > 0 || !mixed.are_met_by(component, vertices)) return false;
-  }
-  return true;
+  const auto sight = [&](const std::vector<Triangle>& component) {
+    const auto any = [&](const auto& is_so) {
+      return sum_over(component.size(), [&](std::size_t n) { return is_so(component[n]) ? 1 : 0; }) > 0;
+    };
+    if (any([&](const Triangle& t) { return !mixed.is_within_lattice(t, vertices); })) return Sight::kInPart;
+    if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;
+    return any([&](const Triangle& t) { return !mixed.are_near_to(t, vertices); }) ? Sight::kInPart : Sight::kWhole;
+  };
+  std::vector<Sight> sights(components.size());
+  std::ranges::transform(components, sights.begin(), sight);
+  return sights;
 }
 
 }  // namespace raycone

@@ -1,6 +1,7 @@
 // Whether the nodes of a lattice tell of a mesh.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
@@ -8,11 +9,18 @@
 
 namespace raycone {
 
-// Whether each component, given as its triangles, passes through a cell with nodes of both kinds, and has no point
-// farther from such a cell than a few voxels: it is sure to be so within four along each axis, and not beyond eleven;
-// and all of them are within the lattice. Judged in the middles of small parts of triangles. The same for any number of
-// threads. Precondition: !inside.reaches_border(), vertices of triangles are finite.
-[[nodiscard]] bool are_seen_by(const NodeSet& inside, const std::vector<std::vector<Triangle>>& components,
-                               const std::vector<Vec3>& vertices);
+enum class Sight : std::uint8_t {
+  kUnseen,  // passes through no cell with nodes of both kinds: no node is within what it is the border of
+  kInPart,  // does, but has points farther from such cells than a few voxels
+  kWhole,
+};
+
+// How the lattice sees each component, given as its triangles: in part, too, where it is not within the lattice. Points
+// are surely near enough within four voxels along
+// each axis of such a cell, and not beyond eleven. Judged in the middles of small
+// parts of triangles. The same for any number of threads. Precondition: !inside.reaches_border(), vertices of triangles
+// are finite.
+[[nodiscard]] std::vector<Sight> sights_of(const NodeSet& inside, const std::vector<std::vector<Triangle>>& components,
+                                           const std::vector<Vec3>& vertices);
 
 }  // namespace raycone

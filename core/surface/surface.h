@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <stdexcept>
+#include <vector>
 
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
@@ -30,7 +31,9 @@ struct FinishedSurface {
   // left faults still: the surface is the one before.
   bool merged = true, simplified = true;
   bool bound_too_small = false;  // why it is not simplified: `simplify` is within what rounding needs
-  bool holds_mesh = false;       // no point of the mesh is farther from it than merging moves
+  // Of each triangle of the mesh whether it was part of the surface as it is, until faces of a plane were merged. Empty
+  // where none is known to be.
+  std::vector<bool> held{};
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.

@@ -189,6 +189,7 @@ SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& 
 
 DroppedArea dropped_area(const TriangleMesh& mesh, DroppedSamples& dropped) {
   DroppedArea result;
+  if (dropped.holds_all()) return result;
   double area = 0.0;  // in squares of a step
   dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
     for (std::size_t n = 0; n < is_dropped.size(); ++n) area += is_dropped[n] ? samples.areas[n] : 0.0;

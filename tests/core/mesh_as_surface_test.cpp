@@ -61,6 +61,17 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   return made;
 }
 
+bool holds_all(const FinishedSurface& made) {
+  return !made.held.empty() && std::ranges::all_of(made.held, [](bool is_held) { return is_held; });
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
+  return volume;
+}
+
 std::vector<Vec3> sorted_vertices(const TriangleMesh& mesh) {
   std::vector<Vec3> vertices = mesh.vertices;
   std::ranges::sort(vertices, {}, [](const Vec3& v) { return std::tuple(v.x, v.y, v.z); });
@@ -109,7 +120,7 @@ TEST(MeshAsSurface, IsTheMeshWhereThatIsASolid) {
     for (const double side : {13.0, 40.7}) {
       const std::optional<FinishedSurface> made = kept(turned(mesh), side);
       ASSERT_TRUE(made);
-      EXPECT_TRUE(made->holds_mesh);
+      EXPECT_TRUE(holds_all(*made));
       EXPECT_TRUE(made->merged);
       EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(turned(mesh)));
     }
@@ -151,19 +162,45 @@ TEST(MeshAsSurface, MergesFacesOfAPlane) {
   }
 }
 
-TEST(MeshAsSurface, IsNoneOfWhatIsNoSolid) {
+TEST(MeshAsSurface, IsNoneOfOpenMeshes) {
+  EXPECT_FALSE(kept(turned(test::open_box()), 20));
+  EXPECT_FALSE(kept(turned(test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), test::open_box())), 20));
+}
+
+// Of a mesh with faults, or that is not what the rule asks for, the border. Parts that touch are apart by 2^-30 of a
+// voxel, a twentieth, or 32 roundings to float, 4e-6: some times that, for the areas of the parts.
+void expect_volume(const TriangleMesh& mesh, double volume, const Rule& rule = {}) {
+  for (const bool single_precision : {false, true}) {
+    const double most = single_precision ? 5e-5 : 1e-9;
+    const std::optional<FinishedSurface> made =
+        kept(turned(mesh), 20, {.rule = rule, .single_precision = single_precision});
+    ASSERT_TRUE(made) << volume << ' ' << single_precision;
+    EXPECT_TRUE(made->merged);
+    EXPECT_NEAR(volume_of(made->surface.mesh), volume, most);
+    for (std::size_t face = 0; face < made->surface.sources.size(); ++face) {
+      const SourcePlane plane = source_plane(turned(mesh), made->surface.sources[face]);
+      for (const std::uint32_t v : made->surface.mesh.triangles[face])
+        EXPECT_LT(std::abs(plane.height(made->surface.mesh.vertices[v])), most);
+    }
+  }
+}
+
+TEST(MeshAsSurface, IsTheBorderOfAClosedMeshWithFaults) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
-  const auto is_kept = [](const TriangleMesh& mesh, const Rule& rule = {}) {
-    return kept(turned(mesh), 20, {.rule = rule}).has_value();
-  };
-  EXPECT_TRUE(is_kept(box));
-  EXPECT_FALSE(is_kept(test::open_box()));
-  EXPECT_FALSE(is_kept(test::joined(box, box_at(0.5, 0.7))));        // passes through itself
-  EXPECT_FALSE(is_kept(test::reversed(box), {RuleKind::kNonzero}));  // inside out
-  EXPECT_FALSE(is_kept(test::joined(box, box_at(1.5, 0.4, false)), {RuleKind::kNonzero}));
-  EXPECT_FALSE(is_kept(test::cells_mesh({{0, 0, 0}, {1, 1, 0}})));                 // two blocks that share an edge
-  EXPECT_FALSE(is_kept(test::joined(box, test::box_mesh({1, 0, 0}, {2, 1, 1}))));  // and a side
-  TriangleMesh split = box;                                                        // a face of no area at an edge
+  const TriangleMesh through = box_at(0.5, 0.7);  // 0.5 by 0.7 by 0.6 of which is in the box
+  expect_volume(test::joined(box, through), 1.0 + 0.343 - 0.21);
+  expect_volume(test::joined(box, through), 0.21, {RuleKind::kThreshold, 1.5});
+  expect_volume(test::joined(box, test::reversed(through)), 1.0 - 0.21);
+  expect_volume(test::reversed(box), 1.0, {RuleKind::kNonzero});
+  expect_volume(test::joined(box, box_at(1.5, 0.4, false)), 1.064, {RuleKind::kNonzero});
+  expect_volume(test::joined(box, box_at(0.2, 0.4)), 0.936, {RuleKind::kOdd});
+  expect_volume(weld(test::joined(box, box), {}), 1.0);
+  expect_volume(weld(test::joined(box, test::box_mesh({1, 0, 0}, {2, 1, 1})), {}), 2.0);  // they share a side
+  expect_volume(test::joined(box, test::box_mesh({1, 0.2, 0.2}, {2, 0.7, 1.4})), 1.6);    // a part of one
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), 2.0);                           // an edge
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 1}}), 2.0);                           // a corner
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}), 4.0);     // all of these
+  TriangleMesh split = box;  // with a face of no area at an edge
   const Triangle first = split.triangles[0];
   split.vertices.push_back(0.5 * (split.vertices[first[0]] + split.vertices[first[1]]));
   const auto middle = static_cast<std::uint32_t>(split.vertices.size() - 1);
@@ -171,7 +208,7 @@ TEST(MeshAsSurface, IsNoneOfWhatIsNoSolid) {
   split.triangles.push_back({middle, first[1], first[2]});
   split.triangles.push_back({first[0], first[1], middle});
   EXPECT_EQ(exterior_edges(split).size(), 0U);
-  EXPECT_FALSE(is_kept(split));
+  expect_volume(split, 1.0);
 }
 
 // A bubble so small that no sample is in it, but next to the side of the box, so that cells there are of both kinds.
@@ -185,7 +222,7 @@ TEST(MeshAsSurface, LooksIntoComponentsWithoutSamples) {
       ASSERT_TRUE(made);
       const bool is_border = outward == (x > 1.0);
       EXPECT_EQ(made->surface.mesh.triangles.size(), is_border ? 24U : 12U) << outward << ' ' << x;
-      EXPECT_EQ(made->holds_mesh, is_border) << outward << ' ' << x;
+      EXPECT_EQ(holds_all(*made), is_border) << outward << ' ' << x;
     }
   }
 }
@@ -198,7 +235,7 @@ TEST(MeshAsSurface, IsWithoutComponentsThatSeparateNothing) {
     const std::optional<FinishedSurface> made = kept(mesh, 20, {.rule = rule});
     ASSERT_TRUE(made);
     EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(left));
-    EXPECT_FALSE(made->holds_mesh);
+    EXPECT_FALSE(holds_all(*made));
     for (std::size_t face = 0; face < made->surface.sources.size(); ++face) {
       const SourcePlane plane = source_plane(mesh, made->surface.sources[face]);
       for (const std::uint32_t v : made->surface.mesh.triangles[face])
@@ -208,8 +245,6 @@ TEST(MeshAsSurface, IsWithoutComponentsThatSeparateNothing) {
   is_left(test::joined(within, box), {}, box);
   is_left(test::joined(within, box), {RuleKind::kThreshold, 1.5}, within);
   is_left(test::joined(test::joined(beside, within), box), {}, box);
-  EXPECT_FALSE(kept(test::joined(box, beside), 20, {.rule = {RuleKind::kNonzero}}));
-  EXPECT_FALSE(kept(test::joined(box, within), 20, {.rule = {RuleKind::kOdd}}));  // a cavity, the wrong way around
 }
 
 TEST(MeshAsSurface, IsNoneWithOtherNodes) {
@@ -222,7 +257,7 @@ TEST(MeshAsSurface, IsNoneWithOtherNodes) {
   EXPECT_FALSE(mesh_as_surface(box, inside, {}));
 }
 
-TEST(MeshAsSurface, IsNoneOfWhatTheLatticeDoesNotSee) {
+TEST(MeshAsSurface, IsWithoutWhatTheLatticeDoesNotSee) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
   const double voxel = 1.0 / 16.0;
   // `samples`: along z. Those of a plate that is 0.6 voxels thick lie before and behind it, or within.
@@ -230,8 +265,12 @@ TEST(MeshAsSurface, IsNoneOfWhatTheLatticeDoesNotSee) {
     return test::joined(box, test::box_mesh({0, 0, 1.0 + gap * voxel}, {1, 1, samples * voxel}));
   };
   EXPECT_TRUE(kept(with_plate(20.8, 4.2), 20.8));
-  EXPECT_FALSE(kept(with_plate(21.2, 4.6), 21.2));
-  EXPECT_FALSE(kept(with_plate(18.2, 1.6), 18.2));  // near, but in no cell with both
+  for (const auto& [samples, gap] : {std::array{21.2, 4.6}, {18.2, 1.6}}) {  // far, or near, in no cell with both
+    const std::optional<FinishedSurface> made = kept(with_plate(samples, gap), samples);
+    ASSERT_TRUE(made);
+    EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(box));
+    EXPECT_EQ(std::ranges::count(made->held, true), 12);
+  }
   const auto fin = [&](double voxels) { return finned(0.3 * voxel, voxels * voxel); };
   EXPECT_TRUE(kept(fin(3.9), 16.0 + 3.9));
   EXPECT_FALSE(kept(fin(12.1), 16.0 + 12.1));
@@ -281,7 +320,7 @@ TEST(MeshAsSurface, IsSimplified) {
   const std::optional<FinishedSurface> made = kept(ball, 40, options);
   ASSERT_TRUE(made);
   EXPECT_TRUE(made->simplified);
-  EXPECT_FALSE(made->holds_mesh);
+  EXPECT_FALSE(holds_all(*made));
   EXPECT_LT(made->surface.mesh.triangles.size(), ball.triangles.size() - 50);
   std::vector<double> distances(ball.vertices.size());
   DistanceEvaluator(made->surface.mesh).evaluate(ball.vertices, distances);
@@ -315,7 +354,7 @@ TEST(SeenByNodes, TellsHowFarTrianglesAreFromNodesOfBothKinds) {
   NodeSet inside(lattice);
   inside.insert(15, 15, 15);
   const auto is_seen = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    return are_seen_by(inside, {{{0, 1, 2}}}, {a, b, c});
+    return sights_of(inside, {{{0, 1, 2}}}, {a, b, c}).front() == Sight::kWhole;
   };
   const Vec3 at{15, 15, 15};
   for (double far = 0.0; far < 14.0; far += 0.5) {

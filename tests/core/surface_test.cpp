@@ -1291,7 +1291,7 @@ TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
 }
 
 DroppedArea dropped_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
-  DroppedSamples dropped(surface, inside, 0.0);
+  DroppedSamples dropped(surface, inside, 0.0, {});
   return dropped_area(mesh, dropped);
 }
 
@@ -1412,7 +1412,7 @@ TEST(SurfaceMeasures, TellWhatIsTooThin) {
     mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
     for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     const WindingNumberEvaluator evaluator(mesh);
-    DroppedSamples dropped(surface, inside, thickness);
+    DroppedSamples dropped(surface, inside, thickness, {});
     return thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);
   };
   const double h = lattice.spacing.x;
@@ -1440,7 +1440,7 @@ TEST(SurfaceMeasures, TellComponentsThatNoFaceIsOf) {
       test::joined(box, test::reversed(test::box_mesh({0.3, 0.3, 0.2 * h}, {0.7, 0.7, 0.6 * h})));
   const double area = 2 * 0.16 + 4 * 0.4 * 0.4 * h;
   EXPECT_NEAR(dropped_of(surface, cavity, inside).area, area, 1e-12);
-  DroppedSamples dropped(surface, inside, 0.0);
+  DroppedSamples dropped(surface, inside, 0.0, {});
   const WindingNumberEvaluator evaluator(cavity);
   const ThinParts thin = thin_parts(cavity, RuleAlong(evaluator, Rule{}), dropped);
   EXPECT_NEAR(thin.area, area, 1e-12);
@@ -1462,7 +1462,7 @@ TEST(SurfaceMeasures, AddUpManyThinParts) {
     const double z = (n + 30) * h;
     mesh = test::joined(mesh, test::reversed(test::box_mesh({0.2, 0.2, z + 0.2 * h}, {0.8, 0.8, z + 0.3 * h})));
   }
-  DroppedSamples dropped(surface, inside, 0.0);
+  DroppedSamples dropped(surface, inside, 0.0, {});
   EXPECT_GT(dropped_area(mesh, dropped).samples, std::uint64_t{1} << 18);
   const WindingNumberEvaluator evaluator(mesh);
   const ThinParts thin = thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);

@@ -611,9 +611,25 @@ MUTANTS = [
         ("core/surface/mesh_as_surface.cpp", "  if (options.single_precision) round_to_float(made.surface.mesh.vertices);\n",
          "")]),
     Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
-        ("core/surface/seen_by_nodes.cpp", "unseen > 0 || !mixed.are_met_by(component, vertices)", "unseen > 0")]),
+        ("core/surface/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),
     Mutant("far_parts_kept", "no part of a mesh may be far from nodes of both kinds", [
-        ("core/surface/seen_by_nodes.cpp", "unseen > 0 || !mixed", "unseen > component.size() || !mixed")]),
+        ("core/surface/seen_by_nodes.cpp", "!mixed.are_near_to(t, vertices); }) ? Sight::kInPart", "!mixed.are_near_to(t, vertices); }) ? Sight::kWhole")]),
+    Mutant("faces_cut_apart_once", "edges of faces cross each other in a plane, too", [
+        ("core/arrangement/plane_arrangement.cpp", "if (cross(boxes_[n].segment, boxes_[m].segment)) found", "if (n > m) found")]),
+    Mutant("multiplicity_forgotten", "two faces that lie on each other change winding numbers by two", [
+        ("core/arrangement/plane_arrangement.cpp", "*face, std::abs(multiplicity[n])", "*face, 1")]),
+    Mutant("corners_of_faces_missed", "a corner of one face on another is a point of both", [
+        ("core/arrangement/contact.cpp", "if (sides[i] == 0 && on_triangle", "if (sides[i] == 2 && on_triangle")]),
+    Mutant("rays_count_edges", "another point is tried where a ray meets an edge", [
+        ("core/arrangement/winding_in_front.cpp", "if (meeting.at_edge) at_edges[i] = true;", "")]),
+    Mutant("borders_face_in", "where the rule holds in front of faces, the border faces the other way", [
+        ("core/arrangement/rule_border.cpp", ": Place::kTurned);", ": Place::kAsItIs);")]),
+    Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
+        ("core/arrangement/take_apart.cpp", "order[(n + order.size() - 1) % order.size()]", "order[(n + 1) % order.size()]")]),
+    Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
+        ("core/arrangement/take_apart.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
+    Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [
+        ("core/exact/exact_points.cpp", "const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;", "const double trust = 0.0;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

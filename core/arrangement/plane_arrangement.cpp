@@ -1,0 +1,199 @@
+#include "core/arrangement/plane_arrangement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <span>
+
+#include "core/arrangement/plane_triangulation.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+namespace {
+
+using Number = ExactPoints::Number;
+using Segment = std::pair<Number, Number>;
+using PointTriple = std::array<Number, 3>;
+
+// An axis along which a face is seen, not from the side: of these the one that sees most of it.
+int axis_to_see(const PointTriple& corners, const ExactPoints& points) {
+  const Vec3& a = points.rounded(corners[0]);
+  const Vec3 area = absolute(cross(points.rounded(corners[1]) - a, points.rounded(corners[2]) - a));
+  std::array<int, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(axes, [&](int i, int j) { return area[i] > area[j]; });
+  return *std::ranges::find_if(axes, [&](int axis) { return points.turn(axis, corners[0], corners[1], corners[2]); });
+}
+
+std::vector<Segment> all_segments(const PlaneGroup& group) {
+  std::vector<Segment> segments = group.segments;
+  for (const PlaneGroup::Face& face : group.faces) {
+    for (std::size_t i = 0; i < 3; ++i) segments.emplace_back(face.corners[i], face.corners[(i + 1) % 3]);
+  }
+  for (auto& [from, to] : segments) {
+    if (from > to) std::swap(from, to);
+  }
+  std::ranges::sort(segments);
+  const auto [first, end] = std::ranges::unique(segments);
+  segments.erase(first, end);
+  return segments;
+}
+
+// The points in which segments cross; where one ends on another that is a point already.
+class Crossings {
+ public:
+  Crossings(std::span<const Segment> segments, int axis, ExactPoints& points) : axis_(axis), points_(points) {
+    const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+    for (const auto& [from, to] : segments) {
+      const Vec3 &a = points.rounded(from), &b = points.rounded(to);
+      const auto [left_end, right_end] = std::minmax(a[right], b[right]);
+      const auto [lower, upper] = std::minmax(a[up], b[up]);
+      boxes_.push_back({left_end, right_end, lower, upper, {from, to}});
+    }
+    std::ranges::sort(boxes_, [](const Boxed& s, const Boxed& t) {
+      return std::tie(s.left, s.segment) < std::tie(t.left, t.segment);
+    });
+  }
+
+  // None if that takes too long.
+  [[nodiscard]] std::optional<std::vector<Number>> find(Effort& effort) {
+    std::vector<Number> found;
+    for (std::size_t n = 0; n < boxes_.size(); ++n) {
+      for (std::size_t m = n + 1; m < boxes_.size() && boxes_[m].left <= boxes_[n].right; ++m) {
+        if (!effort.take()) return std::nullopt;
+        if (boxes_[m].lower > boxes_[n].upper || boxes_[m].upper < boxes_[n].lower) continue;
+        if (cross(boxes_[n].segment, boxes_[m].segment)) found.push_back(crossing(n, m));
+      }
+    }
+    return found;
+  }
+
+ private:
+  // Rounding keeps the order of numbers, so that segments that meet have boxes that do.
+  struct Boxed {
+    double left, right, lower, upper;
+    Segment segment;
+  };
+
+  [[nodiscard]] bool are_apart(const Segment& line, const Segment& ends) const {
+    return points_.turn(axis_, line.first, line.second, ends.first) *
+               points_.turn(axis_, line.first, line.second, ends.second) <
+           0;
+  }
+  [[nodiscard]] bool cross(const Segment& s, const Segment& t) const { return are_apart(s, t) && are_apart(t, s); }
+  [[nodiscard]] Number crossing(std::size_t n, std::size_t m) {
+    const auto [a, b] = boxes_[n].segment;
+    const auto [c, d] = boxes_[m].segment;
+    return points_.add_crossing(axis_, a, b, c, d);
+  }
+
+  int axis_;
+  ExactPoints& points_;
+  std::vector<Boxed> boxes_;
+};
+
+// How many times more the boundaries of all faces pass along an edge in its direction than against it.
+class EdgeCounts {
+ public:
+  void add(std::span<const Number> chain) {
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const bool is_forward = chain[i - 1] < chain[i];
+      counts_[std::minmax(chain[i - 1], chain[i])] += is_forward ? 1 : -1;
+    }
+  }
+  // None where no boundary passes.
+  [[nodiscard]] std::optional<int> along(Number from, Number to) const {
+    const auto found = counts_.find(std::minmax(from, to));
+    if (found == counts_.end()) return std::nullopt;
+    return from < to ? found->second : -found->second;
+  }
+
+ private:
+  std::map<Segment, int> counts_;
+};
+
+// Of each face of the triangulation how many more faces of the group go to the left around it than to the right: it is
+// one more on the left of an edge of a boundary than on its right.
+std::vector<int> multiplicities(const PlaneTriangulation& triangulation, const EdgeCounts& counts) {
+  const std::vector<PlaneTriangulation::Face>& faces = triangulation.faces();
+  std::vector<int> result(faces.size(), 0);
+  std::vector<bool> is_known(faces.size(), false);
+  std::vector<std::uint32_t> to_do{triangulation.outer_face()};
+  is_known[to_do.front()] = true;
+  while (!to_do.empty()) {
+    const std::uint32_t face = to_do.back();
+    to_do.pop_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t other = faces[face].beyond[i];
+      if (other == PlaneTriangulation::kNone || is_known[other]) continue;
+      const Number from = triangulation.point(faces[face].corners[(i + 1) % 3]);
+      const Number to = triangulation.point(faces[face].corners[(i + 2) % 3]);
+      result[other] = result[face] - counts.along(from, to).value_or(0);
+      is_known[other] = true;
+      to_do.push_back(other);
+    }
+  }
+  return result;
+}
+
+// The first face that a piece is part of. None if that takes too long to find.
+std::optional<std::uint32_t> face_of(const PointTriple& piece, const PlaneGroup& group, int axis,
+                                     const ExactPoints& points, Effort& effort) {
+  if (group.faces.size() == 1) return group.faces.front().number;
+  const auto holds_piece = [&](const PlaneGroup::Face& face) {
+    const PointTriple& c = face.corners;
+    const int direction = points.turn(axis, c[0], c[1], c[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const Number corner : piece) {
+        if (points.turn(axis, c[i], c[(i + 1) % 3], corner) == -direction) return false;
+      }
+    }
+    return true;
+  };
+  for (const PlaneGroup::Face& face : group.faces) {
+    if (!effort.take()) return std::nullopt;
+    if (holds_piece(face)) return face.number;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort) {
+  const int axis = axis_to_see(group.faces.front().corners, points);
+  const std::vector<Segment> segments = all_segments(group);
+  const std::optional<std::vector<Number>> crossings = Crossings(segments, axis, points).find(effort);
+  if (!crossings) return std::nullopt;
+  std::vector<Number> corners = group.points;
+  corners.insert(corners.end(), crossings->begin(), crossings->end());
+  for (const auto& [from, to] : segments) corners.insert(corners.end(), {from, to});
+  PlaneTriangulation triangulation(points, axis, effort);
+  for (const Number corner : corners) {
+    if (!triangulation.insert(corner)) return std::nullopt;
+  }
+  for (const auto& [from, to] : segments) {
+    if (!triangulation.connect(from, to)) return std::nullopt;
+  }
+  triangulation.make_delaunay();
+  EdgeCounts counts;
+  for (const PlaneGroup::Face& face : group.faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      counts.add(*triangulation.connect(face.corners[i], face.corners[(i + 1) % 3]));
+    }
+  }
+  const std::vector<int> multiplicity = multiplicities(triangulation, counts);
+  std::vector<PlanePiece> pieces;
+  for (std::size_t n = 0; n < multiplicity.size(); ++n) {
+    if (multiplicity[n] == 0) continue;
+    PointTriple piece{};
+    std::ranges::transform(triangulation.faces()[n].corners, piece.begin(),
+                           [&](std::uint32_t corner) { return triangulation.point(corner); });
+    if (multiplicity[n] < 0) std::swap(piece[1], piece[2]);
+    const std::optional<std::uint32_t> face = face_of(piece, group, axis, points, effort);
+    if (!face) return std::nullopt;
+    pieces.push_back({piece, *face, std::abs(multiplicity[n])});
+  }
+  return pieces;
+}
+
+}  // namespace raycone

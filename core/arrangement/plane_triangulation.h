@@ -1,0 +1,87 @@
+// Triangulations of points in a plane, with segments that must be chains of its edges.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/arrangement/effort.h"
+#include "core/exact/exact_points.h"
+
+namespace raycone {
+
+// Of points of a mesh, and a triangle far around them (ExactPoints::add_triangle_around()). Every triangle turns left.
+// All of that is exact; that triangles are nearly Delaunay's (Lawson 1977), before segments are forced into them, is
+// not: it only keeps walks short. Needs DefaultFloatingPoint.
+class PlaneTriangulation {
+ public:
+  using Number = ExactPoints::Number;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  struct Face {
+    std::array<std::uint32_t, 3> corners;  // point() tells which these are
+    std::array<std::uint32_t, 3> beyond;   // the face across from each corner; kNone outside
+  };
+
+  // `points` and `effort` must stay. Seen along `axis`.
+  PlaneTriangulation(ExactPoints& points, int axis, Effort& effort);
+
+  // False if that takes too long. Precondition: the point is within the triangle around all.
+  [[nodiscard]] bool insert(Number point);
+  // Makes the segment between two points that have been inserted a chain of edges: the points along it, with both ends.
+  // Segments that were forced in before stay, if it crosses none of them. None if that takes too long.
+  [[nodiscard]] std::optional<std::vector<Number>> connect(Number from, Number to);
+  // Flips edges that are of no segment until nearly none has a corner beyond that is within the circle around a face:
+  // so no face is flatter than its corners make it.
+  void make_delaunay();
+
+  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] Number point(std::uint32_t corner) const { return points_of_[corner]; }
+  // A face that has a corner of the triangle around all.
+  [[nodiscard]] std::uint32_t outer_face() const { return face_of_[0]; }
+
+ private:
+  // An edge of a face: that across from a corner.
+  struct Edge {
+    std::uint32_t face;
+    std::size_t across;
+  };
+  // What a segment crosses on its way from a corner: edges, each with its right end and its left end.
+  struct Way {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed;
+    std::uint32_t target;  // the first corner on the segment
+  };
+
+  [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return points_->turn(axis_, points_of_[a], points_of_[b], points_of_[c]);
+  }
+  [[nodiscard]] std::size_t place_in(std::uint32_t face, std::uint32_t corner) const;
+  [[nodiscard]] std::optional<std::uint32_t> face_with(Number point);
+  [[nodiscard]] Edge edge_between(std::uint32_t a, std::uint32_t b) const;
+  void set_face(std::uint32_t face, const std::array<std::uint32_t, 3>& corners,
+                const std::array<std::uint32_t, 3>& beyond);
+  void replace_beyond(std::uint32_t face, std::uint32_t old_face, std::uint32_t new_face);
+  [[nodiscard]] bool can_flip(const Edge& edge) const;
+  void flip(const Edge& edge);
+  [[nodiscard]] bool should_flip(const Edge& edge) const;
+  void make_delaunay(std::vector<Edge> edges);
+  [[nodiscard]] Way way_from(std::uint32_t from, std::uint32_t to) const;
+  [[nodiscard]] bool clear(const Way& way, std::uint32_t from);
+
+  ExactPoints* points_;
+  int axis_;
+  Effort* effort_;
+  std::vector<Face> faces_;
+  std::vector<Number> points_of_;
+  std::vector<std::uint32_t> face_of_;  // one at each corner
+  std::unordered_map<Number, std::uint32_t> corner_of_;
+  std::uint32_t last_face_ = 0;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> of_segments_;  // edges, the lower corner first
+};
+
+}  // namespace raycone

@@ -1,0 +1,54 @@
+// Points with exact coordinates: corners of a mesh, and where lines and planes through them meet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// Points are known by their numbers, in the order in which they came; equal ones are one. Their coordinates are
+// fractions of integers of any size, so that nothing is ever rounded but what rounded() returns. Seen along an axis,
+// against its direction, the next axis (cyclically) points to the right and the one after it up. Functions that are
+// const are thread-safe. Needs DefaultFloatingPoint.
+class ExactPoints {
+ public:
+  using Number = std::uint32_t;
+
+  // For a mesh whose used vertices are finite, and not all zero.
+  explicit ExactPoints(const TriangleMesh& mesh);
+  ExactPoints(ExactPoints&&) noexcept;
+  ExactPoints& operator=(ExactPoints&&) noexcept;
+  ~ExactPoints();
+
+  [[nodiscard]] Number size() const;
+  // The nearest doubles; so of equal points the same ones.
+  [[nodiscard]] const Vec3& rounded(Number point) const;
+
+  // A used vertex of the mesh.
+  Number add(const Vec3& vertex);
+  // Where the line through two vertices meets the plane through three others. Precondition: it does in one point.
+  Number add_on_plane(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& plane);
+  // Where a -> b crosses c -> d. Precondition: they are in one plane, which is seen along `axis`, and cross.
+  Number add_crossing(int axis, Number a, Number b, Number c, Number d);
+  // The mean of three points by these weights. Precondition: their sum is not 0.
+  Number add_between(const std::array<Number, 3>& points, const std::array<std::uint32_t, 3>& weights);
+  // A triangle, counter-clockwise seen along `axis`, that then has the whole mesh within it.
+  std::array<Number, 3> add_triangle_around(int axis);
+
+  // 1 where a, b, c turn left, seen along an axis; -1 where they turn right, 0 where they are on a line.
+  [[nodiscard]] int turn(int axis, Number a, Number b, Number c) const;
+  // The same of two vertices of the mesh.
+  [[nodiscard]] int turn(int axis, const Vec3& a, const Vec3& b, Number c) const;
+  // 1 in front of a triangle of the mesh, -1 behind it, 0 in its plane.
+  [[nodiscard]] int side(const std::array<Vec3, 3>& triangle, Number point) const;
+
+ private:
+  struct Table;
+  std::unique_ptr<Table> table_;
+};
+
+}  // namespace raycone

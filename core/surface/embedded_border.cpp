@@ -1,0 +1,95 @@
+#include "core/surface/embedded_border.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/arrangement/rule_border.h"
+#include "core/arrangement/take_apart.h"
+#include "core/exact/predicates.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/near_vertices.h"
+#include "core/surface/certificate.h"
+
+namespace raycone {
+namespace {
+
+constexpr std::size_t kMostPairs = 1 << 17;  // of faces that meet; of more, a look may take longer than a contour
+
+double rounding_of(const TriangleMesh& mesh, bool single_precision) {
+  return (single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(bounding_box(mesh));
+}
+
+// Whether the boundary may be empty but for how it is cut into edges: of the edges at its last vertex, two lie on each
+// other. Of nearly all open meshes they do not.
+bool may_be_closed(const TriangleMesh& mesh) {
+  const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
+  if (edges.empty()) return true;
+  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+    return lexicographic_order(mesh.vertices[a], mesh.vertices[b]) < 0;
+  };
+  std::uint32_t last = edges.front().from;
+  for (const ExteriorEdge& edge : edges) last = std::max({last, edge.from, edge.to}, is_before);
+  std::vector<std::uint32_t> others;  // all on one side of it
+  for (const ExteriorEdge& edge : edges) {
+    if (edge.from == last || edge.to == last) others.push_back(edge.from == last ? edge.to : edge.from);
+  }
+  for (std::size_t n = 1; n < others.size(); ++n) {
+    if (collinear(mesh.vertices[last], mesh.vertices[others[0]], mesh.vertices[others[n]])) return true;
+  }
+  return false;
+}
+
+// With one vertex for all that are so near to each other.
+void merge_near_vertices(RuleBorder& border, double distance) {
+  Representatives near = representatives_within(border.mesh.vertices, distance);
+  RuleBorder merged{{std::move(near.vertices), {}}, {}};
+  for (std::size_t face = 0; face < border.sources.size(); ++face) {
+    Triangle t = border.mesh.triangles[face];
+    for (std::uint32_t& corner : t) corner = near.of[corner];
+    if (is_collapsed(t)) continue;
+    merged.mesh.triangles.push_back(t);
+    merged.sources.push_back(border.sources[face]);
+  }
+  border = std::move(merged);
+}
+
+// `border`: of which `sources` are triangles of another border, whose own sources these become.
+void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::uint32_t>& beyond) {
+  for (std::uint32_t& source : sources) source = beyond[source];
+}
+
+std::optional<SurfaceMesh> taken_apart(RuleBorder border, double distance, bool single_precision) {
+  if (!take_apart(border.mesh, border.sources, distance, single_precision)) return std::nullopt;
+  if (!is_closed_and_embedded(border.mesh)) return std::nullopt;
+  return SurfaceMesh{std::move(border.mesh), {border.sources.begin(), border.sources.end()}};
+}
+
+}  // namespace
+
+std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const Lattice& lattice,
+                                           const SurfaceOptions& options) {
+  constexpr int kRounds = 2;
+  constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
+  constexpr double kNear = 16.0, kFarther = 4.0;              // roundings, and so many times that the next time
+  const bool single_precision = options.single_precision;
+  if (!may_be_closed(mesh)) return std::nullopt;
+  const double rounding = rounding_of(mesh, single_precision);
+  const double apart = std::max(kApart * lattice.least_spacing(), kApartRoundings * rounding);
+  std::optional<RuleBorder> border = rule_border(mesh, {options.rule, single_precision, kMostPairs});
+  double near = kNear * rounding;
+  for (int round = 0; border && !border->sources.empty(); ++round, near *= kFarther) {
+    if (std::optional<SurfaceMesh> surface = taken_apart(*border, apart, single_precision)) return surface;
+    if (round == kRounds) break;
+    merge_near_vertices(*border, near);
+    std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, single_precision, kMostPairs});
+    if (again) look_through(again->sources, border->sources);
+    border = std::move(again);
+  }
+  return std::nullopt;
+}
+
+}  // namespace raycone

@@ -1,0 +1,125 @@
+#include "core/arrangement/take_apart.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "core/mesh/components.h"
+#include "core/mesh/weld.h"
+#include "core/surface/certificate.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+constexpr double kDistance = 1e-6;
+
+struct Taken {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> sources;
+  bool is_apart;
+};
+
+Taken taken_apart(const TriangleMesh& mesh, bool single_precision = false) {
+  Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
+  std::iota(taken.sources.begin(), taken.sources.end(), 0);
+  taken.is_apart = take_apart(taken.mesh, taken.sources, kDistance, single_precision);
+  return taken;
+}
+
+// Of so many components, with nothing moved farther than asked for.
+void expect_apart(const TriangleMesh& mesh, std::uint32_t components) {
+  const Taken taken = taken_apart(mesh);
+  ASSERT_TRUE(taken.is_apart);
+  EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
+  EXPECT_EQ(components_of(taken.mesh).count, components);
+  ASSERT_EQ(taken.sources.size(), taken.mesh.triangles.size());
+  for (const Vec3& vertex : taken.mesh.vertices) {
+    double nearest = 1.0;
+    for (const Vec3& before : mesh.vertices) nearest = std::min(nearest, norm(vertex - before));
+    EXPECT_LE(nearest, 1.001 * kDistance);
+  }
+}
+
+TEST(TakeApart, LeavesAManifoldAsItIs) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const Taken taken = taken_apart(box);
+  EXPECT_TRUE(taken.is_apart);
+  EXPECT_EQ(taken.mesh.vertices, box.vertices);
+  EXPECT_EQ(taken.mesh.triangles, box.triangles);
+}
+
+TEST(TakeApart, ParesSolidsThatTouch) {
+  expect_apart(test::cells_mesh({{0, 0, 0}, {1, 1, 1}}), 2);                        // in a corner
+  expect_apart(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), 2);                        // along an edge
+  expect_apart(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}), 3);             // along two
+  expect_apart(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}), 4);  // along six, in one corner
+  expect_apart(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {1, 1, 1}, {0, 1, 1}}), 1);  // but joined elsewhere
+}
+
+// The corner of a pyramid, and of a cavity in it, are one: the cavity gets smaller, not the solid.
+TEST(TakeApart, TakesCavitiesOffCorners) {
+  const auto pyramid = [](double width, double height, bool outward) {
+    const TriangleMesh mesh{{{0, 0, 0},
+                             {-width, -width, -height},
+                             {width, -width, -height},
+                             {width, width, -height},
+                             {-width, width, -height}},
+                            {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 3, 2}, {1, 4, 3}}};
+    return outward ? mesh : test::reversed(mesh);
+  };
+  const TriangleMesh hollow = weld(test::joined(pyramid(1.0, 1.0, true), pyramid(0.3, 0.5, false)), {});
+  EXPECT_FALSE(is_closed_and_embedded(hollow));
+  expect_apart(hollow, 2);
+  // Two pyramids that stand on each other's tips, one of them hollow.
+  const TriangleMesh above = test::moved(pyramid(1.0, 1.0, false), {1, 1, -1}, {0, 0, 0});
+  expect_apart(weld(test::joined(hollow, above), {}), 3);
+}
+
+// An edge that two walls share from end to end, where these are joined: its middle is taken apart.
+TEST(TakeApart, HalvesEdgesWhoseEndsStay) {
+  std::vector<std::array<int, 3>> cells;
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      for (int z = 0; z < 3; ++z) {
+        const bool is_out = z == 1 && ((x == 1 && y == 1) || (x == 2 && y == 2));  // two cavities that share an edge
+        if (!is_out) cells.push_back({x, y, z});
+      }
+    }
+  }
+  const TriangleMesh mesh = test::cells_mesh(cells);
+  EXPECT_FALSE(is_closed_and_embedded(mesh));
+  const Taken taken = taken_apart(mesh);
+  ASSERT_TRUE(taken.is_apart);
+  EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
+  EXPECT_GT(taken.mesh.triangles.size(), mesh.triangles.size());
+  EXPECT_EQ(taken.sources.size(), taken.mesh.triangles.size());
+}
+
+// As many touch in one corner, and in as many ways, as cells can.
+TEST(TakeApart, TakesCellsApart) {
+  test::Random random(5);
+  int touching = 0;
+  for (int round = 0; round < 300; ++round) {
+    const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
+    if (mesh.triangles.empty() || is_closed_and_embedded(mesh)) continue;
+    ++touching;
+    for (const bool single_precision : {false, true}) {
+      const Taken taken = taken_apart(mesh, single_precision);
+      EXPECT_TRUE(taken.is_apart) << round;
+      EXPECT_TRUE(is_closed_and_embedded(taken.mesh)) << round;
+    }
+  }
+  EXPECT_GT(touching, 150);
+}
+
+TEST(TakeApart, RefusesWhatHasNoSides) {
+  EXPECT_FALSE(taken_apart(test::open_box()).is_apart);
+  EXPECT_FALSE(taken_apart(test::fan(4, 4)).is_apart);
+}
+
+}  // namespace
+}  // namespace raycone

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/arrangement/rule_border.h"
+#include "core/arrangement/snap.h"
 #include "core/arrangement/take_apart.h"
 #include "core/exact/predicates.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/near_vertices.h"
 #include "core/surface/certificate.h"
 
 namespace raycone {
@@ -43,20 +43,6 @@ bool may_be_closed(const TriangleMesh& mesh) {
   return false;
 }
 
-// With one vertex for all that are so near to each other.
-void merge_near_vertices(RuleBorder& border, double distance) {
-  Representatives near = representatives_within(border.mesh.vertices, distance);
-  RuleBorder merged{{std::move(near.vertices), {}}, {}};
-  for (std::size_t face = 0; face < border.sources.size(); ++face) {
-    Triangle t = border.mesh.triangles[face];
-    for (std::uint32_t& corner : t) corner = near.of[corner];
-    if (is_collapsed(t)) continue;
-    merged.mesh.triangles.push_back(t);
-    merged.sources.push_back(border.sources[face]);
-  }
-  border = std::move(merged);
-}
-
 // `border`: of which `sources` are triangles of another border, whose own sources these become.
 void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::uint32_t>& beyond) {
   for (std::uint32_t& source : sources) source = beyond[source];
@@ -84,7 +70,8 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const Latti
   for (int round = 0; border && !border->sources.empty(); ++round, near *= kFarther) {
     if (std::optional<SurfaceMesh> surface = taken_apart(*border, apart, single_precision)) return surface;
     if (round == kRounds) break;
-    merge_near_vertices(*border, near);
+    snap(*border, near);
+    if (std::optional<SurfaceMesh> surface = taken_apart(*border, apart, single_precision)) return surface;
     std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, single_precision, kMostPairs});
     if (again) look_through(again->sources, border->sources);
     border = std::move(again);

@@ -106,6 +106,16 @@ TEST(RuleBorder, GoesAroundCellsThatShareSidesAndEdges) {
   }
 }
 
+// The first ray from the base of a pyramid, from (89, 97, 0) on, meets the bottom of a roof, and its ridge.
+TEST(RuleBorder, SendsAnotherRayWhereOneMeetsAnEdge) {
+  const TriangleMesh pyramid{{{0, 0, 0}, {287, 0, 0}, {0, 287, 0}, {90, 90, -100}},
+                             {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+  const TriangleMesh roof{{{60, 50, 10}, {120, 50, 10}, {120, 150, 10}, {60, 150, 10}, {89, 50, 30}, {89, 150, 30}},
+                          {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {2, 3, 5}, {1, 2, 5}, {1, 5, 4}, {3, 0, 4}, {3, 4, 5}}};
+  test::Random random(4);
+  EXPECT_EQ(wrong_points(test::joined(pyramid, roof), {}, random, 50), 0);
+}
+
 TEST(RuleBorder, GoesAroundSpheresThatMeet) {
   test::Random random(3);
   for (int round = 0; round < 20; ++round) {

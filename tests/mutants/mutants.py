@@ -628,8 +628,12 @@ MUTANTS = [
         ("core/arrangement/take_apart.cpp", "order[(n + order.size() - 1) % order.size()]", "order[(n + 1) % order.size()]")]),
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
         ("core/arrangement/take_apart.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
+    Mutant("flat_triangles_stay", "sides that corners are near to are split there", [
+        ("core/arrangement/snap.cpp", "if (height > distance) return std::nullopt;", "if (height >= 0.0) return std::nullopt;")]),
+    Mutant("walls_stay", "triangles that are one in either direction are gone", [
+        ("core/arrangement/snap.cpp", "if (more * direction <= 0) continue;", "if (more * direction < 0) continue;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [
-        ("core/exact/exact_points.cpp", "const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;", "const double trust = 0.0;")]),
+        ("core/exact/exact_points.cpp", "const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;", "const double trust = 0.0 * most * sides;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [

@@ -1,0 +1,116 @@
+#include "core/arrangement/snap.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/data/vec3.h"
+#include "core/mesh/near_vertices.h"
+
+namespace raycone {
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the lower vertex first
+using Splits = std::map<Edge, std::uint32_t>;          // by which vertex
+
+void merge_near_vertices(RuleBorder& border, double distance) {
+  Representatives near = representatives_within(border.mesh.vertices, distance);
+  RuleBorder merged{{std::move(near.vertices), {}}, {}};
+  for (std::size_t face = 0; face < border.sources.size(); ++face) {
+    Triangle t = border.mesh.triangles[face];
+    for (std::uint32_t& corner : t) corner = near.of[corner];
+    if (is_collapsed(t)) continue;
+    merged.mesh.triangles.push_back(t);
+    merged.sources.push_back(border.sources[face]);
+  }
+  border = std::move(merged);
+}
+
+// The place of the corner that is so near to the opposite side, which is the longest one.
+std::optional<std::size_t> flat_corner(const TriangleMesh& mesh, const Triangle& t, double distance) {
+  const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
+  const std::array lengths{safe_norm(side(0)), safe_norm(side(1)), safe_norm(side(2))};
+  const auto apex = static_cast<std::size_t>(std::ranges::max_element(lengths) - lengths.begin());
+  const Vec3 direction = (1.0 / lengths[apex]) * side(apex);
+  const double height = safe_norm(cross(direction, side((apex + 1) % 3)));
+  if (height > distance) return std::nullopt;
+  return apex;
+}
+
+Splits splits_at_flat_triangles(const TriangleMesh& mesh, double distance) {
+  Splits splits;
+  for (const Triangle& t : mesh.triangles) {
+    if (const std::optional<std::size_t> apex = flat_corner(mesh, t, distance))
+      splits.try_emplace(std::minmax(t[(*apex + 1) % 3], t[(*apex + 2) % 3]), t[*apex]);
+  }
+  return splits;
+}
+
+// Adds the parts of a triangle whose sides are split, but for those without area.
+void add_parts(const Triangle& triangle, std::uint32_t source, const Splits& splits, RuleBorder& result) {
+  constexpr int kMostParts = 1000;  // if rounding lets splits go around, the border is open then
+  std::vector<Triangle> parts{triangle};
+  for (int n = 0; n < kMostParts && !parts.empty(); ++n) {
+    const Triangle t = parts.back();
+    parts.pop_back();
+    if (is_collapsed(t)) continue;
+    bool is_whole = true;
+    for (std::size_t i = 0; i < 3 && is_whole; ++i) {
+      const std::uint32_t apex = t[i], from = t[(i + 1) % 3], to = t[(i + 2) % 3];
+      const auto split = splits.find(std::minmax(from, to));
+      if (split == splits.end()) continue;
+      is_whole = false;
+      if (split->second == apex) break;
+      parts.push_back({apex, from, split->second});
+      parts.push_back({apex, split->second, to});
+    }
+    if (!is_whole) continue;
+    result.mesh.triangles.push_back(t);
+    result.sources.push_back(source);
+  }
+}
+
+// Leaves one triangle less for each that is the same in the other direction.
+void cancel(RuleBorder& border) {
+  std::map<Triangle, int> count;  // of triangles by their sorted corners: how many more are even permutations of them
+  const auto sorted = [](Triangle t) {
+    std::ranges::sort(t);
+    return t;
+  };
+  const auto is_even = [](const Triangle& t) { return (t[0] < t[1]) == ((t[1] < t[2]) == (t[0] < t[2])); };
+  for (const Triangle& t : border.mesh.triangles) count[sorted(t)] += is_even(t) ? 1 : -1;
+  RuleBorder left{{std::move(border.mesh.vertices), {}}, {}};
+  for (std::size_t n = 0; n < border.sources.size(); ++n) {
+    const Triangle& t = border.mesh.triangles[n];
+    int& more = count[sorted(t)];
+    const int direction = is_even(t) ? 1 : -1;
+    if (more * direction <= 0) continue;
+    more -= direction;
+    left.mesh.triangles.push_back(t);
+    left.sources.push_back(border.sources[n]);
+  }
+  border = std::move(left);
+}
+
+}  // namespace
+
+void snap(RuleBorder& border, double distance) {
+  constexpr int kRounds = 8;
+  merge_near_vertices(border, distance);
+  for (int round = 0; round < kRounds; ++round) {
+    const Splits splits = splits_at_flat_triangles(border.mesh, distance);
+    if (splits.empty()) break;
+    RuleBorder split{{border.mesh.vertices, {}}, {}};
+    for (std::size_t face = 0; face < border.sources.size(); ++face)
+      add_parts(border.mesh.triangles[face], border.sources[face], splits, split);
+    border = std::move(split);
+  }
+  cancel(border);
+}
+
+}  // namespace raycone

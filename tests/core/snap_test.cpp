@@ -1,0 +1,73 @@
+#include "core/arrangement/snap.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "core/mesh/components.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/surface/certificate.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+constexpr double kNear = 1e-9;
+
+RuleBorder snapped(const TriangleMesh& mesh) {
+  RuleBorder border{mesh, std::vector<std::uint32_t>(mesh.triangles.size())};
+  std::iota(border.sources.begin(), border.sources.end(), 0);
+  snap(border, kNear);
+  EXPECT_TRUE(exterior_edges(border.mesh).empty());
+  EXPECT_EQ(border.sources.size(), border.mesh.triangles.size());
+  return border;
+}
+
+// A box whose first face has a corner at the middle of its first side, off by so much; a face without height joins it
+// to the side.
+TriangleMesh with_flat_face(double off) {
+  TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto [a, b, c] = box.triangles[0];
+  const Vec3 towards = box.vertices[c] - box.vertices[b];
+  box.vertices.push_back(0.5 * (box.vertices[a] + box.vertices[b]) + (off / norm(towards)) * towards);
+  const auto middle = static_cast<std::uint32_t>(box.vertices.size() - 1);
+  box.triangles[0] = {a, middle, c};
+  box.triangles.push_back({middle, b, c});
+  box.triangles.push_back({a, b, middle});
+  return box;
+}
+
+TEST(Snap, LeavesWhatIsAsItShouldBe) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(snapped(box).mesh.triangles.size(), 12U);
+  EXPECT_EQ(snapped(with_flat_face(1e-6)).mesh.triangles.size(), 14U);
+}
+
+TEST(Snap, SplitsSidesThatCornersAreNear) {
+  for (const double off : {1e-12, -1e-12, 0.0}) {
+    const RuleBorder border = snapped(with_flat_face(off));
+    EXPECT_EQ(border.mesh.triangles.size(), 14U);  // the face is gone, and the other one at the side is two
+    EXPECT_TRUE(is_closed_and_embedded(border.mesh));
+  }
+}
+
+TEST(Snap, MergesVerticesThatAreNear) {
+  TriangleMesh sphere = test::sphere(6);  // of which triangles at the poles and along a seam do not share vertices
+  for (std::uint32_t n = 0; n < sphere.vertices.size(); ++n) sphere.vertices[n].x += 1e-11 * (n % 3);
+  EXPECT_TRUE(is_closed_and_embedded(snapped(sphere).mesh));
+}
+
+TEST(Snap, CancelsFacesThatAreOneInEitherDirection) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh with_wall = box;
+  with_wall.triangles.push_back({0, 1, 2});
+  with_wall.triangles.push_back({1, 0, 2});
+  const RuleBorder border = snapped(with_wall);
+  EXPECT_EQ(border.mesh.triangles.size(), 12U);
+  EXPECT_EQ(snapped(test::joined(box, test::reversed(box))).mesh.triangles.size(), 0U);
+}
+
+}  // namespace
+}  // namespace raycone

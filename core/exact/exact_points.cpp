@@ -70,6 +70,21 @@ int sure_turn(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
   return sure_turn(most, b[right] - a[right], b[up] - a[up], c[right] - a[right], c[up] - a[up]);
 }
 
+double sum_of(const Vec3& magnitudes) { return magnitudes.x + magnitudes.y + magnitudes.z; }
+
+// The same for the side of a point that is rounded. Each of six products is off by what one factor is, as above, times
+// the two others; they are not more than all of these, so trust has a factor of four to spare.
+int sure_side(const std::array<Vec3, 3>& triangle, const Vec3& p) {
+  double most = largest_coordinate(p);
+  for (const Vec3& corner : triangle) most = std::max(most, largest_coordinate(corner));
+  const Vec3 first = triangle[1] - triangle[0], second = triangle[2] - triangle[0], to = p - triangle[0];
+  const double value = dot(cross(first, second), to);
+  const double a = sum_of(absolute(first)), b = sum_of(absolute(second)), c = sum_of(absolute(to));
+  const double off = 0x1p-46 * most;
+  const double trust = off * (a * b + b * c + c * a + off * (a + b + c + off)) + 0x1p-1000;
+  return static_cast<int>(value > trust) - static_cast<int>(value < -trust);
+}
+
 // The determinant of the points' coordinates along two axes and their denominators: the turn, times all of the latter.
 mpz_class determinant(int axis, const Fractions& a, const Fractions& b, const Fractions& c) {
   const int right = (axis + 1) % 3, up = (axis + 2) % 3;
@@ -190,6 +205,7 @@ int ExactPoints::turn(int axis, const Vec3& a, const Vec3& b, Number c) const {
 }
 
 int ExactPoints::side(const std::array<Vec3, 3>& triangle, Number point) const {
+  if (const int sign = sure_side(triangle, rounded(point)); sign != 0) return sign;
   const IntegerVec3 corner = table_->integers(triangle[0]);
   const IntegerVec3 normal =
       exact::cross(minus(table_->integers(triangle[1]), corner), minus(table_->integers(triangle[2]), corner));

@@ -49,6 +49,21 @@ TEST(ExactPoints, TurnsAsIntegersDo) {
   EXPECT_GT(ties, 1000);
 }
 
+TEST(ExactPoints, IsOnTheSidesThatIntegersSay) {
+  test::Random random(2);
+  int ties = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const std::array points{lattice_point(random, 2), lattice_point(random, 2), lattice_point(random, 2),
+                            lattice_point(random, 2)};
+    ExactPoints exact(with_vertices({points[0], points[1], points[2], points[3], {7, 0, 0}}));
+    const Vec3 normal = cross(points[1] - points[0], points[2] - points[0]);
+    const int expected = sign(whole(dot(normal, points[3] - points[0])));
+    ASSERT_EQ(exact.side({points[0], points[1], points[2]}, exact.add(points[3])), expected);
+    ties += expected == 0 ? 1 : 0;
+  }
+  EXPECT_GT(ties, 1000);
+}
+
 // A point between corners that doubles cannot hold: on the lines and planes that it is made of, and beside others by
 // less than doubles tell.
 TEST(ExactPoints, HoldsWhatDoublesCannot) {

@@ -629,7 +629,7 @@ MUTANTS = [
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
         ("core/arrangement/take_apart.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
     Mutant("flat_triangles_stay", "sides that corners are near to are split there", [
-        ("core/arrangement/snap.cpp", "if (height > distance) return std::nullopt;", "if (height >= 0.0) return std::nullopt;")]),
+        ("core/arrangement/snap.cpp", "if (height > distance) return std::nullopt;", "if (height > 0.0 * distance) return std::nullopt;")]),
     Mutant("walls_stay", "triangles that are one in either direction are gone", [
         ("core/arrangement/snap.cpp", "if (more * direction <= 0) continue;", "if (more * direction < 0) continue;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [

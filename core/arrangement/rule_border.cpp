@@ -8,6 +8,7 @@
 #include "core/arrangement/arranged_patches.h"
 #include "core/arrangement/arrangement.h"
 #include "core/arrangement/winding_in_front.h"
+#include "core/data/single_precision.h"
 
 namespace raycone {
 namespace {
@@ -58,9 +59,7 @@ class RoundedMesh {
 
   [[nodiscard]] Vec3 rounded(std::uint32_t corner) const {
     const Vec3 p = arrangement_.rounded(corner);
-    if (!single_precision_) return p;
-    const auto to_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
-    return {to_float(p.x), to_float(p.y), to_float(p.z)};
+    return single_precision_ ? rounded_to_float(p) : p;
   }
 
   const Arrangement& arrangement_;

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/data/single_precision.h"
 #include "core/data/vec3.h"
 #include "core/exact/predicates.h"
 #include "core/mesh/face_edges.h"
@@ -183,10 +184,10 @@ class Cone {
 
 class Apart {
  public:
-  Apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance)
-      : border_(border), sources_(sources), distance_(distance) {}
+  Apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance, bool single_precision)
+      : border_(border), sources_(sources), distance_(distance), single_precision_(single_precision) {}
 
-  bool take(bool single_precision) {
+  bool take() {
     const std::vector<FaceEdge> edges = face_edges(border_.triangles);
     std::vector<FacePair> pairs;
     bool has_sides = true;
@@ -195,8 +196,8 @@ class Apart {
     });
     if (!has_sides) return false;
     Fans fans(border_, pairs);
-    if (halve_edges(pairs, fans)) return take(single_precision);
-    return split_vertices(fans, single_precision);
+    if (halve_edges(pairs, fans)) return take();
+    return split_vertices(fans);
   }
 
  private:
@@ -232,7 +233,7 @@ class Apart {
 
   void halve_edge(std::uint32_t low, std::uint32_t high, const std::vector<std::uint32_t>& faces) {
     const auto middle = static_cast<std::uint32_t>(border_.vertices.size());
-    border_.vertices.push_back(0.5 * border_.vertices[low] + 0.5 * border_.vertices[high]);
+    border_.vertices.push_back(rounded(0.5 * border_.vertices[low] + 0.5 * border_.vertices[high]));
     for (const std::uint32_t face : faces) {
       Triangle other = border_.triangles[face];
       std::ranges::replace(border_.triangles[face], high, middle);
@@ -250,7 +251,7 @@ class Apart {
   };
 
   // Gives each fan its vertex: the last one at a vertex, or one that cannot be moved, keeps it.
-  bool split_vertices(Fans& fans, bool single_precision) {
+  bool split_vertices(Fans& fans) {
     std::vector<std::uint32_t> count(border_.vertices.size(), 0);
     for_each_corner([&](std::uint32_t face, std::uint32_t vertex) {
       const std::size_t corner = fans.corner(face, vertex);
@@ -266,7 +267,7 @@ class Apart {
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
       if (!add_moves(vertex, cones, moves)) return false;
     }
-    for (const Move& move : moves) apply(move, single_precision);
+    for (const Move& move : moves) apply(move);
     return true;
   }
 
@@ -290,6 +291,8 @@ class Apart {
     return true;
   }
 
+  [[nodiscard]] Vec3 rounded(const Vec3& p) const { return single_precision_ ? rounded_to_float(p) : p; }
+
   template <class Visit>
   void for_each_corner(const Visit& visit) const {
     for (std::uint32_t face = 0; face < border_.triangles.size(); ++face) {
@@ -297,23 +300,22 @@ class Apart {
     }
   }
 
-  void apply(const Move& move, bool single_precision) {
+  void apply(const Move& move) {
     const auto copy = static_cast<std::uint32_t>(border_.vertices.size());
-    const auto to_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
-    const Vec3& to = move.to;
-    border_.vertices.push_back(single_precision ? Vec3{to_float(to.x), to_float(to.y), to_float(to.z)} : to);
+    border_.vertices.push_back(rounded(move.to));
     for (const std::uint32_t face : move.faces) std::ranges::replace(border_.triangles[face], move.vertex, copy);
   }
 
   TriangleMesh& border_;
   std::vector<std::uint32_t>& sources_;
   double distance_;
+  bool single_precision_;
 };
 
 }  // namespace
 
 bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance, bool single_precision) {
-  return Apart(border, sources, distance).take(single_precision);
+  return Apart(border, sources, distance, single_precision).take();
 }
 
 }  // namespace raycone

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/surface/certificate.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/kept_vertices.h"

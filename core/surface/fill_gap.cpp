@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/data/single_precision.h"
 #include "core/surface/source_plane.h"
 
 namespace raycone {

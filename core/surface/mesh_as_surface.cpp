@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/data/rule.h"
+#include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/volume_sign.h"

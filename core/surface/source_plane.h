@@ -26,8 +26,4 @@ struct SourcePlane {
 // hardly have a point in common. Precondition: of two planes the angle is known to be large enough.
 [[nodiscard]] std::optional<Vec3> meeting_point(std::span<const SourcePlane> planes, const Vec3& near);
 
-// As vertices of surfaces in single precision are rounded.
-[[nodiscard]] Vec3 rounded_to_float(const Vec3& p);
-void round_to_float(std::vector<Vec3>& points);
-
 }  // namespace raycone

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/data/single_precision.h"
 #include "core/machine/threads.h"
 #include "core/surface/cell_creases.h"
 #include "core/surface/surface_edit.h"

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"

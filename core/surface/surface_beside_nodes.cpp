@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/surface/certificate.h"
 #include "core/surface/mesh_corners.h"

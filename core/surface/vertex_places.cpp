@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/data/single_precision.h"
 #include "core/machine/sum_over.h"
 #include "core/surface/contour.h"
 #include "core/surface/source_plane.h"

@@ -1,3 +1,4 @@
+#include "core/data/single_precision.h"
 #include "core/surface/mesh_as_surface.h"
 
 #include <gtest/gtest.h>
@@ -56,6 +57,9 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   std::optional<FinishedSurface> made = mesh_as_surface(mesh, inside, options);
   if (made) {
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+    std::vector<Vec3> rounded = made->surface.mesh.vertices;
+    round_to_float(rounded);
+    EXPECT_TRUE(!options.single_precision || rounded == made->surface.mesh.vertices);
     EXPECT_EQ(made->surface.sources.size(), made->surface.mesh.triangles.size());
   }
   return made;

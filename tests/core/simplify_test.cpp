@@ -1,4 +1,5 @@
 // Surfaces with fewer triangles, and surfaces of sets that have grown.
+#include "core/data/single_precision.h"
 #include "core/surface/simplify.h"
 
 #include <gtest/gtest.h>

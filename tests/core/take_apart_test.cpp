@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
@@ -111,6 +112,9 @@ TEST(TakeApart, TakesCellsApart) {
       const Taken taken = taken_apart(mesh, single_precision);
       EXPECT_TRUE(taken.is_apart) << round;
       EXPECT_TRUE(is_closed_and_embedded(taken.mesh)) << round;
+      std::vector<Vec3> rounded = taken.mesh.vertices;
+      round_to_float(rounded);
+      EXPECT_EQ(rounded == taken.mesh.vertices, single_precision) << round;
     }
   }
   EXPECT_GT(touching, 150);

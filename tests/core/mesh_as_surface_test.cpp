@@ -1,5 +1,5 @@
-#include "core/data/single_precision.h"
 #include "core/surface/mesh_as_surface.h"
+#include "core/data/single_precision.h"
 
 #include <gtest/gtest.h>
 

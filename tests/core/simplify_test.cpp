@@ -1,6 +1,6 @@
 // Surfaces with fewer triangles, and surfaces of sets that have grown.
-#include "core/data/single_precision.h"
 #include "core/surface/simplify.h"
+#include "core/data/single_precision.h"
 
 #include <gtest/gtest.h>
 

@@ -1,28 +1,47 @@
 #include "core/surface/checked_simplify.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "core/surface/certificate.h"
+#include "core/surface/component_signs.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/simplify.h"
 
 namespace raycone {
+namespace {
+
+// The vertices of components that enclose no volume now, or face the other way than before: slivers that went flat.
+std::vector<bool> turned_vertices(const TriangleMesh& mesh, const ComponentSigns& before) {
+  const ComponentSigns signs = component_signs(mesh);
+  std::vector<bool> turned(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) turned[v] = signs.of_vertex(v) != before.of_vertex(v);
+  }
+  return turned;
+}
+
+}  // namespace
 
 bool checked_simplify(SurfaceMesh& surface, const NodeSet& inside, double most, int rounds) {
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  const ComponentSigns signs = component_signs(surface.mesh);
   std::vector<bool> kept(vertices.size(), false);
   for (int round = 0; round < rounds; ++round) {
     MergedFaces merged = simplify(surface, inside, kept, most);
     TriangleMesh compact = used_part(vertices, merged.triangles);
     NodeSet misplaced(inside.lattice());
     const SurfaceFaults faults = faults_of(compact, inside, &misplaced);
-    if (faults.none()) {
-      surface = {std::move(compact), std::move(merged.sources)};
-      return true;
-    }
     std::vector<bool> touched = faulty_vertices(vertices.size(), merged.triangles, faults);
+    if (faults.none()) {
+      touched = turned_vertices({vertices, merged.triangles}, signs);
+      if (std::ranges::find(touched, true) == touched.end()) {
+        surface = {std::move(compact), std::move(merged.sources)};
+        return true;
+      }
+    }
     const std::vector<bool> beside = faces_beside(vertices, merged.triangles, misplaced);
     for (std::size_t face = 0; face < beside.size(); ++face) {
       for (const std::uint32_t corner : merged.triangles[face]) touched[corner] = touched[corner] || beside[face];

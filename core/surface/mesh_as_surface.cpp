@@ -21,6 +21,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_simplify.h"
+#include "core/surface/component_signs.h"
 #include "core/surface/embedded_border.h"
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
@@ -121,10 +122,18 @@ SurfaceMesh surface_of(const TriangleMesh& mesh) {
   return surface;
 }
 
-// Of a surface without faults, but perhaps with nodes on the wrong side: whether it has none. Merged, if it could be.
+// Of all components, in no order that says which is which.
+std::vector<int> sorted_signs(const TriangleMesh& mesh) {
+  std::vector<int> signs = component_signs(mesh).of_component;
+  std::ranges::sort(signs);
+  return signs;
+}
+
+// Of a surface without faults, but perhaps with nodes on the wrong side: whether it has none. Merged, if it could be
+// without making flat a component that is thinner than planes are off each other.
 bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const MergeOptions& options) {
   CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, {});
-  made.merged = merged.surface.has_value();
+  made.merged = merged.surface && sorted_signs(merged.surface->mesh) == sorted_signs(made.surface.mesh);
   if (!made.merged) return misplaced_nodes(made.surface.mesh, inside).empty();
   made.surface = *std::move(merged.surface);
   return true;

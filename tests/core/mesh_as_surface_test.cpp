@@ -1,5 +1,4 @@
 #include "core/surface/mesh_as_surface.h"
-#include "core/data/single_precision.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"

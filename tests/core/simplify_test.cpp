@@ -1,6 +1,5 @@
 // Surfaces with fewer triangles, and surfaces of sets that have grown.
 #include "core/surface/simplify.h"
-#include "core/data/single_precision.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +7,14 @@
 #include <cmath>
 #include <vector>
 
+#include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/mesh/weld.h"
+#include "core/surface/certificate.h"
+#include "core/surface/checked_simplify.h"
+#include "core/surface/component_signs.h"
 #include "core/surface/face_points.h"
+#include "core/surface/fault_places.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/star_change.h"
 #include "core/surface/surface.h"
@@ -59,6 +63,27 @@ TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
     EXPECT_LE(farthest(surface.mesh, whole_surface.mesh), most);
     EXPECT_LE(farthest(whole_surface.mesh, surface.mesh), most);
   }
+}
+
+// Bodies between the nodes that are thinner than the distance, which could make them flat, or turn them over.
+TEST(SimplifiedSurface, LeavesThinPartsAVolume) {
+  Random random(7);
+  const TriangleMesh ball = weld(test::sphere(8), {});
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(ball), {}, lattice_around_sphere(14));
+  int turned = 0;
+  for (int round = 0; round < 60; ++round) {
+    TriangleMesh thin = weld(test::sphere(3 + round % 3), {});
+    for (Vec3& v : thin.vertices) v = {0.1 * v.x, 0.1 * v.y, 1.36 + 0.003 * v.z + uniform(random, -0.002, 0.002)};
+    SurfaceMesh surface{test::joined(ball, thin), {}};
+    surface.sources.assign(surface.mesh.triangles.size(), 0);
+    if (!is_closed_and_embedded(surface.mesh)) continue;
+    const std::vector<bool> none(surface.mesh.vertices.size(), false);
+    MergedFaces unchecked = simplify(surface, inside, none, 0.05);
+    turned += component_signs(used_part(surface.mesh.vertices, unchecked.triangles)).of_component != std::vector{1, 1};
+    ASSERT_TRUE(checked_simplify(surface, inside, 0.05, 16));
+    EXPECT_EQ(component_signs(surface.mesh).of_component, (std::vector{1, 1})) << round;
+  }
+  EXPECT_GT(turned, 0);  // else nothing has been tried
 }
 
 // A fan of random faces around a vertex, about flat.

@@ -1,5 +1,6 @@
 #include "app/run/make_surface.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
@@ -127,10 +128,10 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   DroppedSamples samples(made.surface, inside, options.thickness, std::move(closed.held));
   const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
-  if (dropped.is_some) {
-    const ThinParts thin = thin_parts(mesh, {evaluator, options.rule}, samples);
-    if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
-  }
+  ThinParts thin = dropped.is_some ? thin_parts(mesh, {evaluator, options.rule}, samples) : ThinParts();
+  thin.of_all = std::max(thin.of_all, closed.lost.of_all);  // samples may have found these, too
+  thin.lost += closed.lost.count;
+  if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   return made;
 }
 

@@ -10,4 +10,9 @@ Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>
   return box;
 }
 
+double area_of_triangle(const TriangleMesh& mesh, const Triangle& triangle) {
+  const Vec3& a = mesh.vertices[triangle[0]];
+  return safe_norm(cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a)) / 2.0;
+}
+
 }  // namespace raycone

@@ -29,4 +29,7 @@ struct TriangleMesh {
 [[nodiscard]] Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);
 [[nodiscard]] inline Box bounding_box(const TriangleMesh& mesh) { return bounding_box(mesh.triangles, mesh.vertices); }
 
+// Of one triangle, world units squared; where squares over- or underflow, too.
+[[nodiscard]] double area_of_triangle(const TriangleMesh& mesh, const Triangle& triangle);
+
 }  // namespace raycone

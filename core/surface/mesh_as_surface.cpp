@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numeric>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -102,15 +103,45 @@ bool keep_border(SurfaceMesh& surface, const Rule& rule) {
   return !surface.sources.empty();
 }
 
+// Components that are not left, and of which other faces of the same triangles are.
+LostPieces lost_pieces(const SurfaceMesh& surface, const Components& components, const std::vector<bool>& is_left,
+                       const TriangleMesh& mesh) {
+  const auto component_of = [&](std::size_t face) { return components.of_vertex[surface.mesh.triangles[face][0]]; };
+  std::unordered_set<std::int32_t> left;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (is_left[component_of(face)]) left.insert(surface.sources[face]);
+  }
+  std::vector<double> areas(is_left.size(), 0.0);
+  std::vector<bool> is_piece(is_left.size(), false);
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const std::uint32_t component = component_of(face);
+    if (is_left[component]) continue;
+    areas[component] += area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
+    is_piece[component] = is_piece[component] || left.contains(surface.sources[face]);
+  }
+  LostPieces lost;
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    if (!is_piece[n]) continue;
+    ++lost.count;
+    lost.of_all += areas[n];
+  }
+  double whole = 0.0;
+  for (const Triangle& t : mesh.triangles) whole += area_of_triangle(mesh, t);
+  lost.of_all = whole > 0.0 ? lost.of_all / whole : 0.0;
+  return lost;
+}
+
 // Leaves the components that the lattice sees, as keep_border() does. Returns whether it sees all of each, and any is
 // left.
-bool keep_seen(SurfaceMesh& surface, const NodeSet& inside, const Rule& rule) {
+bool keep_seen(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const Rule& rule) {
+  SurfaceMesh& surface = made.surface;
   const Components components = components_of(surface.mesh);
   const std::vector<Sight> sights = sights_of(inside, parts_of(surface.mesh, components), surface.mesh.vertices);
   if (std::ranges::find(sights, Sight::kInPart) != sights.end()) return false;
   if (std::ranges::find(sights, Sight::kUnseen) == sights.end()) return true;
   std::vector<bool> is_seen;
   for (const Sight sight : sights) is_seen.push_back(sight == Sight::kWhole);
+  made.lost = lost_pieces(surface, components, is_seen, mesh);
   keep(surface, components, is_seen);
   return keep_border(surface, rule);  // what was within an unseen one may separate nothing now
 }
@@ -177,7 +208,7 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
     made.surface = *std::move(border);
     rule = Rule{};  // it goes once around what it is the border of
   }
-  if (!keep_seen(made.surface, inside, rule)) return std::nullopt;
+  if (!keep_seen(made, mesh, inside, rule)) return std::nullopt;
   if (!(options.simplify > 0.0)) made.held = triangles_held_by(made.surface, mesh, options.single_precision);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};

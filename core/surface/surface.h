@@ -1,6 +1,7 @@
 // The closed surface between the inside and the outside nodes of a lattice.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <vector>
@@ -25,6 +26,12 @@ struct SurfaceOptions {
   std::function<void(const char*)> at_stage{};
 };
 
+// What lies between the nodes of parts that are in the surface otherwise: cut off from these by other faces.
+struct LostPieces {
+  std::uint64_t count = 0;
+  double of_all = 0.0;  // their area as a part of the mesh's
+};
+
 struct FinishedSurface {
   SurfaceMesh surface;
   // Whether that was done as asked. Else too many rounds of undoing what intersects, or has nodes on the wrong side,
@@ -34,6 +41,7 @@ struct FinishedSurface {
   // Of each triangle of the mesh whether it was part of the surface as it is, until faces of a plane were merged. Empty
   // where none is known to be.
   std::vector<bool> held{};
+  LostPieces lost{};
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.

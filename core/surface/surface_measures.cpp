@@ -20,11 +20,6 @@
 namespace raycone {
 namespace {
 
-double area_of_triangle(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3& a = mesh.vertices[t[0]];
-  return safe_norm(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a)) / 2.0;
-}
-
 // The distance of a point from some point of a triangle: that below it, or the nearest by its barycentric coordinates.
 // Off by a few roundings of the coordinates, but 0 for a corner.
 double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {

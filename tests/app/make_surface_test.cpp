@@ -88,6 +88,19 @@ TEST(MakeSurface, TellsThatADistanceIsTooSmallToSimplify) {
   EXPECT_TRUE(made(options).warnings.empty());
 }
 
+// A post, of which another box, turned inside out, takes all but a foot and a slice on top, between the nodes.
+TEST(MakeSurface, TellsThatPiecesAreLost) {
+  const auto warnings = [](double top) {
+    const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 3}), reversed(box_mesh({-1, -1, 1}, {2, 2, top})));
+    const Lattice lattice{{-1.4, -1.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {15, 15, 16}};
+    return make_surface("m", mesh, exterior_edges(mesh), lattice, {}, kAllMemory).warnings;
+  };
+  ASSERT_EQ(warnings(2.97).size(), 1U);
+  EXPECT_EQ(warnings(2.97)[0].name, "thin-parts");
+  EXPECT_NE(warnings(2.97)[0].text.find("1 part as a whole"), std::string::npos) << warnings(2.97)[0].text;
+  EXPECT_TRUE(warnings(2.4).empty());
+}
+
 // A sphere and, beside it, a plate between the nodes, closed or a sheet.
 TEST(MakeSurface, TellsThatPartsAreTooThin) {
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 30}};

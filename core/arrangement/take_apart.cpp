@@ -188,19 +188,26 @@ class Apart {
       : border_(border), sources_(sources), distance_(distance), single_precision_(single_precision) {}
 
   bool take() {
+    constexpr int kRounds = 8;  // a face has three edges; more only go on where faces lie on each other
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<FacePair> pairs;
+      if (!find_pairs(pairs)) return false;
+      Fans fans(border_, pairs);
+      if (!halve_edges(pairs, fans)) return split_vertices(fans);
+    }
+    return false;
+  }
+
+ private:
+  bool find_pairs(std::vector<FacePair>& pairs) const {
     const std::vector<FaceEdge> edges = face_edges(border_.triangles);
-    std::vector<FacePair> pairs;
     bool has_sides = true;
     for_each_edge(edges, [&](std::span<const FaceEdge> faces) {
       has_sides = has_sides && faces.size() % 2 == 0 && add_pairs(border_, faces, pairs);
     });
-    if (!has_sides) return false;
-    Fans fans(border_, pairs);
-    if (halve_edges(pairs, fans)) return take();
-    return split_vertices(fans);
+    return has_sides;
   }
 
- private:
   // Halves edges of which two pairs of faces have the same ends, but one of a face at most. Whether there were any.
   bool halve_edges(const std::vector<FacePair>& pairs, Fans& fans) {
     std::set<std::array<std::size_t, 4>> known;  // edges, and the fans of their ends

@@ -123,6 +123,9 @@ TEST(TakeApart, TakesCellsApart) {
 TEST(TakeApart, RefusesWhatHasNoSides) {
   EXPECT_FALSE(taken_apart(test::open_box()).is_apart);
   EXPECT_FALSE(taken_apart(test::fan(4, 4)).is_apart);
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  taken_apart(weld(test::joined(box, box), {}));  // ends
+  taken_apart(weld(test::joined(box, test::reversed(box)), {}));
 }
 
 }  // namespace

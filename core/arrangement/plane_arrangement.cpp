@@ -46,8 +46,8 @@ class Crossings {
     const int right = (axis + 1) % 3, up = (axis + 2) % 3;
     for (const auto& [from, to] : segments) {
       const Vec3 &a = points.rounded(from), &b = points.rounded(to);
-      const auto [left_end, right_end] = std::minmax(a[right], b[right]);
-      const auto [lower, upper] = std::minmax(a[up], b[up]);
+      const auto [left_end, right_end] = std::minmax({a[right], b[right]});
+      const auto [lower, upper] = std::minmax({a[up], b[up]});
       boxes_.push_back({left_end, right_end, lower, upper, {from, to}});
     }
     std::ranges::sort(boxes_, [](const Boxed& s, const Boxed& t) {

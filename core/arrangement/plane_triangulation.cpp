@@ -92,16 +92,19 @@ bool PlaneTriangulation::insert(Number point) {
   return true;
 }
 
-bool PlaneTriangulation::can_flip(const Edge& edge) const {
+std::uint32_t PlaneTriangulation::corner_beyond(const Edge& edge) const {
   const Face& face = faces_[edge.face];
   const std::uint32_t other = face.beyond[edge.across];
-  if (other == kNone) return false;
+  const std::size_t at_next = place_in(other, face.corners[next(edge.across)]);
+  return faces_[other].corners[3 - at_next - place_in(other, face.corners[last(edge.across)])];
+}
+
+bool PlaneTriangulation::can_flip(const Edge& edge) const {
+  const Face& face = faces_[edge.face];
+  if (face.beyond[edge.across] == kNone) return false;
   const std::uint32_t a = face.corners[edge.across], b = face.corners[next(edge.across)],
                       c = face.corners[last(edge.across)];
-  std::uint32_t d = kNone;
-  for (const std::uint32_t corner : faces_[other].corners) {
-    if (corner != b && corner != c) d = corner;
-  }
+  const std::uint32_t d = corner_beyond(edge);
   return turn(a, b, d) > 0 && turn(a, d, c) > 0;
 }
 
@@ -124,14 +127,9 @@ void PlaneTriangulation::flip(const Edge& edge) {
 // In doubles, so as good as that: whether the corner beyond lies within the circle around the face.
 bool PlaneTriangulation::should_flip(const Edge& edge) const {
   const Face& face = faces_[edge.face];
-  const std::uint32_t other = face.beyond[edge.across];
-  if (other == kNone) return false;
-  std::uint32_t d = kNone;
-  for (const std::uint32_t corner : faces_[other].corners) {
-    if (corner != face.corners[next(edge.across)] && corner != face.corners[last(edge.across)]) d = corner;
-  }
+  if (face.beyond[edge.across] == kNone) return false;
   const int right = (axis_ + 1) % 3, up = (axis_ + 2) % 3;
-  const Vec3& origin = points_->rounded(points_of_[d]);
+  const Vec3& origin = points_->rounded(points_of_[corner_beyond(edge)]);
   std::array<double, 3> x{}, y{}, squares{};
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3& p = points_->rounded(points_of_[face.corners[i]]);
@@ -223,12 +221,7 @@ bool PlaneTriangulation::clear(const Way& way, std::uint32_t from) {
       crossed.emplace_back(right, left);
       continue;
     }
-    const std::uint32_t other = faces_[edge.face].beyond[edge.across];
-    const std::uint32_t a = faces_[edge.face].corners[edge.across];
-    std::uint32_t d = kNone;
-    for (const std::uint32_t corner : faces_[other].corners) {
-      if (corner != right && corner != left) d = corner;
-    }
+    const std::uint32_t a = faces_[edge.face].corners[edge.across], d = corner_beyond(edge);
     flip(edge);
     const auto is_end = [&](std::uint32_t corner) { return corner == from || corner == way.target; };
     if (is_end(a) || is_end(d)) continue;

@@ -66,6 +66,8 @@ class PlaneTriangulation {
   void set_face(std::uint32_t face, const std::array<std::uint32_t, 3>& corners,
                 const std::array<std::uint32_t, 3>& beyond);
   void replace_beyond(std::uint32_t face, std::uint32_t old_face, std::uint32_t new_face);
+  // Precondition: there is a face.
+  [[nodiscard]] std::uint32_t corner_beyond(const Edge& edge) const;
   [[nodiscard]] bool can_flip(const Edge& edge) const;
   void flip(const Edge& edge);
   [[nodiscard]] bool should_flip(const Edge& edge) const;

@@ -16,15 +16,6 @@ using Number = ExactPoints::Number;
 using Segment = std::pair<Number, Number>;
 using PointTriple = std::array<Number, 3>;
 
-// An axis along which a face is seen, not from the side: of these the one that sees most of it.
-int axis_to_see(const PointTriple& corners, const ExactPoints& points) {
-  const Vec3& a = points.rounded(corners[0]);
-  const Vec3 area = absolute(cross(points.rounded(corners[1]) - a, points.rounded(corners[2]) - a));
-  std::array<int, 3> axes{0, 1, 2};
-  std::ranges::stable_sort(axes, [&](int i, int j) { return area[i] > area[j]; });
-  return *std::ranges::find_if(axes, [&](int axis) { return points.turn(axis, corners[0], corners[1], corners[2]); });
-}
-
 std::vector<Segment> all_segments(const PlaneGroup& group) {
   std::vector<Segment> segments = group.segments;
   for (const PlaneGroup::Face& face : group.faces) {
@@ -160,7 +151,7 @@ std::optional<std::uint32_t> face_of(const PointTriple& piece, const PlaneGroup&
 }  // namespace
 
 std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort) {
-  const int axis = axis_to_see(group.faces.front().corners, points);
+  const int axis = points.axis_to_see(group.faces.front().corners);
   const std::vector<Segment> segments = all_segments(group);
   const std::optional<std::vector<Number>> crossings = Crossings(segments, axis, points).find(effort);
   if (!crossings) return std::nullopt;

@@ -43,15 +43,6 @@ Meeting meeting_of(Number from, int axis, const std::array<Vec3, 3>& face, const
   return {points.side(face, from) == -along ? along : 0, false};
 }
 
-// The axes, those first along which more of a triangle is seen.
-std::array<int, 3> axes_to_see(const Triangle& triangle, const Arrangement& arrangement) {
-  const Vec3 a = arrangement.rounded(triangle[0]);
-  const Vec3 area = absolute(cross(arrangement.rounded(triangle[1]) - a, arrangement.rounded(triangle[2]) - a));
-  std::array<int, 3> axes{0, 1, 2};
-  std::ranges::stable_sort(axes, [&](int i, int j) { return area[i] > area[j]; });
-  return axes;
-}
-
 class Rays {
  public:
   Rays(const std::vector<std::uint32_t>& triangles, Arrangement& arrangement, const TriangleMesh& mesh)
@@ -79,13 +70,10 @@ class Rays {
     const Triangle& t = arrangement_.triangles()[triangles_[n]];
     std::array<Number, 3> corners{};
     std::ranges::transform(t, corners.begin(), [&](std::uint32_t corner) { return arrangement_.point(corner); });
-    for (const int axis : axes_to_see(t, arrangement_)) {
-      const int turn = arrangement_.points().turn(axis, corners[0], corners[1], corners[2]);
-      if (turn == 0) continue;
-      const Number point = arrangement_.points().add_between(corners, weights);
-      probes[static_cast<std::size_t>(axis)].push_back({n, point, turn > 0});
-      return;
-    }
+    const int axis = arrangement_.points().axis_to_see(corners);
+    const int turn = arrangement_.points().turn(axis, corners[0], corners[1], corners[2]);
+    const Number point = arrangement_.points().add_between(corners, weights);
+    probes[static_cast<std::size_t>(axis)].push_back({n, point, turn > 0});
   }
 
   void send(int axis, const std::vector<Probe>& probes) {

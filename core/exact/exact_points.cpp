@@ -204,6 +204,14 @@ int ExactPoints::turn(int axis, const Vec3& a, const Vec3& b, Number c) const {
   return sgn(determinant(axis, table_->fractions(a), table_->fractions(b), table_->points[c]));
 }
 
+int ExactPoints::axis_to_see(const std::array<Number, 3>& triangle) const {
+  const auto& [a, b, c] = triangle;
+  const Vec3 area = absolute(cross(rounded(b) - rounded(a), rounded(c) - rounded(a)));
+  std::array<int, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(axes, [&](int i, int j) { return area[i] > area[j]; });
+  return *std::ranges::find_if(axes, [&](int axis) { return turn(axis, a, b, c) != 0; });
+}
+
 int ExactPoints::side(const std::array<Vec3, 3>& triangle, Number point) const {
   if (const int sign = sure_side(triangle, rounded(point)); sign != 0) return sign;
   const IntegerVec3 corner = table_->integers(triangle[0]);

@@ -43,6 +43,9 @@ class ExactPoints {
   [[nodiscard]] int turn(int axis, Number a, Number b, Number c) const;
   // The same of two vertices of the mesh.
   [[nodiscard]] int turn(int axis, const Vec3& a, const Vec3& b, Number c) const;
+  // An axis along which the triangle is seen, not from the side: of these the one that sees most of it, as far as
+  // doubles tell. Precondition: it has an area.
+  [[nodiscard]] int axis_to_see(const std::array<Number, 3>& triangle) const;
   // 1 in front of a triangle of the mesh, -1 behind it, 0 in its plane.
   [[nodiscard]] int side(const std::array<Vec3, 3>& triangle, Number point) const;
 

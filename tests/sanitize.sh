@@ -3,8 +3,8 @@
 # Without arguments both; continuous integration takes the first alone.
 # The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and one
 # with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the hostile
-# files, the faults, the random command lines and the damaged meshes. The whole suite under sanitizers takes an hour:
-# docs/developing.md.
+# files, the faults, the random command lines, the damaged meshes and solids that are cut. The whole suite under
+# sanitizers takes an hour: docs/developing.md.
 set -eu
 cd "$(dirname "$0")/.."
 . tests/phases.sh
@@ -45,7 +45,7 @@ asan_ubsan() {
   black_box asan-ubsan -E "NeverMoreThreadsAreBusyThanAllowed|$of_memory|Engines\.AgreeOn"
   phase 'test asan-ubsan: files and faults' \
     ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \
-    -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|vdb_module)$'
+    -R '^(fuzz_corpus_.*|hostile_files|damaged_vdb|faults|full_disk|command_lines|damaged_meshes|cut_solids|vdb_module)$'
   sh tests/check_skipped.sh build/asan-ubsan/ctest-files.log build/asan-ubsan
 }
 

@@ -91,18 +91,24 @@ EvaluatorOptions options_for(const Accuracy& accuracy, const std::vector<Exterio
   return {.accuracy = accuracy, .edges = &edges};
 }
 
-// `for_sides` found the nodes. Of open meshes, evaluators for points take its place.
-FinishedSurface contoured(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const NodeSet& inside,
-                          const SurfaceOptions& options, WindingNumberEvaluator& for_sides) {
-  if (edges.empty()) return closed_surface(mesh, for_sides, inside, options);  // values are exact anyway
-  constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
-  constexpr double kPerCell = 4.0;      // points that either is asked for, where there are few holes
-  const double points = kPerCell * static_cast<double>(mixed_cells(inside));
-  for_sides = WindingNumberEvaluator(TriangleMesh());  // what it held is free for those that follow
-  const WindingNumberEvaluator fine(mesh, options_for(for_points(kTolerance, points), edges));
-  for_sides = WindingNumberEvaluator(mesh, options_for(for_points(tolerance_for_sides(options.rule), points), edges));
-  return closed_surface(mesh, {fine, for_sides}, inside, options);
-}
+// Of an open mesh, for points: one that finds where surfaces close holes, and a rough one, which is sooner.
+struct PointEvaluators {
+  WindingNumberEvaluator fine, rough;
+
+  PointEvaluators(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const NodeSet& inside,
+                  const Rule& rule)
+      : fine(mesh, options_for(for_points(kTolerance, points_in(inside)), edges)),
+        rough(mesh, options_for(for_points(tolerance_for_sides(rule), points_in(inside)), edges)) {}
+
+ private:
+  static constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
+
+  // How many either is asked for, where there are few holes.
+  static double points_in(const NodeSet& inside) {
+    constexpr double kPerCell = 4.0;
+    return kPerCell * static_cast<double>(mixed_cells(inside));
+  }
+};
 
 }  // namespace
 
@@ -113,22 +119,29 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
-  WindingNumberEvaluator evaluator(mesh, options_for(for_sides, edges));
-  NodeSet inside = nodes_inside(evaluator, options.rule, lattice, done);
+  std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh, options_for(for_sides, edges));
+  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done);
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
+  std::optional<PointEvaluators> at_points;
+  if (!edges.empty()) {  // values of closed meshes are exact anyway
+    evaluator.reset();   // what it held is free for those that follow
+    at_points.emplace(mesh, edges, inside, options.rule);
+  }
+  const FineAndRough evaluators =
+      at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*evaluator);
   FinishedSurface closed = within_limits(name, options, [&] {
-    std::optional<FinishedSurface> itself = mesh_as_surface(mesh, inside, options);
+    std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
     if (itself) return *std::move(itself);
     check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
-    return contoured(mesh, edges, inside, options, evaluator);
+    return closed_surface(mesh, evaluators, inside, options);
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
   DroppedSamples samples(made.surface, inside, options.thickness, std::move(closed.held));
   const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
-  ThinParts thin = dropped.is_some ? thin_parts(mesh, {evaluator, options.rule}, samples) : ThinParts();
+  ThinParts thin = dropped.is_some ? thin_parts(mesh, {evaluators.rough, options.rule}, samples) : ThinParts();
   thin.of_all = std::max(thin.of_all, closed.lost.of_all);  // samples may have found these, too
   thin.lost += closed.lost.count;
   if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -75,6 +76,72 @@ void add_parts(const Triangle& triangle, std::uint32_t source, const Splits& spl
   }
 }
 
+// Of each vertex the others that it shares a triangle with, one after the other.
+class Neighbours {
+ public:
+  explicit Neighbours(const TriangleMesh& mesh) : of_(mesh.vertices.size()) {
+    for (const Triangle& t : mesh.triangles) {
+      for (std::size_t n = 0; n < 3; ++n) of_[t[n]].insert(of_[t[n]].end(), {t[(n + 1) % 3], t[(n + 2) % 3]});
+    }
+    for (std::vector<std::uint32_t>& of_one : of_) {
+      std::ranges::sort(of_one);
+      of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
+    }
+  }
+  [[nodiscard]] const std::vector<std::uint32_t>& of(std::uint32_t vertex) const { return of_[vertex]; }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> of_;
+};
+
+// A point that is no farther from a triangle, and next to its inside.
+bool is_on(const TriangleMesh& mesh, const Triangle& t, const Vec3& p, double distance) {
+  const std::array<Vec3, 3> corners{mesh.vertices[t[0]] - p, mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p};
+  const Vec3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double size = safe_norm(area);
+  if (!(size > 0.0) || !(std::abs(dot(corners[0], area)) <= distance * size)) return false;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Vec3 &from = corners[n], &to = corners[(n + 1) % 3];
+    if (!(dot(cross(from, to), area) > distance * safe_norm(to - from) * size)) return false;
+  }
+  return true;
+}
+
+// Cuts triangles in three at the neighbours of their corners that are on them. Whether there were any.
+bool split_at_corners_on_triangles(RuleBorder& border, double distance) {
+  const TriangleMesh& mesh = border.mesh;
+  const Neighbours neighbours(mesh);
+  const auto corner_on = [&](const Triangle& t) -> std::optional<std::uint32_t> {
+    for (const std::uint32_t corner : t) {
+      for (const std::uint32_t v : neighbours.of(corner)) {
+        if (std::ranges::find(t, v) == t.end() && is_on(mesh, t, mesh.vertices[v], distance)) return v;
+      }
+    }
+    return std::nullopt;
+  };
+  const std::size_t count = border.sources.size();
+  for (std::size_t face = 0; face < count; ++face) {
+    const Triangle t = border.mesh.triangles[face];
+    const std::optional<std::uint32_t> v = corner_on(t);
+    if (!v) continue;
+    border.mesh.triangles[face] = {t[0], t[1], *v};
+    border.mesh.triangles.insert(border.mesh.triangles.end(), {{t[1], t[2], *v}, {t[2], t[0], *v}});
+    border.sources.insert(border.sources.end(), 2, border.sources[face]);
+  }
+  return border.sources.size() > count;
+}
+
+// Cuts triangles at corners of flat ones. Whether there were any.
+bool split_at_flat_triangles(RuleBorder& border, double distance) {
+  const Splits splits = splits_at_flat_triangles(border.mesh, distance);
+  if (splits.empty()) return false;
+  RuleBorder split{{border.mesh.vertices, {}}, {}};
+  for (std::size_t face = 0; face < border.sources.size(); ++face)
+    add_parts(border.mesh.triangles[face], border.sources[face], splits, split);
+  border = std::move(split);
+  return true;
+}
+
 // Leaves one triangle less for each that is the same in the other direction.
 void cancel(RuleBorder& border) {
   std::map<Triangle, int> count;  // of triangles by their sorted corners: how many more are even permutations of them
@@ -103,12 +170,9 @@ void snap(RuleBorder& border, double distance) {
   constexpr int kRounds = 8;
   merge_near_vertices(border, distance);
   for (int round = 0; round < kRounds; ++round) {
-    const Splits splits = splits_at_flat_triangles(border.mesh, distance);
-    if (splits.empty()) break;
-    RuleBorder split{{border.mesh.vertices, {}}, {}};
-    for (std::size_t face = 0; face < border.sources.size(); ++face)
-      add_parts(border.mesh.triangles[face], border.sources[face], splits, split);
-    border = std::move(split);
+    const bool had_flat = split_at_flat_triangles(border, distance);
+    cancel(border);
+    if (!split_at_corners_on_triangles(border, distance) && !had_flat) break;
   }
   cancel(border);
 }

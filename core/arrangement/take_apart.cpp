@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/arrangement/fan_cone.h"
 #include "core/data/single_precision.h"
 #include "core/data/vec3.h"
 #include "core/exact/predicates.h"
@@ -93,99 +95,10 @@ class Fans {
   std::vector<std::size_t> parents_;
 };
 
-// The faces of a fan, as seen from its vertex: a cone that the solid is behind. In doubles.
-class Cone {
- public:
-  Cone(const TriangleMesh& mesh, std::uint32_t vertex, const std::vector<std::uint32_t>& faces) : faces_(faces) {
-    for (const std::uint32_t face : faces) {
-      const Triangle& t = mesh.triangles[face];
-      const auto at = static_cast<std::size_t>(std::ranges::find(t, vertex) - t.begin());
-      const auto way_to = [&](std::size_t corner) {
-        const Vec3 step = mesh.vertices[t[corner % 3]] - mesh.vertices[vertex];
-        return (1.0 / safe_norm(step)) * step;
-      };
-      sectors_.push_back({way_to(at + 1), way_to(at + 2)});
-    }
-  }
-
-  [[nodiscard]] const std::vector<std::uint32_t>& faces() const { return faces_; }
-
-  // Away from the vertex, within a face; not in its middle, for what is symmetric would be level with edges of others.
-  [[nodiscard]] Vec3 way_along() const { return 0.41 * sectors_.front()[0] + 0.59 * sectors_.front()[1]; }
-
-  // A direction of length 1 for the vertex to move in, with all faces on one side, so that it goes away from `others`,
-  // which are directions: behind all faces if these are all in front, and the other way round.
-  [[nodiscard]] std::optional<Vec3> way_from(const std::vector<Vec3>& others) const {
-    for (const double side : {-1.0, 1.0}) {
-      const std::optional<Vec3> way = way_with_all_on_side(side);
-      if (way && std::ranges::none_of(others, [&](const Vec3& other) { return are_on_one_side(*way, other); })) {
-        return way;
-      }
-    }
-    return std::nullopt;
-  }
-
- private:
-  // The direction that is farthest from being along a face, of those with all faces behind it (side 1) or in front
-  // (-1). It is as far from two or three of them, or across from one.
-  [[nodiscard]] std::optional<Vec3> way_with_all_on_side(double side) const {
-    constexpr double kClearly = 0x1p-12;
-    constexpr std::size_t kMostFaces = 64;
-    std::vector<Vec3> normals;
-    for (const auto& [first, second] : sectors_) {
-      const Vec3 area = cross(first, second);
-      const double size = safe_norm(area);
-      if (!(size > 0.0) || sectors_.size() > kMostFaces) return std::nullopt;
-      normals.push_back((side / size) * area);
-    }
-    Vec3 best;
-    double least_of_best = kClearly;
-    const auto look_at = [&](const Vec3& way) {
-      const double length = safe_norm(way);
-      if (!(length > 0.0)) return;
-      double least = 1.0;
-      for (const Vec3& normal : normals) least = std::min(least, dot(normal, way) / length);
-      if (least > least_of_best) {
-        best = (1.0 / length) * way;
-        least_of_best = least;
-      }
-    };
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-      look_at(normals[i]);
-      for (std::size_t j = i + 1; j < normals.size(); ++j) {
-        look_at(normals[i] + normals[j]);
-        for (std::size_t k = j + 1; k < normals.size(); ++k) {
-          const Vec3 way = cross(normals[j] - normals[i], normals[k] - normals[i]);
-          look_at(dot(way, normals[i]) < 0.0 ? -1.0 * way : way);
-        }
-      }
-    }
-    if (!(least_of_best > kClearly)) return std::nullopt;
-    return best;
-  }
-
-  // Whether the way that turns straight from one direction to the other crosses an even number of faces.
-  [[nodiscard]] bool are_on_one_side(const Vec3& from, const Vec3& to) const {
-    const auto crosses = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {  // arcs a - b, c - d
-      const Vec3 first = cross(a, b), second = cross(c, d);
-      const Vec3 meeting = cross(first, second);
-      const auto is_within = [&](const Vec3& normal, const Vec3& begin, const Vec3& end, double sign) {
-        return sign * dot(cross(normal, begin), meeting) > 0.0 && sign * dot(cross(normal, end), meeting) < 0.0;
-      };
-      return (is_within(first, a, b, 1.0) && is_within(second, c, d, 1.0)) ||
-             (is_within(first, a, b, -1.0) && is_within(second, c, d, -1.0));
-    };
-    return std::ranges::count_if(sectors_, [&](const auto& s) { return crosses(from, to, s[0], s[1]); }) % 2 == 0;
-  }
-
-  std::vector<std::uint32_t> faces_;
-  std::vector<std::array<Vec3, 2>> sectors_;  // the edges of each face that leave the vertex
-};
-
 class Apart {
  public:
-  Apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance, bool single_precision)
-      : border_(border), sources_(sources), distance_(distance), single_precision_(single_precision) {}
+  Apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options)
+      : border_(border), sources_(sources), options_(options) {}
 
   bool take() {
     constexpr int kRounds = 8;  // a face has three edges; more only go on where faces lie on each other
@@ -239,14 +152,12 @@ class Apart {
   }
 
   void halve_edge(std::uint32_t low, std::uint32_t high, const std::vector<std::uint32_t>& faces) {
-    const auto middle = static_cast<std::uint32_t>(border_.vertices.size());
-    border_.vertices.push_back(rounded(0.5 * border_.vertices[low] + 0.5 * border_.vertices[high]));
+    const std::uint32_t middle = add_vertex(0.5 * border_.vertices[low] + 0.5 * border_.vertices[high]);
     for (const std::uint32_t face : faces) {
       Triangle other = border_.triangles[face];
       std::ranges::replace(border_.triangles[face], high, middle);
       std::ranges::replace(other, low, middle);
-      border_.triangles.push_back(other);
-      sources_.push_back(sources_[face]);
+      add_face(other, sources_[face]);
     }
   }
 
@@ -256,8 +167,15 @@ class Apart {
     std::vector<std::uint32_t> faces;
     Vec3 to;
   };
+  // Or what its vertex is cut off by, with a lid within the solid (side -1), or outside of it.
+  struct Cut {
+    std::uint32_t vertex;
+    std::vector<std::uint32_t> faces;
+    double side;
+  };
 
-  // Gives each fan its vertex: the last one at a vertex, or one that cannot be moved, keeps it.
+  // Gives each fan its vertex: the last one at a vertex, or one that cannot be moved, keeps it. Of several of these,
+  // all but that with most faces are cut off.
   bool split_vertices(Fans& fans) {
     std::vector<std::uint32_t> count(border_.vertices.size(), 0);
     for_each_corner([&](std::uint32_t face, std::uint32_t vertex) {
@@ -269,36 +187,103 @@ class Apart {
       if (count[vertex] > 1) shared[vertex][fans.root(fans.corner(face, vertex))].push_back(face);
     });
     std::vector<Move> moves;
+    std::vector<Cut> cuts;
     for (const auto& [vertex, fans_of_vertex] : shared) {
-      std::vector<Cone> cones;
+      std::vector<FanCone> cones;
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
-      if (!add_moves(vertex, cones, moves)) return false;
+      const bool are_there = options_.way ? add_moves_along(*options_.way, vertex, cones, moves)
+                                          : add_moves_inside(vertex, cones, moves, cuts);
+      if (!are_there) return false;
     }
-    for (const Move& move : moves) apply(move);
+    constexpr std::size_t kMostCuts = 256;  // each looks at all faces
+    if (cuts.size() > kMostCuts) return false;
+    for (const Move& move : moves) give_copy(move.vertex, move.to, move.faces);
+    for (Cut& cut : cuts) cut.vertex = give_copy(cut.vertex, border_.vertices[cut.vertex], cut.faces);
+    return std::ranges::all_of(cuts, [&](const Cut& cut) { return apply(cut); });
+  }
+
+  static std::vector<Vec3> ways_along_others(const std::vector<FanCone>& cones, std::size_t n) {
+    std::vector<Vec3> others;
+    for (std::size_t m = 0; m < cones.size(); ++m) {
+      if (m != n) others.push_back(cones[m].way_along());
+    }
+    return others;
+  }
+
+  // The first fan stays, and each other one goes farther than those before it, away from them. Of two that may leave
+  // each other, the one that is ahead at the other ends of their edges is ahead, or the one whose faces are.
+  bool add_moves_along(const Vec3& way, std::uint32_t vertex, const std::vector<FanCone>& cones,
+                       std::vector<Move>& moves) {
+    const std::size_t count = cones.size();
+    std::vector<std::vector<bool>> leaves(count, std::vector<bool>(count, false));
+    std::vector<std::pair<int, std::size_t>> order;  // how many each is ahead of, and which it is
+    for (std::size_t n = 0; n < count; ++n) {
+      for (std::size_t m = 0; m < count; ++m) leaves[n][m] = n != m && cones[n].leaves(cones[m], way);
+      order.emplace_back(0, n);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      for (std::size_t m = 0; m < n; ++m) {
+        const int ends = ahead_at_other_ends(cones[n], cones[m]);
+        const bool is_ahead = ends != 0 ? ends > 0 : cones[n].lead(cones[m], way) > 0.0;
+        ++order[leaves[n][m] && (is_ahead || !leaves[m][n]) ? n : m].first;
+      }
+    }
+    std::ranges::sort(order);
+    for (std::size_t i = 0; i < count; ++i) {
+      const FanCone& cone = cones[order[i].second];
+      for (std::size_t j = 0; j < i; ++j) {
+        if (!leaves[order[i].second][order[j].second]) return false;
+      }
+      for (const std::uint32_t face : cone.faces()) steps_[{face, vertex}] = static_cast<int>(i);
+      const Vec3 step = static_cast<double>(i) * options_.distance * way;
+      if (i > 0) moves.push_back({vertex, cone.faces(), border_.vertices[vertex] + step});
+    }
     return true;
   }
 
-  bool add_moves(std::uint32_t vertex, const std::vector<Cone>& cones, std::vector<Move>& moves) const {
+  // At how many corners that faces of both have one has gone farther, less those at which the other one has.
+  [[nodiscard]] int ahead_at_other_ends(const FanCone& one, const FanCone& other) const {
+    int ahead = 0;
+    for (const std::uint32_t face : one.faces()) {
+      for (const std::uint32_t corner : border_.triangles[face]) {
+        const auto here = steps_.find({face, corner});
+        if (here == steps_.end()) continue;
+        for (const std::uint32_t beside : other.faces()) {
+          const auto there = steps_.find({beside, corner});
+          if (there != steps_.end()) ahead += (here->second > there->second) - (here->second < there->second);
+        }
+      }
+    }
+    return ahead;
+  }
+
+  bool add_moves_inside(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves,
+                        std::vector<Cut>& cuts) const {
     constexpr std::size_t kMostCones = 64;
     if (cones.size() > kMostCones) return false;
-    std::size_t stay = 0;
+    std::vector<std::size_t> stuck;
     for (std::size_t n = 0; n < cones.size(); ++n) {
-      std::vector<Vec3> others;
-      for (std::size_t m = 0; m < cones.size(); ++m) {
-        if (m != n) others.push_back(cones[m].way_along());
-      }
-      const bool may_stay = stay == 0 && n + 1 == cones.size();
-      const std::optional<Vec3> way = may_stay ? std::nullopt : cones[n].way_from(others);
+      const bool may_stay = stuck.empty() && n + 1 == cones.size();
+      const std::optional<Vec3> way = may_stay ? std::nullopt : cones[n].way_from(ways_along_others(cones, n));
       if (way) {
-        moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + distance_ * *way});
-      } else if (stay++ > 0) {
-        return false;
+        moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + options_.distance * *way});
+      } else {
+        stuck.push_back(n);
       }
+    }
+    // One stays: the one that cannot be cut off, or that with most faces.
+    std::vector<std::optional<double>> sides(cones.size());
+    for (const std::size_t n : stuck) sides[n] = cones[n].side_of_lid(ways_along_others(cones, n));
+    std::ranges::stable_sort(stuck, std::greater(),
+                             [&](std::size_t n) { return std::pair(!sides[n], cones[n].faces().size()); });
+    for (std::size_t i = 1; i < stuck.size(); ++i) {
+      if (!sides[stuck[i]]) return false;
+      cuts.push_back({vertex, cones[stuck[i]].faces(), *sides[stuck[i]]});
     }
     return true;
   }
 
-  [[nodiscard]] Vec3 rounded(const Vec3& p) const { return single_precision_ ? rounded_to_float(p) : p; }
+  [[nodiscard]] Vec3 rounded(const Vec3& p) const { return options_.single_precision ? rounded_to_float(p) : p; }
 
   template <class Visit>
   void for_each_corner(const Visit& visit) const {
@@ -307,22 +292,78 @@ class Apart {
     }
   }
 
-  void apply(const Move& move) {
-    const auto copy = static_cast<std::uint32_t>(border_.vertices.size());
-    border_.vertices.push_back(rounded(move.to));
-    for (const std::uint32_t face : move.faces) std::ranges::replace(border_.triangles[face], move.vertex, copy);
+  std::uint32_t add_vertex(const Vec3& p) {
+    border_.vertices.push_back(rounded(p));
+    return static_cast<std::uint32_t>(border_.vertices.size() - 1);
+  }
+
+  std::uint32_t give_copy(std::uint32_t vertex, const Vec3& at, const std::vector<std::uint32_t>& faces) {
+    const std::uint32_t copy = add_vertex(at);
+    for (const std::uint32_t face : faces) std::ranges::replace(border_.triangles[face], vertex, copy);
+    return copy;
+  }
+
+  // The other corners of the faces around a vertex that is of one fan, one after the other; and those faces.
+  struct Ring {
+    std::vector<std::uint32_t> corners, faces;
+  };
+  [[nodiscard]] Ring ring_of(std::uint32_t vertex) const {
+    std::map<std::uint32_t, std::array<std::uint32_t, 2>> next;  // corner, and face between
+    for_each_corner([&](std::uint32_t face, std::uint32_t corner) {
+      if (corner != vertex) return;
+      const Triangle& t = border_.triangles[face];
+      const auto at = static_cast<std::size_t>(std::ranges::find(t, vertex) - t.begin());
+      next[t[(at + 1) % 3]] = {t[(at + 2) % 3], face};
+    });
+    Ring ring;
+    for (std::uint32_t corner = next.begin()->first; ring.faces.size() < next.size();) {
+      const auto& [following, face] = next.at(corner);
+      ring.corners.push_back(corner);
+      ring.faces.push_back(face);
+      corner = following;
+    }
+    return ring;
+  }
+
+  // Each edge that leads to the vertex ends before it, and a lid is between these ends.
+  bool apply(const Cut& cut) {
+    constexpr double kOfEdge = 0x1p-12;  // so that what is apart at the other end of an edge is apart here
+    const Vec3 apex = border_.vertices[cut.vertex];
+    const auto [corners, faces] = ring_of(cut.vertex);
+    std::vector<Vec3> steps, ways;
+    for (const std::uint32_t corner : corners) {
+      steps.push_back(border_.vertices[corner] - apex);
+      ways.push_back((1.0 / safe_norm(steps.back())) * steps.back());
+    }
+    const std::optional<std::vector<std::array<std::size_t, 3>>> lid = lid_of(ways, cut.side);
+    if (!lid) return false;
+    std::vector<std::uint32_t> ends{cut.vertex};  // which is free now
+    border_.vertices[cut.vertex] = rounded(apex + kOfEdge * steps[0]);
+    for (std::size_t n = 1; n < steps.size(); ++n) ends.push_back(add_vertex(apex + kOfEdge * steps[n]));
+    for (std::size_t n = 0; n < corners.size(); ++n) {
+      const std::size_t m = (n + 1) % corners.size();
+      border_.triangles[faces[n]] = {ends[n], corners[n], corners[m]};
+      add_face({ends[n], corners[m], ends[m]}, sources_[faces[n]]);
+    }
+    for (const auto& [a, b, c] : *lid) add_face({ends[a], ends[b], ends[c]}, sources_[faces[a]]);
+    return true;
+  }
+
+  void add_face(const Triangle& face, std::uint32_t source) {
+    border_.triangles.push_back(face);
+    sources_.push_back(source);
   }
 
   TriangleMesh& border_;
   std::vector<std::uint32_t>& sources_;
-  double distance_;
-  bool single_precision_;
+  ApartOptions options_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> steps_;  // of faces at corners, how many along the way
 };
 
 }  // namespace
 
-bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance, bool single_precision) {
-  return Apart(border, sources, distance, single_precision).take();
+bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options) {
+  return Apart(border, sources, options).take();
 }
 
 }  // namespace raycone

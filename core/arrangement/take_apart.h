@@ -2,20 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
 
 namespace raycone {
 
+struct ApartOptions {
+  double distance = 0.0;          // by which vertices move
+  bool single_precision = false;  // new vertices are rounded to float
+  // Where given, a direction of length 1 that all move along, those of several fans farther and farther: what lies on
+  // faces is on one side of all of them afterwards.
+  std::optional<Vec3> way{};
+};
+
 // Makes a 2-manifold of the border of a solid: where it touches itself in a vertex or along an edge, each part of the
-// solid gets a vertex of its own, which all of them but one have moved into their insides by `distance`. Faces along an
-// edge belong together where the solid is between them. An edge along which that leaves two parts the same two ends is
-// halved. `sources`: of each triangle, and so of its halves. New vertices are rounded to float with
-// `single_precision`. False, and the border is left half done, where it has no two sides, or two parts have no vertex
-// in their insides. Whether what is moved meets nothing must be looked at after it. Preconditions: every edge has as
-// many faces in either direction, which meet in nothing but common corners and edges. Needs DefaultFloatingPoint.
-[[nodiscard]] bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, double distance,
-                              bool single_precision);
+// solid gets a vertex of its own, which all of them but one have moved into their insides by the distance, or along
+// the way given. Where there is no way into a part, its corner is cut off, by 2^-12 of each edge. Faces along an edge
+// belong together where the solid is between them. An edge along which that leaves two parts the same two ends is
+// halved. `sources`: of each triangle, and so of its halves. False, and the border is left half done, where it has no
+// two sides, or two parts cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after
+// it. Preconditions: every edge has as many faces in either direction, which meet in nothing but common corners and
+// edges. Needs DefaultFloatingPoint.
+[[nodiscard]] bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options);
 
 }  // namespace raycone

@@ -48,15 +48,33 @@ void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::ui
   for (std::uint32_t& source : sources) source = beyond[source];
 }
 
-std::optional<SurfaceMesh> taken_apart(RuleBorder border, double distance, bool single_precision) {
-  if (!take_apart(border.mesh, border.sources, distance, single_precision)) return std::nullopt;
+std::optional<SurfaceMesh> taken_apart(RuleBorder border, const ApartOptions& options) {
+  if (!take_apart(border.mesh, border.sources, options)) return std::nullopt;
   if (!is_closed_and_embedded(border.mesh)) return std::nullopt;
   return SurfaceMesh{std::move(border.mesh), {border.sources.begin(), border.sources.end()}};
 }
 
+bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
+  const std::vector<ExteriorEdge> none;
+  return misplaced_nodes(surface.mesh, inside, &none).empty();
+}
+
+// With nodes on their sides, if that can be had. A node on a face counts as moved by less than any distance, along x by
+// more than along y, and along y by more than along z. If faces move the other way it stays on its side of them.
+std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleBorder& border, ApartOptions options) {
+  constexpr double kMuchMore = 0x1p5;  // as faces are hardly ever nearer to level without being so
+  std::optional<SurfaceMesh> surface = taken_apart(border, options);
+  const bool has_moved = surface && surface->mesh.vertices.size() != border.mesh.vertices.size();
+  if (surface && (!has_moved || has_all_nodes_right(*surface, inside))) return surface;
+  const Vec3 way{-1.0, -1.0 / kMuchMore, -1.0 / (kMuchMore * kMuchMore)};
+  options.way = (1.0 / norm(way)) * way;
+  std::optional<SurfaceMesh> other = taken_apart(border, options);
+  return other && (!surface || has_all_nodes_right(*other, inside)) ? other : surface;
+}
+
 }  // namespace
 
-std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const Lattice& lattice,
+std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeSet& inside,
                                            const SurfaceOptions& options) {
   constexpr int kRounds = 2;
   constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
@@ -64,14 +82,15 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const Latti
   const bool single_precision = options.single_precision;
   if (!may_be_closed(mesh)) return std::nullopt;
   const double rounding = rounding_of(mesh, single_precision);
-  const double apart = std::max(kApart * lattice.least_spacing(), kApartRoundings * rounding);
+  const ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding),
+                        single_precision};
   std::optional<RuleBorder> border = rule_border(mesh, {options.rule, single_precision, kMostPairs});
   double near = kNear * rounding;
   for (int round = 0; border && !border->sources.empty(); ++round, near *= kFarther) {
-    if (std::optional<SurfaceMesh> surface = taken_apart(*border, apart, single_precision)) return surface;
+    if (std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as)) return surface;
     if (round == kRounds) break;
     snap(*border, near);
-    if (std::optional<SurfaceMesh> surface = taken_apart(*border, apart, single_precision)) return surface;
+    if (std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as)) return surface;
     std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, single_precision, kMostPairs});
     if (again) look_through(again->sources, border->sources);
     border = std::move(again);

@@ -23,10 +23,13 @@
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_simplify.h"
 #include "core/surface/component_signs.h"
+#include "core/surface/edge_points.h"
+#include "core/surface/edge_roots.h"
 #include "core/surface/embedded_border.h"
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
+#include "core/surface/hole_fill.h"
 #include "core/surface/seen_by_nodes.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
@@ -103,19 +106,19 @@ bool keep_border(SurfaceMesh& surface, const Rule& rule) {
   return !surface.sources.empty();
 }
 
-// Components that are not left, and of which other faces of the same triangles are.
+// What triangles of the mesh are in components that are not left, and have other faces in those that are.
 LostPieces lost_pieces(const SurfaceMesh& surface, const Components& components, const std::vector<bool>& is_left,
                        const TriangleMesh& mesh) {
   const auto component_of = [&](std::size_t face) { return components.of_vertex[surface.mesh.triangles[face][0]]; };
   std::unordered_set<std::int32_t> left;
   for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    if (is_left[component_of(face)]) left.insert(surface.sources[face]);
+    if (is_left[component_of(face)] && surface.sources[face] != kHole) left.insert(surface.sources[face]);
   }
   std::vector<double> areas(is_left.size(), 0.0);
   std::vector<bool> is_piece(is_left.size(), false);
   for (std::size_t face = 0; face < surface.sources.size(); ++face) {
     const std::uint32_t component = component_of(face);
-    if (is_left[component]) continue;
+    if (is_left[component] || surface.sources[face] == kHole) continue;
     areas[component] += area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
     is_piece[component] = is_piece[component] || left.contains(surface.sources[face]);
   }
@@ -183,6 +186,7 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
 std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMesh& mesh, bool single_precision) {
   std::vector<bool> held(mesh.triangles.size(), false);
   for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] == kHole) continue;
     const auto source = static_cast<std::size_t>(surface.sources[face]);
     held[source] = std::ranges::all_of(mesh.triangles[source], [&](std::uint32_t corner) {
       const Vec3 place = single_precision ? rounded_to_float(mesh.vertices[corner]) : mesh.vertices[corner];
@@ -193,21 +197,72 @@ std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMe
   return held;
 }
 
-// `most`: triangles, once merged.
-std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSet& inside,
-                                          const SurfaceOptions& options, std::uint64_t most) {
-  FinishedSurface made{surface_of(mesh)};
-  const TriangleMesh& surface = made.surface.mesh;
-  if (options.single_precision) round_to_float(made.surface.mesh.vertices);
-  if (!std::isfinite(largest_coordinate(bounding_box(surface)))) return std::nullopt;  // beyond floats
+// What there is to know of the mesh and the lattice.
+struct Input {
+  const TriangleMesh& mesh;
+  const FineAndRough& evaluators;
+  const NodeSet& inside;
+  const SurfaceOptions& options;
+  std::uint64_t most;  // triangles, once merged
+};
+
+// Of a closed mesh: itself or, where it has faults, what is cut out of it. `rule`: of its winding numbers; that of the
+// border's then.
+std::optional<SurfaceMesh> border_of(const TriangleMesh& closed, const Input& input, Rule& rule) {
+  SurfaceMesh itself = surface_of(closed);
+  if (input.options.single_precision) round_to_float(itself.mesh.vertices);
+  if (!std::isfinite(largest_coordinate(bounding_box(itself.mesh)))) return std::nullopt;  // beyond floats
+  if (is_closed_and_embedded(itself.mesh) && keep_border(itself, rule)) return itself;
+  const double most = kBeforeBorder * static_cast<double>(input.most);
+  if (static_cast<double>(closed.triangles.size()) > most) return std::nullopt;
+  SurfaceOptions options = input.options;
+  options.rule = std::exchange(rule, Rule{});  // it goes once around what it is the border of
+  return embedded_border(closed, input.inside, options);
+}
+
+// Whether caps leave nearly all nodes that are inside where they are. If they do not, the threshold is far from them.
+bool is_like(const TriangleMesh& closed, const NodeSet& inside, const Rule& rule) {
+  constexpr std::uint64_t kPartOfNodes = 8;
+  const std::vector<ExteriorEdge> none;
+  NodeSet misplaced = nodes_inside(WindingNumberEvaluator(closed, {.edges = &none}), rule, inside.lattice());
+  misplaced.flip(inside);
+  return misplaced.size() * kPartOfNodes <= inside.size();
+}
+
+// The surface of an open mesh, with faces that close its holes along the threshold.
+std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<ExteriorEdge>& edges) {
+  constexpr std::uint64_t kPerFillFace = 3;  // as many of all faces there may be, once merged
+  const auto& [mesh, evaluators, inside, options, most] = input;
   Rule rule = options.rule;
-  if (!is_closed_and_embedded(surface) || !keep_border(made.surface, rule)) {
-    if (static_cast<double>(mesh.triangles.size()) > kBeforeBorder * static_cast<double>(most)) return std::nullopt;
-    std::optional<SurfaceMesh> border = embedded_border(mesh, inside.lattice(), options);
-    if (!border) return std::nullopt;
-    made.surface = *std::move(border);
-    rule = Rule{};  // it goes once around what it is the border of
+  const TriangleMesh closed = closed_by_caps(mesh, edges);
+  if (!is_like(closed, inside, rule)) return std::nullopt;
+  std::optional<SurfaceMesh> border = border_of(closed, input, rule);
+  if (!border) return std::nullopt;
+  const auto own = static_cast<std::int32_t>(mesh.triangles.size());
+  for (std::int32_t& source : border->sources) source = source < own ? source : kHole;
+  const RuleAlong along(evaluators, options.rule);
+  if (!fit_to_threshold(*border, along, inside, {most / kPerFillFace, options.single_precision})) return std::nullopt;
+  rule = Rule{};
+  std::optional<SurfaceMesh> again = border_of(border->mesh, input, rule);
+  if (!again) return std::nullopt;
+  for (std::int32_t& source : again->sources) source = border->sources[static_cast<std::size_t>(source)];
+  if (!is_along_threshold(*again, along, inside.lattice().least_spacing())) return std::nullopt;
+  return again;
+}
+
+std::optional<FinishedSurface> whole_mesh(const Input& input) {
+  const auto& [mesh, evaluators, inside, options, most] = input;
+  const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
+  Rule rule = options.rule;
+  std::optional<SurfaceMesh> border;
+  if (!edges.empty()) border = filled_border(input, edges);
+  if (border) {
+    rule = Rule{};
+  } else {
+    border = border_of(mesh, input, rule);
   }
+  if (!border) return std::nullopt;
+  FinishedSurface made{*std::move(border)};
   if (!keep_seen(made, mesh, inside, rule)) return std::nullopt;
   if (!(options.simplify > 0.0)) made.held = triangles_held_by(made.surface, mesh, options.single_precision);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
@@ -220,18 +275,19 @@ std::optional<FinishedSurface> whole_mesh(const TriangleMesh& mesh, const NodeSe
 
 }  // namespace
 
-std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
-                                               const SurfaceOptions& options) {
+std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
+                                               const NodeSet& inside, const SurfaceOptions& options) {
   const DefaultFloatingPoint guard;
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
   const std::uint64_t most = kMostPerCell * mixed_cells(inside);
   if (static_cast<double>(mesh.triangles.size()) > kBeforeMerging * static_cast<double>(most)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
-  const auto make = [&](const TriangleMesh& input, const NodeSet& nodes, const SurfaceOptions& as) {
-    return whole_mesh(input, nodes, as, most);
+  if (!is_out_of_scale(inside.lattice(), options)) return whole_mesh({mesh, evaluators, inside, options, most});
+  const auto make = [&](const TriangleMesh& scaled, const NodeSet& nodes, const SurfaceOptions& as) {
+    const WindingNumberEvaluator evaluator(scaled);
+    return whole_mesh({scaled, evaluator, nodes, as, most});
   };
-  return is_out_of_scale(inside.lattice(), options) ? made_in_scale(mesh, inside, options, make)
-                                                    : make(mesh, inside, options);
+  return made_in_scale(mesh, inside, options, make);
 }
 
 }  // namespace raycone

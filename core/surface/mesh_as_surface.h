@@ -18,7 +18,7 @@ namespace raycone {
 // closed_surface() does it. None otherwise, and where that function would do something else: where the set has a
 // thickness, or no faces are to be merged. Lattices are not refused that are too fine for that one. The same for any
 // number of threads. Preconditions: as of closed_surface().
-[[nodiscard]] std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const NodeSet& inside,
-                                                             const SurfaceOptions& options);
+[[nodiscard]] std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
+                                                             const NodeSet& inside, const SurfaceOptions& options);
 
 }  // namespace raycone

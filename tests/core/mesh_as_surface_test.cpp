@@ -16,6 +16,8 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
+#include "core/surface/edge_points.h"
+#include "core/surface/fault_places.h"
 #include "core/surface/seen_by_nodes.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
@@ -54,7 +56,8 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   const NodeSet inside = nodes_of(mesh, side, options.rule);
   EXPECT_FALSE(inside.empty());
   EXPECT_FALSE(inside.reaches_border());
-  std::optional<FinishedSurface> made = mesh_as_surface(mesh, inside, options);
+  const WindingNumberEvaluator evaluator(mesh);
+  std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, options);
   if (made) {
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     std::vector<Vec3> rounded = made->surface.mesh.vertices;
@@ -143,8 +146,9 @@ TEST(MeshAsSurface, HasSamplesOnItsFacesOnTheirSides) {
     }
   }
   for (const TriangleMesh& mesh : {box, octahedron}) {
-    const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-    const std::optional<FinishedSurface> made = mesh_as_surface(mesh, inside, {});
+    const WindingNumberEvaluator evaluator(mesh);
+    const NodeSet inside = nodes_inside(evaluator, Rule{}, lattice);
+    const std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, {});
     ASSERT_TRUE(made);
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     EXPECT_EQ(made->surface.mesh.triangles.size(), mesh.triangles.size());
@@ -166,9 +170,64 @@ TEST(MeshAsSurface, MergesFacesOfAPlane) {
   }
 }
 
-TEST(MeshAsSurface, IsNoneOfOpenMeshes) {
-  EXPECT_FALSE(kept(turned(test::open_box()), 20));
-  EXPECT_FALSE(kept(turned(test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), test::open_box())), 20));
+// Without faces in the middle of the box, at the end of a side, or of a sphere's top.
+TriangleMesh without(TriangleMesh mesh, const Box& box) {
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const Vec3 middle = (1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (middle[axis] < box.lower[axis] || middle[axis] > box.upper[axis]) return false;
+    }
+    return true;
+  });
+  return mesh;
+}
+
+TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
+  const TriangleMesh sphere = weld(test::sphere(10), {});
+  for (const TriangleMesh& mesh :
+       {test::open_box(), test::joined(box_at(2, 0.5), test::open_box()), without(sphere, {{-2, -2, 0.8}, {2, 2, 2}}),
+        without(sphere, {{0.2, 0.1, 0.3}, {2, 2, 0.8}})}) {
+    for (const bool single_precision : {false, true}) {
+      const std::optional<FinishedSurface> made = kept(turned(mesh), 27, {.rule = Rule{}, .single_precision = single_precision});
+      ASSERT_TRUE(made);
+      EXPECT_TRUE(holds_all(*made));
+      EXPECT_TRUE(made->merged);
+      EXPECT_GT(std::ranges::count(made->surface.sources, kHole), 0);
+      EXPECT_GE(made->surface.mesh.vertices.size(), used_part(mesh.vertices, mesh.triangles).vertices.size());
+    }
+  }
+}
+
+// Of a cracked box, one side of which does not meet the others, and of two that have lost the faces between them.
+TEST(MeshAsSurface, ClosesCracks) {
+  TriangleMesh cracked = test::open_box();
+  const auto first = static_cast<std::uint32_t>(cracked.vertices.size());
+  cracked.vertices.insert(cracked.vertices.end(), {{0, 0, 1.001}, {1, 0, 1}, {1, 1, 1.001}, {0, 1, 1.002}});
+  cracked.triangles.insert(cracked.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+  EXPECT_FALSE(exterior_edges(weld(cracked, {})).empty());
+  const std::optional<FinishedSurface> box = kept(turned(weld(cracked, {})), 30);
+  ASSERT_TRUE(box);
+  EXPECT_NEAR(volume_of(box->surface.mesh), 1.001, 5e-4);
+  // The edge along one side is cut in two, so that triangles do not share it: a crack without width.
+  TriangleMesh split = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const Triangle one = split.triangles[0];
+  split.vertices.push_back(0.5 * (split.vertices[one[0]] + split.vertices[one[1]]));
+  const auto middle = static_cast<std::uint32_t>(split.vertices.size() - 1);
+  split.triangles[0] = {one[0], middle, one[2]};
+  split.triangles.push_back({middle, one[1], one[2]});
+  EXPECT_FALSE(exterior_edges(split).empty());
+  const std::optional<FinishedSurface> whole = kept(split, 30);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(std::ranges::count(whole->surface.sources, kHole), 0);
+  EXPECT_DOUBLE_EQ(volume_of(whole->surface.mesh), 1.0);
+}
+
+// Where the threshold is not along what could close a hole: in a ring around the inside of a short pipe, and where a
+// sheet has nothing inside but what it is near to.
+TEST(MeshAsSurface, IsNoneOfMeshesThatAreMostlyHole) {
+  const TriangleMesh pipe =
+      without(without(weld(test::sphere(10), {}), {{-2, -2, 0.4}, {2, 2, 2}}), {{-2, -2, -2}, {2, 2, -0.4}});
+  EXPECT_FALSE(kept(turned(pipe), 20));
 }
 
 // Of a mesh with faults, or that is not what the rule asks for, the border. Parts that touch are apart by 2^-30 of a
@@ -254,11 +313,12 @@ TEST(MeshAsSurface, IsWithoutComponentsThatSeparateNothing) {
 TEST(MeshAsSurface, IsNoneWithOtherNodes) {
   const TriangleMesh box = turned(test::box_mesh({0, 0, 0}, {1, 1, 1}));
   NodeSet inside = nodes_of(box, 12);
-  ASSERT_TRUE(mesh_as_surface(box, inside, {}));
+  const WindingNumberEvaluator evaluator(box);
+  ASSERT_TRUE(mesh_as_surface(box, evaluator, inside, {}));
   NodeSet one(inside.lattice());
   one.insert(2, 2, 2);
   inside.flip(one);
-  EXPECT_FALSE(mesh_as_surface(box, inside, {}));
+  EXPECT_FALSE(mesh_as_surface(box, evaluator, inside, {}));
 }
 
 TEST(MeshAsSurface, IsWithoutWhatTheLatticeDoesNotSee) {

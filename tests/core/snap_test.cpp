@@ -9,6 +9,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
+#include "core/surface/fault_places.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -50,6 +51,22 @@ TEST(Snap, SplitsSidesThatCornersAreNear) {
     const RuleBorder border = snapped(with_flat_face(off));
     EXPECT_EQ(border.mesh.triangles.size(), 14U);  // the face is gone, and the other one at the side is two
     EXPECT_TRUE(is_closed_and_embedded(border.mesh));
+  }
+}
+
+// A box, and between one of its faces and three that are nearly in it, a pocket without thickness.
+TEST(Snap, CutsFacesThatCornersAreNear) {
+  for (const double off : {1e-12, -1e-12}) {
+    TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    const auto [a, b, c] = mesh.triangles[0];
+    const Vec3 area = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+    mesh.vertices.push_back(0.5 * mesh.vertices[a] + 0.25 * (mesh.vertices[b] + mesh.vertices[c]) + off * area);
+    const auto middle = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {b, a, middle}, {c, b, middle}, {a, c, middle}});
+    const RuleBorder border = snapped(mesh);
+    EXPECT_TRUE(is_closed_and_embedded(used_part(border.mesh.vertices, border.mesh.triangles)));
+    EXPECT_LE(border.mesh.triangles.size(), 14U);
+    EXPECT_EQ(components_of(border.mesh).count, 1U);
   }
 }
 

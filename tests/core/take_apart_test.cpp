@@ -7,10 +7,13 @@
 #include <numeric>
 #include <vector>
 
+#include "core/data/lattice.h"
 #include "core/data/single_precision.h"
+#include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
+#include "core/surface/node_set.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -27,7 +30,7 @@ struct Taken {
 Taken taken_apart(const TriangleMesh& mesh, bool single_precision = false) {
   Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
   std::iota(taken.sources.begin(), taken.sources.end(), 0);
-  taken.is_apart = take_apart(taken.mesh, taken.sources, kDistance, single_precision);
+  taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, single_precision});
   return taken;
 }
 
@@ -100,6 +103,57 @@ TEST(TakeApart, HalvesEdgesWhoseEndsStay) {
   EXPECT_EQ(taken.sources.size(), taken.mesh.triangles.size());
 }
 
+// What is seen from the origin as a band around most of the z axis, above it or below: there is no way into it for its
+// corner at the origin.
+TriangleMesh band(double z) {
+  constexpr int kSteps = 12;
+  TriangleMesh mesh{{{0, 0, 0}}, {}};
+  for (int step = 0; step <= kSteps; ++step) {
+    const double angle = 5.0 * step / kSteps;  // of 6.28
+    for (const double radius : {1.0, 1.5})
+      mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+  }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh.triangles.push_back(z > 0.0 ? Triangle{a, b, c} : Triangle{a, c, b});
+  };
+  constexpr std::uint32_t kLast = 2 * kSteps;
+  for (std::uint32_t inner = 1; inner < kLast; inner += 2) {
+    add(inner, inner + 1, inner + 3);  // the side away from the origin
+    add(inner, inner + 3, inner + 2);
+    add(0, inner, inner + 2);
+    add(0, inner + 3, inner + 1);
+  }
+  add(0, 2, 1);
+  add(0, kLast + 1, kLast + 2);
+  return mesh;
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
+  return volume;
+}
+
+// All but one are, with a lid within the solid, or, of cavities, outside of it. The whole volume is that of both but
+// for a part of 2^-36.
+TEST(TakeApart, CutsCornersOffThatNoWayLeadsInto) {
+  EXPECT_TRUE(is_closed_and_embedded(band(1.0)));
+  EXPECT_TRUE(is_closed_and_embedded(band(-1.0)));
+  const TriangleMesh two = weld(test::joined(band(1.0), band(-1.0)), {});
+  const TriangleMesh box = test::box_mesh({-3, -3, -3}, {3, 3, 3});
+  const TriangleMesh cavities = test::joined(box, test::reversed(two));
+  for (const TriangleMesh& mesh : {two, cavities}) {
+    EXPECT_FALSE(is_closed_and_embedded(mesh));
+    const Taken taken = taken_apart(mesh);
+    ASSERT_TRUE(taken.is_apart);
+    EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
+    EXPECT_EQ(taken.mesh.triangles.size(), mesh.triangles.size() + 2 * 26 - 2);  // 26 edges, a lid of 24
+    EXPECT_EQ(taken.sources.size(), taken.mesh.triangles.size());
+    EXPECT_NEAR(volume_of(taken.mesh), volume_of(mesh), 1e-9);
+  }
+}
+
 // As many touch in one corner, and in as many ways, as cells can.
 TEST(TakeApart, TakesCellsApart) {
   test::Random random(5);
@@ -118,6 +172,36 @@ TEST(TakeApart, TakesCellsApart) {
     }
   }
   EXPECT_GT(touching, 150);
+}
+
+// Nodes on faces, edges and corners of cells stay on the sides that the perturbation has them on. Where parts meet in
+// many edges they may not agree on which of them leaves.
+TEST(TakeApart, KeepsNodesOnTheirSides) {
+  const Vec3 way{-1.0, -0x1p-5, -0x1p-10};
+  const Lattice lattice{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {0, 0, 0}, {12, 12, 12}};
+  const auto nodes = [&](const TriangleMesh& mesh) {
+    return nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  };
+  test::Random random(6);
+  int touching = 0, apart = 0, moved = 0;
+  for (int round = 0; round < 200; ++round) {
+    const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
+    if (mesh.triangles.empty() || is_closed_and_embedded(mesh)) continue;
+    ++touching;
+    Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
+    taken.is_apart = take_apart(taken.mesh, taken.sources, {.distance = kDistance, .way = (1.0 / norm(way)) * way});
+    if (!taken.is_apart || !is_closed_and_embedded(taken.mesh)) continue;
+    ++apart;
+    const NodeSet before = nodes(mesh);
+    NodeSet after = nodes(taken.mesh), inside = nodes(taken_apart(mesh).mesh);
+    after.flip(before);
+    inside.flip(before);
+    EXPECT_TRUE(after.empty()) << round;
+    moved += inside.empty() ? 0 : 1;  // as nodes are where vertices move into insides
+  }
+  EXPECT_GT(touching, 100);
+  EXPECT_GT(apart, 0.75 * touching);
+  EXPECT_GT(moved, 0.5 * apart);
 }
 
 TEST(TakeApart, RefusesWhatHasNoSides) {

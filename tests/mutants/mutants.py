@@ -608,7 +608,7 @@ MUTANTS = [
         ("core/surface/mesh_as_surface.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
          "is_border[n] = true;")]),
     Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
-        ("core/surface/mesh_as_surface.cpp", "  if (options.single_precision) round_to_float(made.surface.mesh.vertices);\n",
+        ("core/surface/mesh_as_surface.cpp", "  if (input.options.single_precision) round_to_float(itself.mesh.vertices);\n",
          "")]),
     Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
         ("core/surface/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),
@@ -627,11 +627,29 @@ MUTANTS = [
     Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
         ("core/arrangement/take_apart.cpp", "order[(n + order.size() - 1) % order.size()]", "order[(n + 1) % order.size()]")]),
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
-        ("core/arrangement/take_apart.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
+        ("core/arrangement/fan_cone.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
     Mutant("flat_triangles_stay", "sides that corners are near to are split there", [
         ("core/arrangement/snap.cpp", "if (height > distance) return std::nullopt;", "if (height > 0.0 * distance) return std::nullopt;")]),
     Mutant("walls_stay", "triangles that are one in either direction are gone", [
         ("core/arrangement/snap.cpp", "if (more * direction <= 0) continue;", "if (more * direction < 0) continue;")]),
+    Mutant("corners_on_faces_stay", "faces that corners are near to are cut there", [
+        ("core/arrangement/snap.cpp", "border.mesh.triangles[face] = {t[0], t[1], *v};", "continue;")]),
+    Mutant("lids_on_the_other_side", "a lid is where the other parts are not", [
+        ("core/arrangement/fan_cone.cpp", "within == 0 ? -1.0 : 1.0", "within == 0 ? 1.0 : -1.0")]),
+    Mutant("parts_meet_beside_nodes", "a part moves away from the others", [
+        ("core/arrangement/fan_cone.cpp", "return goes_away({}, way) && ", "return true || goes_away({}, way) && ")]),
+    Mutant("edges_moved_at_one_end", "of two parts the same one moves along all of an edge", [
+        ("core/arrangement/fan_cone.cpp", "sum += dot(across, way)", "sum -= 0.0 * dot(across, way)")]),
+    Mutant("caps_as_they_are", "faces of caps are divided until they are along the threshold", [
+        ("core/surface/hole_fill.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
+    Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
+        ("core/surface/hole_fill.cpp", ".point(brackets[n].root))", ".point(1.001 * brackets[n].root))")]),
+    Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
+        ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
+    Mutant("any_filling", "what closes holes must be near to the threshold", [
+        ("core/surface/hole_fill.cpp", "return near >= kNearly * all &&", "return true || near >= kNearly * all &&")]),
+    Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [
+        ("core/surface/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [
         ("core/exact/exact_points.cpp", "const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;", "const double trust = 0.0 * most * sides;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [

@@ -1,0 +1,38 @@
+// Faces that close the holes of an open mesh.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/surface/contour.h"
+#include "core/surface/edge_roots.h"
+#include "core/surface/node_set.h"
+
+namespace raycone {
+
+// The triangles of an open mesh, and behind them caps of its holes (core/boundary/caps.h): together they are closed.
+// Preconditions: `mesh` is welded, its used vertices are finite; `edges` are its exterior edges.
+[[nodiscard]] TriangleMesh closed_by_caps(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
+
+struct FillLimits {
+  std::size_t most_faces = 0;     // without source
+  bool single_precision = false;  // new vertices are floats
+};
+
+// Divides the faces of a closed surface that have no source, until they are along where the winding number passes a
+// threshold of the rule, and the surface separates the `inside` nodes from the others. New vertices are there, to
+// 2^-34 of a voxel or so, or what their precision rounds; faces longer than a voxel are divided where their middle, or
+// that of their longest side, is farther than 2^-6 voxels from there. Edges of faces with a source stay as they are.
+// Returns whether all nodes are on their sides then. The faces may pass through each other, and through others: the
+// surface is the border of where its winding number is 1 or more. The same for any number of threads. Preconditions: as
+// of closed_surface(), and `along` is of the rule and the mesh that the surface is of. Needs DefaultFloatingPoint.
+[[nodiscard]] bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside,
+                                    const FillLimits& limits);
+
+// Whether the threshold is passed within a quarter of a voxel of nine tenths of the faces without a source, by their
+// area, and within a voxel of 99 in 100, as their middles tell; faces thinner than 2^-6 voxels aside. Likewise.
+[[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
+
+}  // namespace raycone

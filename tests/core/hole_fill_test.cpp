@@ -1,0 +1,187 @@
+#include "core/surface/hole_fill.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "core/data/single_precision.h"
+#include "core/evaluation/winding_number.h"
+#include "core/exact/direct_sum.h"
+#include "core/machine/floating_point.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
+#include "core/surface/certificate.h"
+#include "core/surface/edge_points.h"
+#include "core/surface/fault_places.h"
+#include "core/surface/fill_faces.h"
+#include "core/surface/mesh_as_surface.h"
+#include "tests/support/shapes.h"
+
+namespace raycone {
+namespace {
+
+// The faces of a sphere whose middle is where `has` holds.
+template <class Has>
+TriangleMesh part_of_sphere(int rings, const Has& has) {
+  TriangleMesh mesh = weld(test::sphere(rings), {});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return !has((1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]));
+  });
+  return used_part(mesh.vertices, std::move(mesh.triangles));
+}
+
+// With a round hole whose border bends.
+TriangleMesh bent_bowl() {
+  TriangleMesh mesh = part_of_sphere(12, [](const Vec3& p) { return p.z < 0.6; });
+  for (Vec3& v : mesh.vertices) v.z += 0.3 * (v.x * v.x - v.y * v.y);
+  return mesh;
+}
+
+// With one whose border is jagged, too: the mesh has teeth there that have nothing inside.
+TriangleMesh bitten_sphere() {
+  return part_of_sphere(16, [](const Vec3& p) { return p.z < 0.45 + 0.2 * std::sin(2.0 * std::atan2(p.y, p.x)); });
+}
+
+Lattice lattice_of(double voxel) {
+  const auto count = static_cast<std::int64_t>(std::ceil(2.6 / voxel));
+  return {{-1.303, -1.301, -1.302}, {voxel, voxel, voxel}, {0, 0, 0}, {count, count, count}};
+}
+
+struct Filled {
+  SurfaceMesh surface;
+  NodeSet inside;
+  bool fits = false;
+};
+
+Filled filled(const TriangleMesh& mesh, double voxel, const FillLimits& limits, const Rule& rule = {}) {
+  const DefaultFloatingPoint guard;
+  const WindingNumberEvaluator evaluator(mesh);
+  SurfaceMesh surface{closed_by_caps(mesh, exterior_edges(mesh)), {}};
+  surface.sources.resize(surface.mesh.triangles.size(), kHole);
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) surface.sources[n] = static_cast<std::int32_t>(n);
+  NodeSet inside = nodes_inside(evaluator, rule, lattice_of(voxel));
+  const bool fits = fit_to_threshold(surface, RuleAlong(evaluator, rule), inside, limits);
+  return {std::move(surface), std::move(inside), fits};
+}
+
+TEST(HoleFill, CapsCloseTheMesh) {
+  for (const TriangleMesh& mesh : {test::open_box(), bitten_sphere(), test::notched_fan(), test::fan(5, 3)}) {
+    const TriangleMesh closed = closed_by_caps(mesh, exterior_edges(mesh));
+    EXPECT_TRUE(exterior_edges(closed).empty());
+    EXPECT_EQ(closed.vertices, mesh.vertices);
+    EXPECT_TRUE(std::equal(mesh.triangles.begin(), mesh.triangles.end(), closed.triangles.begin()));
+  }
+}
+
+// New vertices are where a direct sum over all triangles in 113 bits is the threshold.
+TEST(HoleFill, FollowsTheThreshold) {
+  for (const double threshold : {0.5, 0.4}) {
+    const TriangleMesh mesh = bent_bowl();
+    const Rule rule{RuleKind::kThreshold, threshold};
+    const Filled result = filled(mesh, 0.1, {.most_faces = 10000}, rule);
+    ASSERT_TRUE(result.fits);
+    const TriangleMesh& surface = result.surface.mesh;
+    const SurfaceFaults faults = faults_of(surface, result.inside);
+    EXPECT_EQ(faults.edges + faults.links + faults.nodes, 0U);
+    ASSERT_GT(surface.vertices.size(), mesh.vertices.size() + 50);
+    for (std::size_t n = mesh.vertices.size(); n < surface.vertices.size(); ++n) {
+      const double w = static_cast<double>(perturbed_direct_sum(mesh, surface.vertices[n]).value);
+      EXPECT_NEAR(w, threshold, 1e-9);  // 2^-34 of a search of some 0.1, where w changes by 1 to 10 a unit
+    }
+    const DefaultFloatingPoint guard;
+    const WindingNumberEvaluator evaluator(mesh);
+    EXPECT_TRUE(is_along_threshold(result.surface, RuleAlong(evaluator, rule), 0.1));
+    EXPECT_FALSE(is_along_threshold(result.surface, RuleAlong(evaluator, rule), 1e-4));
+  }
+}
+
+// Of caps alone they are not, nor are nodes on their sides: the test above can fail.
+TEST(HoleFill, NeedsFacesEnough) {
+  const TriangleMesh mesh = bent_bowl();
+  EXPECT_FALSE(filled(mesh, 0.1, {.most_faces = 40}).fits);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice_of(0.1));
+  EXPECT_GT(misplaced_nodes(closed_by_caps(mesh, exterior_edges(mesh)), inside).size(), 10U);
+}
+
+// Where the winding number is 1 or more at nodes inside, as it is 0 or less at the others.
+TEST(HoleFill, PutsNodesOnTheirSides) {
+  for (const double voxel : {0.1, 0.06}) {
+    const Filled result = filled(bitten_sphere(), voxel, {.most_faces = 40000});
+    EXPECT_TRUE(result.fits);
+    NodeSet nodes = nodes_inside(WindingNumberEvaluator(result.surface.mesh), Rule{}, lattice_of(voxel));
+    nodes.flip(result.inside);
+    EXPECT_EQ(nodes.size(), 0U);
+  }
+}
+
+TEST(HoleFill, LeavesWhatIsFlat) {
+  const Filled result = filled(test::open_box(), 0.1, {.most_faces = 10000});
+  EXPECT_TRUE(result.fits);
+  EXPECT_EQ(result.surface.sources.size(), 12U);
+}
+
+TEST(HoleFill, RoundsNewVerticesToSinglePrecision) {
+  TriangleMesh mesh = bent_bowl();
+  round_to_float(mesh.vertices);
+  const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .single_precision = true});
+  EXPECT_TRUE(result.fits);
+  std::vector<Vec3> rounded = result.surface.mesh.vertices;
+  round_to_float(rounded);
+  EXPECT_EQ(rounded, result.surface.mesh.vertices);
+}
+
+// Across the ends of a short pipe w is less than 1/2: what is inside is a ring.
+TEST(HoleFill, IsNotAlongTheThresholdWhereThatIsElsewhere) {
+  const TriangleMesh pipe = part_of_sphere(12, [](const Vec3& p) { return std::abs(p.z) < 0.4; });
+  const Filled result = filled(pipe, 0.1, {.most_faces = 10000});
+  const DefaultFloatingPoint guard;
+  const WindingNumberEvaluator evaluator(pipe);
+  EXPECT_FALSE(is_along_threshold(result.surface, RuleAlong(evaluator, Rule{}), 0.1));
+}
+
+TEST(FillFaces, DividesAndFlips) {
+  const TriangleMesh box = test::open_box();
+  SurfaceMesh surface{closed_by_caps(box, exterior_edges(box)), {}};
+  surface.sources.assign(12, kHole);
+  std::fill_n(surface.sources.begin(), 10, 0);
+  FillFaces fill(surface);
+  ASSERT_EQ(fill.size(), 2U);
+  ASSERT_EQ(fill.inner_edges().size(), 1U);
+  EXPECT_EQ(surface.sources.size(), 10U);
+  fill.divide({0, 0}, {0.9, 0.8, 1.0});  // off the middle, so that flips are worth it
+  fill.update_edges();
+  EXPECT_EQ(fill.size(), 4U);
+  fill.divide({2, FillFaces::kNone}, fill.middle(2));
+  fill.update_edges();
+  EXPECT_EQ(fill.size(), 6U);
+  EXPECT_FALSE(fill.flip_edges().empty());
+  double area = 0.0;
+  for (std::uint32_t face = 0; face < fill.size(); ++face) {
+    EXPECT_GT(fill.normal(face).z, 0.0);
+    area += norm(fill.normal(face)) / 2;
+  }
+  EXPECT_NEAR(area, 1.0, 1e-14);
+  for (const FillFaces::InnerEdge& edge : fill.inner_edges()) {  // Delaunay: no corner is in a neighbour's circle
+    double opposite = 0.0;
+    for (const std::uint32_t face : {edge.left, edge.right}) {
+      const auto [a, b, c] = fill[face];
+      const std::uint32_t apex = a ^ b ^ c ^ edge.from ^ edge.to;
+      const Vec3 u = fill.at(edge.from) - fill.at(apex), v = fill.at(edge.to) - fill.at(apex);
+      opposite += std::atan2(norm(cross(u, v)), dot(u, v));
+    }
+    EXPECT_LE(opposite, std::numbers::pi + 1e-5);
+  }
+  EXPECT_TRUE(exterior_edges(fill.mesh()).empty());
+  fill.put_back();
+  EXPECT_EQ(surface.sources.size(), 16U);
+  EXPECT_EQ(std::ranges::count(surface.sources, kHole), 6);
+}
+
+}  // namespace
+}  // namespace raycone

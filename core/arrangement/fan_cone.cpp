@@ -63,10 +63,8 @@ bool FanCone::has_edge(const Vec3& direction) const {
   return std::ranges::any_of(sectors_, [&](const Sector& s) { return s[0] == direction; });
 }
 
-std::optional<double> FanCone::side_of_lid(const std::vector<Vec3>& others) const {
-  const auto within = std::ranges::count_if(others, [&](const Vec3& other) { return has_solid_at(other); });
-  const double likely = within == 0 ? -1.0 : 1.0;
-  for (const double side : {likely, -likely}) {
+std::optional<double> FanCone::side_of_lid() const {
+  for (const double side : {-1.0, 1.0}) {
     if (lid_of(ring(), side)) return side;
   }
   return std::nullopt;
@@ -82,14 +80,6 @@ std::vector<Vec3> FanCone::ring() const {
     sector = &*following;
   }
   return ring;
-}
-
-// From just behind a face.
-bool FanCone::has_solid_at(const Vec3& direction) const {
-  constexpr double kBehind = 1e-8;
-  const auto& [first, second] = sectors_.front();
-  const Vec3 area = cross(first, second);
-  return are_on_one_side(0.5 * (first + second) - (kBehind / safe_norm(area)) * area, direction);
 }
 
 // The direction that is farthest from being along a face, of those with all faces behind it (side 1) or in front

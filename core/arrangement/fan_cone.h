@@ -34,9 +34,8 @@ class FanCone {
   // an edge where these are the faces.
   [[nodiscard]] double lead(const FanCone& other, const Vec3& way) const;
 
-  // On which side a lid can cut the vertex off: within the solid, -1, or outside, 1; there where `others` are not, as
-  // far as can be told, and lid_of() finds one. None where it finds none.
-  [[nodiscard]] std::optional<double> side_of_lid(const std::vector<Vec3>& others) const;
+  // On which side lid_of() finds a lid to cut the vertex off: within the solid, -1, or outside, 1. None for neither.
+  [[nodiscard]] std::optional<double> side_of_lid() const;
 
  private:
   using Sector = std::array<Vec3, 2>;  // the edges of a face that leave the vertex
@@ -44,7 +43,6 @@ class FanCone {
   [[nodiscard]] std::optional<Vec3> way_with_all_on_side(double side) const;
   [[nodiscard]] bool are_on_one_side(const Vec3& from, const Vec3& to) const;
   [[nodiscard]] bool has_edge(const Vec3& direction) const;
-  [[nodiscard]] bool has_solid_at(const Vec3& direction) const;
   [[nodiscard]] std::vector<Vec3> ring() const;
 
   std::vector<std::uint32_t> faces_;

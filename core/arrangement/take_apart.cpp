@@ -273,7 +273,7 @@ class Apart {
     }
     // One stays: the one that cannot be cut off, or that with most faces.
     std::vector<std::optional<double>> sides(cones.size());
-    for (const std::size_t n : stuck) sides[n] = cones[n].side_of_lid(ways_along_others(cones, n));
+    for (const std::size_t n : stuck) sides[n] = cones[n].side_of_lid();
     std::ranges::stable_sort(stuck, std::greater(),
                              [&](std::size_t n) { return std::pair(!sides[n], cones[n].faces().size()); });
     for (std::size_t i = 1; i < stuck.size(); ++i) {

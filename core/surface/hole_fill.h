@@ -31,8 +31,4 @@ struct FillLimits {
 [[nodiscard]] bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside,
                                     const FillLimits& limits);
 
-// Whether the threshold is passed within a quarter of a voxel of nine tenths of the faces without a source, by their
-// area, and within a voxel of 99 in 100, as their middles tell; faces thinner than 2^-6 voxels aside. Likewise.
-[[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
-
 }  // namespace raycone

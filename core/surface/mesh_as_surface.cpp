@@ -29,6 +29,7 @@
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
+#include "core/surface/fill_check.h"
 #include "core/surface/hole_fill.h"
 #include "core/surface/seen_by_nodes.h"
 #include "core/surface/source_plane.h"
@@ -221,7 +222,7 @@ std::optional<SurfaceMesh> border_of(const TriangleMesh& closed, const Input& in
 }
 
 // Whether caps leave nearly all nodes that are inside where they are. If they do not, the threshold is far from them.
-bool is_like(const TriangleMesh& closed, const NodeSet& inside, const Rule& rule) {
+bool keeps_nodes(const TriangleMesh& closed, const NodeSet& inside, const Rule& rule) {
   constexpr std::uint64_t kPartOfNodes = 8;
   const std::vector<ExteriorEdge> none;
   NodeSet misplaced = nodes_inside(WindingNumberEvaluator(closed, {.edges = &none}), rule, inside.lattice());
@@ -235,7 +236,7 @@ std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<E
   const auto& [mesh, evaluators, inside, options, most] = input;
   Rule rule = options.rule;
   const TriangleMesh closed = closed_by_caps(mesh, edges);
-  if (!is_like(closed, inside, rule)) return std::nullopt;
+  if (!keeps_nodes(closed, inside, rule)) return std::nullopt;
   std::optional<SurfaceMesh> border = border_of(closed, input, rule);
   if (!border) return std::nullopt;
   const auto own = static_cast<std::int32_t>(mesh.triangles.size());
@@ -246,7 +247,9 @@ std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<E
   std::optional<SurfaceMesh> again = border_of(border->mesh, input, rule);
   if (!again) return std::nullopt;
   for (std::int32_t& source : again->sources) source = border->sources[static_cast<std::size_t>(source)];
-  if (!is_along_threshold(*again, along, inside.lattice().least_spacing())) return std::nullopt;
+  const double voxel = inside.lattice().least_spacing();
+  if (!is_along_threshold(*again, along, voxel) || !keeps_what_separates(*again, mesh, along, voxel))
+    return std::nullopt;
   return again;
 }
 

@@ -19,6 +19,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/fault_places.h"
+#include "core/surface/fill_check.h"
 #include "core/surface/fill_faces.h"
 #include "core/surface/mesh_as_surface.h"
 #include "tests/support/shapes.h"
@@ -143,6 +144,27 @@ TEST(HoleFill, IsNotAlongTheThresholdWhereThatIsElsewhere) {
   const DefaultFloatingPoint guard;
   const WindingNumberEvaluator evaluator(pipe);
   EXPECT_FALSE(is_along_threshold(result.surface, RuleAlong(evaluator, Rule{}), 0.1));
+}
+
+// Of a box, which has another's lid: only one of both is on it.
+TEST(FillCheck, TellsWhetherFacesAreLost) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const WindingNumberEvaluator evaluator(box);
+  const RuleAlong along(evaluator, Rule{});
+  const auto keeps = [&](double top) {
+    SurfaceMesh surface{test::box_mesh({0, 0, 0}, {1, 1, top}), {}};
+    for (std::int32_t face = 0; face < 12; ++face) {
+      const auto [a, b, c] = surface.mesh.triangles[static_cast<std::size_t>(face)];
+      const bool is_lid =
+          std::min({surface.mesh.vertices[a].z, surface.mesh.vertices[b].z, surface.mesh.vertices[c].z}) > 0;
+      surface.sources.push_back(is_lid ? kHole : face);
+    }
+    return keeps_what_separates(surface, box, along, 0.1);
+  };
+  EXPECT_TRUE(keeps(1.0));
+  EXPECT_TRUE(keeps(0.98));
+  EXPECT_FALSE(keeps(0.9));
 }
 
 TEST(FillFaces, DividesAndFlips) {

@@ -188,12 +188,35 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
        {test::open_box(), test::joined(box_at(2, 0.5), test::open_box()), without(sphere, {{-2, -2, 0.8}, {2, 2, 2}}),
         without(sphere, {{0.2, 0.1, 0.3}, {2, 2, 0.8}})}) {
     for (const bool single_precision : {false, true}) {
-      const std::optional<FinishedSurface> made = kept(turned(mesh), 27, {.rule = Rule{}, .single_precision = single_precision});
+      const std::optional<FinishedSurface> made =
+          kept(turned(mesh), 27, {.rule = Rule{}, .single_precision = single_precision});
       ASSERT_TRUE(made);
       EXPECT_TRUE(holds_all(*made));
       EXPECT_TRUE(made->merged);
       EXPECT_GT(std::ranges::count(made->surface.sources, kHole), 0);
       EXPECT_GE(made->surface.mesh.vertices.size(), used_part(mesh.vertices, mesh.triangles).vertices.size());
+    }
+  }
+}
+
+// Samples in the plane of a hole have just the threshold, and count as inside.
+TEST(MeshAsSurface, HasSamplesInTheHolesPlane) {
+  const Lattice lattice{{-0.25, -0.25, -0.25}, {0.125, 0.125, 0.125}, {0, 0, 0}, {13, 13, 13}};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      TriangleMesh box = test::open_box();  // without its top
+      for (Vec3& v : box.vertices) {
+        for (int n = 0; n < axis; ++n) v = {v.y, v.z, v.x};
+        v = sign * v + (sign < 0.0 ? Vec3{1, 1, 1} : Vec3{});
+      }
+      if (sign < 0.0) box = test::reversed(box);
+      const WindingNumberEvaluator evaluator(box);
+      const NodeSet inside = nodes_inside(evaluator, Rule{}, lattice);
+      const std::optional<FinishedSurface> made = mesh_as_surface(box, evaluator, inside, {});
+      ASSERT_TRUE(made) << axis << ' ' << sign;
+      EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+      EXPECT_LE(made->surface.mesh.triangles.size(), 20U);
+      EXPECT_NEAR(volume_of(made->surface.mesh), 1.0, 1e-9);
     }
   }
 }

@@ -634,20 +634,18 @@ MUTANTS = [
         ("core/arrangement/snap.cpp", "if (more * direction <= 0) continue;", "if (more * direction < 0) continue;")]),
     Mutant("corners_on_faces_stay", "faces that corners are near to are cut there", [
         ("core/arrangement/snap.cpp", "border.mesh.triangles[face] = {t[0], t[1], *v};", "continue;")]),
-    Mutant("lids_on_the_other_side", "a lid is where the other parts are not", [
-        ("core/arrangement/fan_cone.cpp", "within == 0 ? -1.0 : 1.0", "within == 0 ? 1.0 : -1.0")]),
     Mutant("parts_meet_beside_nodes", "a part moves away from the others", [
-        ("core/arrangement/fan_cone.cpp", "return goes_away({}, way) && ", "return true || goes_away({}, way) && ")]),
+        ("core/arrangement/fan_cone.cpp", "return goes_away({}, way) && std::ranges::all_of", "return !goes_away({}, way) || std::ranges::all_of")]),
     Mutant("edges_moved_at_one_end", "of two parts the same one moves along all of an edge", [
         ("core/arrangement/fan_cone.cpp", "sum += dot(across, way)", "sum -= 0.0 * dot(across, way)")]),
     Mutant("caps_as_they_are", "faces of caps are divided until they are along the threshold", [
         ("core/surface/hole_fill.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
     Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
-        ("core/surface/hole_fill.cpp", ".point(brackets[n].root))", ".point(1.001 * brackets[n].root))")]),
+        ("core/surface/line_roots.cpp", ".point(brackets[n].root)", ".point(1.001 * brackets[n].root)")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
         ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [
-        ("core/surface/hole_fill.cpp", "return near >= kNearly * all &&", "return true || near >= kNearly * all &&")]),
+        ("core/surface/fill_check.cpp", "return near >= kNearly * all && not_far >= kNearlyAll * all;", "return near >= 0.0;")]),
     Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [
         ("core/surface/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [

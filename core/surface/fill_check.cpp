@@ -1,0 +1,133 @@
+#include "core/surface/fill_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/distance/distance.h"
+#include "core/surface/edge_points.h"
+
+namespace raycone {
+namespace {
+
+constexpr double kNear = 0.25, kNotFar = 1.0;  // voxels
+
+std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+double hole_area_of(const SurfaceMesh& surface) {
+  double area = 0.0;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] == kHole) area += area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
+  }
+  return area;
+}
+
+// Of each triangle of the mesh, whether faces have less area of it than it has.
+std::vector<bool> are_cut(const SurfaceMesh& surface, const TriangleMesh& mesh) {
+  constexpr double kRounding = 1e-9;
+  std::vector<double> left(mesh.triangles.size(), 0.0);
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] == kHole) continue;
+    left[static_cast<std::size_t>(surface.sources[face])] +=
+        area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
+  }
+  std::vector<bool> cut(mesh.triangles.size());
+  for (std::size_t n = 0; n < cut.size(); ++n)
+    cut[n] = left[n] < (1.0 - kRounding) * area_of_triangle(mesh, mesh.triangles[n]);
+  return cut;
+}
+
+// Points of triangles, each for an area.
+struct Samples {
+  std::vector<Vec3> points, normals;
+  std::vector<double> areas;
+
+  // Those of a grid of parts that are alike, in their middles.
+  void add(const std::array<Vec3, 3>& corners, double area, double step) {
+    constexpr double kMostParts = 256.0;
+    const auto& [a, b, c] = corners;
+    const Vec3 normal = cross(b - a, c - a);
+    if (!(norm(normal) > 0.0)) return;
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    const auto parts = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, kMostParts));
+    const auto add_at = [&](double i, double j) {
+      points.push_back(a + (i / parts) * (b - a) + (j / parts) * (c - a));
+      normals.push_back((1.0 / norm(normal)) * normal);
+      areas.push_back(area / parts / parts);
+    };
+    for (int i = 0; i < parts; ++i) {
+      for (int j = 0; i + j < parts; ++j) {
+        add_at(i + 1.0 / 3.0, j + 1.0 / 3.0);
+        if (i + j + 1 < parts) add_at(i + 2.0 / 3.0, j + 2.0 / 3.0);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel) {
+  constexpr double kLine = 0x1p-6;                    // voxels: thinner faces are as good as lines
+  constexpr double kNearly = 0.9, kNearlyAll = 0.99;  // of the area: teeth of the mesh without inside are gone around
+  constexpr std::size_t kPoints = 17;
+  std::vector<Vec3> points;
+  std::vector<double> areas;
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] != kHole) continue;
+    const auto [a, b, c] = corners_of(surface.mesh, surface.mesh.triangles[face]);
+    const Vec3 normal = cross(b - a, c - a), middle = (1.0 / 3.0) * (a + b + c);
+    if (norm(normal) < kLine * voxel * std::max({norm(b - a), norm(c - b), norm(a - c)})) continue;
+    areas.push_back(norm(normal));
+    points.push_back(middle);
+    for (const double reach : {kNear * voxel, kNotFar * voxel}) {
+      for (const Vec3& way : {(1.0 / norm(normal)) * normal, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+        points.insert(points.end(), {middle - reach * way, middle + reach * way});
+    }
+  }
+  const std::vector<double> values = along.near(points);
+  double all = 0.0, near = 0.0, not_far = 0.0;
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    const auto passes = [&](std::size_t count) {
+      const auto [least, most] = std::ranges::minmax(std::span(values).subspan(n * kPoints, count));
+      return (least >= 0.0) != (most >= 0.0);
+    };
+    all += areas[n];
+    near += passes(kPoints / 2 + 1) ? areas[n] : 0.0;
+    not_far += passes(kPoints) ? areas[n] : 0.0;
+  }
+  return near >= kNearly * all && not_far >= kNearlyAll * all;
+}
+
+bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along, double voxel) {
+  constexpr double kStep = 0.5, kAside = 0x1p-20;  // voxels
+  constexpr double kMost = 0.05;                   // of the area without a source
+  const std::vector<bool> cut = are_cut(surface, mesh);
+  Samples samples;
+  for (std::size_t n = 0; n < cut.size(); ++n) {
+    const Triangle& t = mesh.triangles[n];
+    if (cut[n]) samples.add(corners_of(mesh, t), area_of_triangle(mesh, t), kStep * voxel);
+  }
+  if (samples.points.empty()) return true;
+  std::vector<double> distances(samples.points.size());
+  DistanceEvaluator(surface.mesh).evaluate(samples.points, distances, kNear * voxel);
+  std::vector<Vec3> sides;
+  std::vector<double> areas;
+  for (std::size_t n = 0; n < distances.size(); ++n) {
+    if (distances[n] <= kNear * voxel) continue;
+    const Vec3 aside = kAside * voxel * samples.normals[n];
+    sides.insert(sides.end(), {samples.points[n] - aside, samples.points[n] + aside});
+    areas.push_back(samples.areas[n]);
+  }
+  const std::vector<std::uint8_t> holds = along.holds_at(sides);
+  double lost = 0.0;
+  for (std::size_t n = 0; n < areas.size(); ++n) lost += holds[2 * n] != holds[2 * n + 1] ? areas[n] : 0.0;
+  return lost <= kMost * hole_area_of(surface);
+}
+
+}  // namespace raycone

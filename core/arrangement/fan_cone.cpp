@@ -136,6 +136,8 @@ bool FanCone::are_on_one_side(const Vec3& from, const Vec3& to) const {
 
 // The ear that is cut off is always that with the largest determinant, for it is best shaped.
 std::optional<std::vector<std::array<std::size_t, 3>>> lid_of(const std::vector<Vec3>& polygon, double side) {
+  constexpr std::size_t kMostCorners = 256;  // its cube is looked at
+  if (polygon.size() < 3 || polygon.size() > kMostCorners) return std::nullopt;
   std::vector<std::size_t> left(polygon.size());
   std::iota(left.begin(), left.end(), 0);
   const auto turn = [&](std::size_t a, std::size_t b, std::size_t c) {

@@ -51,7 +51,7 @@ class FanCone {
 
 // Triangles, given as numbers of directions, that are to a polygon of directions what ears cut off make of a polygon in
 // a plane: seen from where the directions start they cover it once, the polygon's inside being on its right (side -1)
-// or on its left (1). None where no ears are found.
+// or on its left (1). None where no ears are found, and of more than 256 directions.
 [[nodiscard]] std::optional<std::vector<std::array<std::size_t, 3>>> lid_of(const std::vector<Vec3>& polygon,
                                                                             double side);
 

@@ -186,16 +186,17 @@ class Apart {
     for_each_corner([&](std::uint32_t face, std::uint32_t vertex) {
       if (count[vertex] > 1) shared[vertex][fans.root(fans.corner(face, vertex))].push_back(face);
     });
+    constexpr std::size_t kMostCones = 64, kMostCuts = 256;  // each looks at others, or at all faces
     std::vector<Move> moves;
     std::vector<Cut> cuts;
     for (const auto& [vertex, fans_of_vertex] : shared) {
+      if (fans_of_vertex.size() > kMostCones) return false;
       std::vector<FanCone> cones;
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
       const bool are_there = options_.way ? add_moves_along(*options_.way, vertex, cones, moves)
                                           : add_moves_inside(vertex, cones, moves, cuts);
       if (!are_there) return false;
     }
-    constexpr std::size_t kMostCuts = 256;  // each looks at all faces
     if (cuts.size() > kMostCuts) return false;
     for (const Move& move : moves) give_copy(move.vertex, move.to, move.faces);
     for (Cut& cut : cuts) cut.vertex = give_copy(cut.vertex, border_.vertices[cut.vertex], cut.faces);
@@ -259,8 +260,6 @@ class Apart {
 
   bool add_moves_inside(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves,
                         std::vector<Cut>& cuts) const {
-    constexpr std::size_t kMostCones = 64;
-    if (cones.size() > kMostCones) return false;
     std::vector<std::size_t> stuck;
     for (std::size_t n = 0; n < cones.size(); ++n) {
       const bool may_stay = stuck.empty() && n + 1 == cones.size();
@@ -303,7 +302,8 @@ class Apart {
     return copy;
   }
 
-  // The other corners of the faces around a vertex that is of one fan, one after the other; and those faces.
+  // The other corners of the faces around a vertex that is of one fan, one after the other; and those faces. Empty
+  // where they do not go around it once.
   struct Ring {
     std::vector<std::uint32_t> corners, faces;
   };
@@ -316,12 +316,12 @@ class Apart {
       next[t[(at + 1) % 3]] = {t[(at + 2) % 3], face};
     });
     Ring ring;
-    for (std::uint32_t corner = next.begin()->first; ring.faces.size() < next.size();) {
-      const auto& [following, face] = next.at(corner);
-      ring.corners.push_back(corner);
-      ring.faces.push_back(face);
-      corner = following;
+    auto here = next.begin();
+    for (; here != next.end() && ring.faces.size() < next.size(); here = next.find(here->second[0])) {
+      ring.corners.push_back(here->first);
+      ring.faces.push_back(here->second[1]);
     }
+    if (here != next.begin()) ring = {};
     return ring;
   }
 

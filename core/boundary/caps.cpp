@@ -148,6 +148,33 @@ class LoopFiller {
     return filling;
   }
 
+  // Between two loops that run opposite ways: from the two vertices of theirs that are next to each other, along the
+  // one and back along the other, always over the shorter diagonal.
+  [[nodiscard]] Filling strip(const Loop& loop, const Loop& other) const {
+    const std::size_t n = loop.size(), m = other.size();
+    const auto at = [&](std::size_t i) { return loop[i % n]; };
+    const std::size_t start = nearest(other, vertices_[at(0)]);
+    const auto back = [&](std::size_t j) { return other[(start + 2 * m - j) % m]; };
+    const auto apart = [&](std::uint32_t a, std::uint32_t b) { return norm(vertices_[a] - vertices_[b]); };
+    Filling filling;
+    for (std::size_t i = 0, j = 0; i < n || j < m;) {
+      if (j == m || (i < n && apart(at(i + 1), back(j)) <= apart(at(i), back(j + 1)))) {
+        add(filling, at(i), at(i + 1), back(j));
+        ++i;
+      } else {
+        add(filling, back(j + 1), back(j), at(i));
+        ++j;
+      }
+    }
+    return filling;
+  }
+
+  // Between the first vertex of a loop and another loop.
+  [[nodiscard]] double gap(const Loop& loop, const Loop& other) const {
+    const Vec3& p = vertices_[loop[0]];
+    return norm(vertices_[other[nearest(other, p)]] - p);
+  }
+
   [[nodiscard]] double length(const Loop& loop) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -163,7 +190,59 @@ class LoopFiller {
     filling.triangles.push_back({a, b, c});
   }
 
+  // The place of the vertex of a loop that is nearest to a point.
+  [[nodiscard]] std::size_t nearest(const Loop& loop, const Vec3& p) const {
+    const auto from = [&](std::uint32_t v) { return norm(vertices_[v] - p); };
+    return static_cast<std::size_t>(std::ranges::min_element(loop, {}, from) - loop.begin());
+  }
+
   const std::vector<Vec3>& vertices_;
+};
+
+// Loops, each with what fills it, or it and another one.
+class FilledLoops {
+ public:
+  explicit FilledLoops(LoopFiller filler) : filler_(filler) {}
+
+  void add(const Loop& loop) { loops_.push_back({loop, filler_.fill(loop)}); }
+
+  // Two loops by a strip, where that has half of the area or less. Of many loops none: each pair may be looked at.
+  void join() {
+    constexpr std::size_t kMostLoops = 256;
+    for (std::size_t n = 0; n < loops_.size() && loops_.size() <= kMostLoops; ++n) {
+      for (std::size_t m = 0; m < n && !loops_[n].is_joined; ++m) {
+        if (!loops_[m].is_joined) join(loops_[n], loops_[m]);
+      }
+    }
+  }
+
+  [[nodiscard]] TriangleMesh triangles() const {
+    TriangleMesh mesh;
+    for (const Filled& one : loops_)
+      mesh.triangles.insert(mesh.triangles.end(), one.filling.triangles.begin(), one.filling.triangles.end());
+    return mesh;
+  }
+
+ private:
+  struct Filled {
+    Loop loop;
+    LoopFiller::Filling filling;
+    bool is_joined = false;
+  };
+
+  void join(Filled& one, Filled& other) const {
+    constexpr double kLess = 0.5;
+    const double both = one.filling.area + other.filling.area;
+    if (!(filler_.gap(one.loop, other.loop) * filler_.length(one.loop) < both)) return;  // about what a strip has
+    LoopFiller::Filling strip = filler_.strip(one.loop, other.loop);
+    if (!(strip.area < kLess * both)) return;
+    one.filling = std::move(strip);
+    other.filling = {};
+    one.is_joined = other.is_joined = true;
+  }
+
+  LoopFiller filler_;
+  std::vector<Filled> loops_;
 };
 
 }  // namespace
@@ -197,6 +276,16 @@ TriangleMesh all_caps(const Boundary& boundary) {
     const std::vector<Triangle> triangles = filler.fill(loop).triangles;
     caps.triangles.insert(caps.triangles.end(), triangles.begin(), triangles.end());
   });
+  return caps;
+}
+
+TriangleMesh caps_and_strips(const Boundary& boundary) {
+  EdgeGraph graph(boundary.directed_edges());
+  FilledLoops filled{LoopFiller(graph.vertices())};
+  graph.for_each_loop([&](const Loop& loop) { filled.add(loop); });
+  filled.join();
+  TriangleMesh caps = filled.triangles();
+  caps.vertices = graph.vertices();
   return caps;
 }
 

@@ -305,7 +305,7 @@ class ThresholdFit {
 }  // namespace
 
 TriangleMesh closed_by_caps(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
-  const TriangleMesh caps = all_caps(Boundary(mesh, edges));
+  const TriangleMesh caps = caps_and_strips(Boundary(mesh, edges));
   std::vector<std::uint32_t> ends;
   for (const ExteriorEdge& edge : edges) ends.insert(ends.end(), {edge.from, edge.to});
   const auto is_before = [](const Vec3& a, const Vec3& b) { return lexicographic_order(a, b) < 0; };

@@ -80,6 +80,21 @@ TEST(HoleFill, CapsCloseTheMesh) {
   }
 }
 
+// Two bowls, one in the other, without the rim between: a strip closes that, of triangles as narrow as it is.
+TEST(HoleFill, StripsCloseRims) {
+  const auto below = [](const Vec3& p) { return p.z < 0.3; };
+  const TriangleMesh outer = part_of_sphere(12, below);
+  const TriangleMesh inner = test::moved(outer, {0.9, 0.9, 0.9}, {0, 0, 0.02});
+  const TriangleMesh bowl = test::joined(outer, test::reversed(inner));
+  const TriangleMesh closed = closed_by_caps(bowl, exterior_edges(bowl));
+  EXPECT_TRUE(exterior_edges(closed).empty());
+  EXPECT_TRUE(is_closed_and_embedded(closed));
+  EXPECT_EQ(closed.triangles.size(), bowl.triangles.size() + 48);  // loops of 24 edges
+  // Not where holes are apart.
+  const TriangleMesh two = test::joined(outer, test::moved(outer, {1, 1, -1}, {0, 0, 3}));
+  EXPECT_EQ(closed_by_caps(two, exterior_edges(two)).triangles.size(), two.triangles.size() + 44);
+}
+
 // New vertices are where a direct sum over all triangles in 113 bits is the threshold.
 TEST(HoleFill, FollowsTheThreshold) {
   for (const double threshold : {0.5, 0.4}) {

@@ -199,6 +199,25 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
   }
 }
 
+// Boxes of which an odd number are around what is inside: they touch along edges next to samples on their sides, and at
+// either end of an edge the same part must move.
+TEST(MeshAsSurface, HasSamplesBesidePartsThatTouch) {
+  const TriangleMesh boxes =
+      test::joined(test::joined(test::box_mesh({4, 3, 1}, {5, 4, 3}), test::box_mesh({4, 1, 0}, {5, 3, 2})),
+                   test::joined(test::box_mesh({4, 3, 3}, {5, 4, 4}), test::box_mesh({2, 1, 0}, {5, 2, 5})));
+  const Rule odd{RuleKind::kOdd};
+  const WindingNumberEvaluator evaluator(boxes);
+  for (const double voxel : {0.25, 0.37, 0.5}) {
+    const auto count = static_cast<std::int64_t>(6.5 / voxel);
+    const Lattice lattice{{0, 0, 0}, {voxel, voxel, voxel}, {-2, -2, -2}, {count, count, count}};
+    const NodeSet inside = nodes_inside(evaluator, odd, lattice);
+    const std::optional<FinishedSurface> made = mesh_as_surface(boxes, evaluator, inside, {.rule = odd});
+    ASSERT_TRUE(made) << voxel;
+    EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+    EXPECT_NEAR(volume_of(made->surface.mesh), 18.0, 1e-7);
+  }
+}
+
 // Samples in the plane of a hole have just the threshold, and count as inside.
 TEST(MeshAsSurface, HasSamplesInTheHolesPlane) {
   const Lattice lattice{{-0.25, -0.25, -0.25}, {0.125, 0.125, 0.125}, {0, 0, 0}, {13, 13, 13}};

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/data/lattice.h"
@@ -172,6 +174,21 @@ TEST(TakeApart, TakesCellsApart) {
     }
   }
   EXPECT_GT(touching, 150);
+}
+
+// Two cells in a corner, of which the one moves, or the other.
+TEST(TakeApart, MovesTheOneThatLeaves) {
+  const Vec3 way{-1.0, -0x1p-5, -0x1p-10};
+  for (const auto& [first, second] : {std::pair<std::array<int, 3>, std::array<int, 3>>{{0, 0, 0}, {1, 1, 1}},
+                                      {{1, 0, 0}, {0, 1, 1}},
+                                      {{0, 1, 0}, {1, 0, 1}},
+                                      {{0, 0, 1}, {1, 1, 0}}}) {
+    for (const TriangleMesh& mesh : {test::cells_mesh({first, second}), test::cells_mesh({second, first})}) {
+      Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
+      EXPECT_TRUE(take_apart(taken.mesh, taken.sources, {.distance = kDistance, .way = (1.0 / norm(way)) * way}));
+      EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
+    }
+  }
 }
 
 // Nodes on faces, edges and corners of cells stay on the sides that the perturbation has them on. Where parts meet in

@@ -20,28 +20,6 @@ constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a 
 
 double parts_of(double length, double step) { return std::clamp(std::ceil(kPerStep * length / step), 1.0, kMostParts); }
 
-// In rows along the shortest side, so that needles have as few as their area asks for.
-void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
-  const Triangle& t = mesh.triangles[triangle];
-  const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
-  const std::array lengths{safe_norm(side(0)), safe_norm(side(1)), safe_norm(side(2))};
-  const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
-  const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
-  const double area = safe_norm(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
-  const double in_last_row = std::min(parts_of(lengths[apex], step), std::sqrt(kMostParts));
-  const double rows = std::min(parts_of(std::ranges::max(lengths), step), std::floor(kMostParts / in_last_row));
-  for (double row = 0.0; row < rows; row += 1.0) {
-    const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
-    const double centre = (to * to * to - from * from * from) * 2.0 / 3.0 / part;
-    const double count = std::ceil(to * in_last_row);
-    for (double n = 0.5; n < count; n += 1.0) {
-      samples.points.push_back(a + centre * (along + (n / count) * across));
-      samples.areas.push_back(area * part / count);
-      samples.triangles.push_back(triangle);
-    }
-  }
-}
-
 // One for all of it.
 void add_sample(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
   const auto& [a, b, c] = mesh.triangles[triangle];
@@ -140,6 +118,28 @@ class NearByNodes {
 };
 
 }  // namespace
+
+// In rows along the shortest side, so that needles have as few as their area asks for.
+void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step) {
+  const Triangle& t = mesh.triangles[triangle];
+  const auto side = [&](std::size_t n) { return mesh.vertices[t[(n + 2) % 3]] - mesh.vertices[t[(n + 1) % 3]]; };
+  const std::array lengths{safe_norm(side(0)), safe_norm(side(1)), safe_norm(side(2))};
+  const auto apex = static_cast<std::size_t>(std::ranges::min_element(lengths) - lengths.begin());
+  const Vec3 &a = mesh.vertices[t[apex]], along = side((apex + 2) % 3), across = side(apex);
+  const double area = safe_norm(cross((1.0 / step) * along, (1.0 / step) * across)) / 2.0;
+  const double in_last_row = std::min(parts_of(lengths[apex], step), std::sqrt(kMostParts));
+  const double rows = std::min(parts_of(std::ranges::max(lengths), step), std::floor(kMostParts / in_last_row));
+  for (double row = 0.0; row < rows; row += 1.0) {
+    const double from = row / rows, to = (row + 1.0) / rows, part = to * to - from * from;
+    const double centre = (to * to * to - from * from * from) * 2.0 / 3.0 / part;
+    const double count = std::ceil(to * in_last_row);
+    for (double n = 0.5; n < count; n += 1.0) {
+      samples.points.push_back(a + centre * (along + (n / count) * across));
+      samples.areas.push_back(area * part / count);
+      samples.triangles.push_back(triangle);
+    }
+  }
+}
 
 // Of some triangles.
 struct DroppedSamples::Part {

@@ -19,9 +19,12 @@ namespace raycone {
 // The centres of parts of triangles, all about as large, and what area each of them stands for.
 struct AreaSamples {
   std::vector<Vec3> points;
-  std::vector<double> areas;  // in squares of DroppedSamples::step()
+  std::vector<double> areas;  // in squares of a step
   std::vector<std::uint32_t> triangles;
 };
+
+// Adds those of a triangle, no farther apart than a step; some 32 000 at most.
+void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step);
 
 // Finds the points that are dropped: farther from the surface than a cell's diagonal and the thickness of the set.
 // Where that is 0, also those that are not on the surface, of components of the mesh that no face of the surface is of.

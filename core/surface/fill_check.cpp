@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "core/distance/distance.h"
+#include "core/surface/dropped_samples.h"
 #include "core/surface/edge_points.h"
+#include "core/surface/surface_measures.h"
+#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 namespace {
@@ -18,14 +21,6 @@ constexpr double kNear = 0.25, kNotFar = 1.0;  // voxels
 
 std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
-double hole_area_of(const SurfaceMesh& surface) {
-  double area = 0.0;
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    if (surface.sources[face] == kHole) area += area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
-  }
-  return area;
 }
 
 // Of each triangle of the mesh, whether faces have less area of it than it has.
@@ -42,33 +37,6 @@ std::vector<bool> are_cut(const SurfaceMesh& surface, const TriangleMesh& mesh) 
     cut[n] = left[n] < (1.0 - kRounding) * area_of_triangle(mesh, mesh.triangles[n]);
   return cut;
 }
-
-// Points of triangles, each for an area.
-struct Samples {
-  std::vector<Vec3> points, normals;
-  std::vector<double> areas;
-
-  // Those of a grid of parts that are alike, in their middles.
-  void add(const std::array<Vec3, 3>& corners, double area, double step) {
-    constexpr double kMostParts = 256.0;
-    const auto& [a, b, c] = corners;
-    const Vec3 normal = cross(b - a, c - a);
-    if (!(norm(normal) > 0.0)) return;
-    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-    const auto parts = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, kMostParts));
-    const auto add_at = [&](double i, double j) {
-      points.push_back(a + (i / parts) * (b - a) + (j / parts) * (c - a));
-      normals.push_back((1.0 / norm(normal)) * normal);
-      areas.push_back(area / parts / parts);
-    };
-    for (int i = 0; i < parts; ++i) {
-      for (int j = 0; i + j < parts; ++j) {
-        add_at(i + 1.0 / 3.0, j + 1.0 / 3.0);
-        if (i + j + 1 < parts) add_at(i + 2.0 / 3.0, j + 2.0 / 3.0);
-      }
-    }
-  }
-};
 
 }  // namespace
 
@@ -108,26 +76,27 @@ bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, 
   constexpr double kStep = 0.5, kAside = 0x1p-20;  // voxels
   constexpr double kMost = 0.05;                   // of the area without a source
   const std::vector<bool> cut = are_cut(surface, mesh);
-  Samples samples;
-  for (std::size_t n = 0; n < cut.size(); ++n) {
-    const Triangle& t = mesh.triangles[n];
-    if (cut[n]) samples.add(corners_of(mesh, t), area_of_triangle(mesh, t), kStep * voxel);
+  const double step = kStep * voxel;
+  AreaSamples samples;
+  for (std::uint32_t n = 0; n < cut.size(); ++n) {
+    if (cut[n]) add_samples(samples, mesh, n, step);
   }
   if (samples.points.empty()) return true;
   std::vector<double> distances(samples.points.size());
   DistanceEvaluator(surface.mesh).evaluate(samples.points, distances, kNear * voxel);
+  const TriangleNormals normals(mesh);
   std::vector<Vec3> sides;
   std::vector<double> areas;
   for (std::size_t n = 0; n < distances.size(); ++n) {
     if (distances[n] <= kNear * voxel) continue;
-    const Vec3 aside = kAside * voxel * samples.normals[n];
+    const Vec3 aside = kAside * voxel * normals.of(samples.triangles[n]);
     sides.insert(sides.end(), {samples.points[n] - aside, samples.points[n] + aside});
     areas.push_back(samples.areas[n]);
   }
   const std::vector<std::uint8_t> holds = along.holds_at(sides);
-  double lost = 0.0;
+  double lost = 0.0;  // in squares of a step
   for (std::size_t n = 0; n < areas.size(); ++n) lost += holds[2 * n] != holds[2 * n + 1] ? areas[n] : 0.0;
-  return lost <= kMost * hole_area_of(surface);
+  return lost * step * step <= kMost * hole_area(surface);
 }
 
 }  // namespace raycone

@@ -172,13 +172,19 @@ class MissedSamples {
 
 }  // namespace
 
+double hole_area(const SurfaceMesh& surface) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
+    if (surface.sources[i] == kHole) area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
+  }
+  return area;
+}
+
 SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;
   measures.max_distance = largest_distance(surface, mesh, lattice);
-  for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
-    if (surface.sources[i] == kHole) measures.hole_area += area_of_triangle(surface.mesh, surface.mesh.triangles[i]);
-  }
+  measures.hole_area = hole_area(surface);
   return measures;
 }
 

@@ -32,6 +32,9 @@ struct ThinParts {
   std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
+// Of the faces without a source.
+[[nodiscard]] double hole_area(const SurfaceMesh& surface);
+
 // `lattice`: around the surface.
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,
                                               const Lattice& lattice);

@@ -138,12 +138,17 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  DroppedSamples samples(made.surface, inside, options.thickness, std::move(closed.held));
+  DroppedSamples samples(made.surface, inside, options.thickness,
+                         farthest_kept(mesh, lattice, closed.own.has_value()) + options.thickness + options.simplify,
+                         closed.own ? std::move(closed.own->held) : std::vector<bool>());
   const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
-  ThinParts thin = dropped.is_some ? thin_parts(mesh, {evaluators.rough, options.rule}, samples) : ThinParts();
-  thin.of_all = std::max(thin.of_all, closed.lost.of_all);  // samples may have found these, too
-  thin.lost += closed.lost.count;
+  ThinParts thin;
+  if (closed.own) {
+    thin = {.of_all = closed.own->left_out_of_all, .lost = closed.own->left_out};
+  } else if (dropped.is_some) {
+    thin = thin_parts(mesh, {evaluators.rough, options.rule}, samples);
+  }
   if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
   return made;
 }

@@ -8,13 +8,14 @@
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/mesh/triangle_runs.h"
-#include "core/surface/surface.h"
+#include "core/surface/face_points.h"
 
 namespace raycone {
 namespace {
 
 constexpr double kMostParts = 180.0 * 180.0;  // of a triangle, rows times parts of a row: each is a small part then
 constexpr double kOnSurface = 0x1p-9;         // voxels: more than planes of one surface are off each other
+constexpr double kOffContour = 0.25;          // of a cell's diagonal
 constexpr std::size_t kMostRemembered = std::size_t{1} << 27;  // samples, a bit each
 constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a square of a step
 
@@ -36,86 +37,6 @@ double most_samples(const TriangleMesh& mesh, std::uint32_t triangle, double ste
   const double rows = parts_of(kLonger * largest_coordinate(box.upper - box.lower), step);
   return std::min(rows * rows, kMostParts);
 }
-
-// Whether a surface between the nodes of a lattice is near to a point, as the nodes tell: it passes between any two
-// neighbours of which just one is inside.
-class NearByNodes {
- public:
-  explicit NearByNodes(const NodeSet& inside) : inside_(inside) {
-    // What numbers of cells round is less than a margin.
-    constexpr double kLess = 0x1p-20, kMargins = 4.0;
-    const double part = 1.0 - kLess - kMargins * surface_margin(inside.lattice(), false);
-    const double most = part * safe_norm(inside.lattice().spacing);
-    most_square_ = most * most;
-  }
-
-  // True only where there is a point of the surface nearer than a cell's diagonal. Nodes that are so near are joined by
-  // edges of the lattice that are, too, by way of the nearest one: so if they are of both kinds, such an edge is mixed.
-  [[nodiscard]] bool is_near(const Vec3& p) const {
-    const Lattice& lattice = inside_.lattice();
-    std::array<std::int64_t, 3> cell;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double index = lattice.steps_from_first(axis, p[axis]);
-      if (!(index >= 0.0 && index < static_cast<double>(lattice.counts[a] - 1))) return false;
-      cell[a] = static_cast<std::int64_t>(index);
-    }
-    if (has_all_near(p, cell) && is_mixed(cell)) return true;
-    return are_mixed(p, cell, 0, 1) || are_mixed(p, cell, -1, 2);
-  }
-
- private:
-  [[nodiscard]] double off(const Vec3& p, int axis, std::int64_t node) const {
-    const Lattice& lattice = inside_.lattice();
-    const double to = p[axis] - lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)] + node);
-    return to * to;
-  }
-
-  // All corners of the cell, as those of most cells are.
-  [[nodiscard]] bool has_all_near(const Vec3& p, const std::array<std::int64_t, 3>& cell) const {
-    const auto most = [&](int axis) {
-      const std::int64_t node = cell[static_cast<std::size_t>(axis)];
-      return std::max(off(p, axis, node), off(p, axis, node + 1));
-    };
-    return most(1) + most(2) + most(0) < most_square_;
-  }
-
-  // Whether the cell has corners of both kinds.
-  [[nodiscard]] bool is_mixed(const std::array<std::int64_t, 3>& cell) const {
-    const auto [i, j, k] = cell;
-    unsigned inside = 0;
-    for (const std::int64_t z : {k, k + 1}) {
-      for (const std::int64_t y : {j, j + 1})
-        inside += (inside_.holds(i, y, z) ? 1U : 0U) + (inside_.holds(i + 1, y, z) ? 1U : 0U);
-    }
-    return inside != 0 && inside != 8;
-  }
-
-  // Whether nodes from `first` to `last`, as seen from the cell's lowest one, that are near are of both kinds.
-  [[nodiscard]] bool are_mixed(const Vec3& p, const std::array<std::int64_t, 3>& cell, std::int64_t first,
-                               std::int64_t last) const {
-    const Lattice& lattice = inside_.lattice();
-    const auto begin = [&](std::size_t axis) { return std::max<std::int64_t>(cell[axis] + first, 0); };
-    const auto end = [&](std::size_t axis) { return std::min(cell[axis] + last, lattice.counts[axis] - 1) + 1; };
-    bool any = false, all = true;
-    for (std::int64_t k = begin(2); k < end(2); ++k) {
-      for (std::int64_t j = begin(1); j < end(1); ++j) {
-        const double off_row = off(p, 1, j) + off(p, 2, k);
-        for (std::int64_t i = begin(0); i < end(0); ++i) {
-          if (!(off_row + off(p, 0, i) < most_square_)) continue;
-          const bool holds = inside_.holds(i, j, k);
-          any = any || holds;
-          all = all && holds;
-          if (any && !all) return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  const NodeSet& inside_;
-  double most_square_;
-};
 
 }  // namespace
 
@@ -146,18 +67,34 @@ struct DroppedSamples::Part {
   std::size_t begin, end;
   AreaSamples samples{};
   std::vector<bool> dropped{};
-  std::vector<std::size_t> doubtful{};  // samples
 };
 
-DroppedSamples::DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness,
+double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, bool own_faces) {
+  if (!own_faces) return kOffContour * safe_norm(lattice.spacing);
+  constexpr double kTolerances = 2.0;  // two planes may each be off by one
+  constexpr double kSingle = 0x1p-22;  // of a coordinate: more than it is off in single precision
+  return std::max({kOnSurface * lattice.least_spacing(), kTolerances * plane_tolerance(mesh, lattice),
+                   kSingle * largest_coordinate(lattice)});
+}
+
+// Samples that follow on each other, none of a triangle that is held.
+struct DroppedSamples::Group {
+  Part* part;
+  std::size_t begin, end;
+  Vec3 middle;
+  double radius = 0.0;  // none is farther from the middle
+  bool is_far = false;  // all are dropped
+};
+
+DroppedSamples::DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness, double farthest,
                                std::vector<bool> held)
     : surface_(surface),
       inside_(inside),
       held_(std::move(held)),
       thickness_(thickness),
       step_(0.5 * safe_norm(inside.lattice().spacing)),
-      most_(safe_norm(inside.lattice().spacing) + thickness),
-      on_surface_(kOnSurface * inside.lattice().least_spacing()) {}
+      farthest_(farthest),
+      on_surface_(std::min(farthest, kOnSurface * inside.lattice().least_spacing())) {}
 
 bool DroppedSamples::holds_all() const {
   return !held_.empty() && std::ranges::all_of(held_, [](bool is_held) { return is_held; });
@@ -173,10 +110,7 @@ void DroppedSamples::for_each(const TriangleMesh& mesh, const Visit& visit) {
       parts.push_back(part_from(mesh, next));
       next = parts.back().end;
     }
-    parallel_for_each(parts.size(), [&](std::size_t n) {
-      take_samples(mesh, parts[n]);
-      if (!is_decided_) find_doubtful(parts[n]);
-    });
+    parallel_for_each(parts.size(), [&](std::size_t n) { take_samples(mesh, parts[n]); });
     if (is_decided_) {
       for (Part& part : parts) {
         for (std::size_t n = 0; n < part.dropped.size(); ++n) part.dropped[n] = dropped_[sample++];
@@ -231,27 +165,55 @@ void DroppedSamples::take_samples(const TriangleMesh& mesh, Part& part) const {
   part.dropped.resize(part.samples.points.size(), false);
 }
 
-void DroppedSamples::find_doubtful(Part& part) const {
-  const NearByNodes nodes(inside_);
-  for (std::size_t n = 0; n < part.samples.points.size(); ++n) {
-    if (is_held(part.samples.triangles[n])) continue;
-    if (is_of_lost(part.samples.triangles[n]) || !nodes.is_near(part.samples.points[n])) part.doubtful.push_back(n);
+std::vector<DroppedSamples::Group> DroppedSamples::groups_of(std::span<Part> parts) const {
+  constexpr std::size_t kMost = 16;
+  std::vector<Group> groups;
+  for (Part& part : parts) {
+    const AreaSamples& samples = part.samples;
+    for (std::size_t begin = 0, end = 0; begin < samples.points.size(); begin = end) {
+      end = begin + 1;
+      if (is_held(samples.triangles[begin])) continue;
+      while (end < samples.points.size() && end - begin < kMost && !is_held(samples.triangles[end])) ++end;
+      Group group{&part, begin, end, samples.points[begin + (end - begin) / 2]};
+      for (std::size_t n = begin; n < end; ++n) {
+        group.radius = std::max(group.radius, safe_norm(samples.points[n] - group.middle));
+      }
+      groups.push_back(group);
+    }
   }
+  return groups;
 }
 
-void DroppedSamples::decide(std::span<Part> parts) {
-  std::vector<Vec3> points;
-  for (const Part& part : parts) {
-    for (const std::size_t n : part.doubtful) points.push_back(part.samples.points[n]);
-  }
-  if (points.empty()) return;
-  if (!distance_) distance_.emplace(surface_.mesh);
+std::vector<double> DroppedSamples::distances_of(std::span<const Vec3> points, double limit) {
   std::vector<double> distances(points.size());
-  distance_->evaluate(points, distances, most_);
+  if (points.empty()) return distances;
+  if (!distance_) distance_.emplace(surface_.mesh);
+  distance_->evaluate(points, distances, limit);
+  return distances;
+}
+
+// Most samples that follow on each other are near each other, and where much is dropped, they are far from the surface
+// together.
+void DroppedSamples::decide(std::span<Part> parts) {
+  constexpr double kWide = 32.0;  // steps: wider groups are hardly ever far
+  std::vector<Group> groups = groups_of(parts);
+  std::vector<Vec3> points;
+  for (const Group& group : groups) points.push_back(group.middle);
+  const std::vector<double> of_middles = distances_of(points, kWide * step_ + farthest_);
+  points.clear();
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    Group& group = groups[n];
+    group.is_far = group.radius < kWide * step_ && of_middles[n] > group.radius + farthest_;
+    if (group.is_far) continue;
+    for (std::size_t i = group.begin; i < group.end; ++i) points.push_back(group.part->samples.points[i]);
+  }
+  const std::vector<double> distances = distances_of(points, farthest_);
   auto distance = distances.cbegin();
-  for (Part& part : parts) {
-    for (const std::size_t n : part.doubtful)
-      part.dropped[n] = *distance++ > (is_of_lost(part.samples.triangles[n]) ? on_surface_ : most_);
+  for (const Group& group : groups) {
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const double most = is_of_lost(group.part->samples.triangles[i]) ? on_surface_ : farthest_;
+      group.part->dropped[i] = group.is_far || *distance++ > most;
+    }
   }
 }
 

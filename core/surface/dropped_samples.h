@@ -26,13 +26,20 @@ struct AreaSamples {
 // Adds those of a triangle, no farther apart than a step; some 32 000 at most.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step);
 
-// Finds the points that are dropped: farther from the surface than a cell's diagonal and the thickness of the set.
-// Where that is 0, also those that are not on the surface, of components of the mesh that no face of the surface is of.
+// A point of a mesh that is farther than this from a surface made of it, in world units, is dropped: of a surface that
+// has the mesh's own faces, more than these are moved where they are cut or merged; of a contour, what it cuts off
+// edges at most, as a rule. Without thickness, and not simplified.
+[[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, bool own_faces);
+
+// Finds the points that are dropped: farther from the surface than `farthest`. Where the set has no thickness, also
+// those that are not on the surface, of components of the mesh that no face of the surface is of.
 class DroppedSamples {
  public:
-  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay. `held`: of
-  // each triangle of the mesh, whether no point of it is dropped, as is known; none may be known of.
-  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness, std::vector<bool> held);
+  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay.
+  // `farthest`: farthest_kept(), and by how much the set is thicker, and the surface may have moved. `held`: of each
+  // triangle of the mesh, whether no point of it is dropped, as is known; none may be known of.
+  DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness, double farthest,
+                 std::vector<bool> held);
 
   [[nodiscard]] const NodeSet& inside() const { return inside_; }
   [[nodiscard]] double thickness() const { return thickness_; }  // world units
@@ -49,21 +56,23 @@ class DroppedSamples {
 
  private:
   struct Part;
+  struct Group;
   [[nodiscard]] Part part_from(const TriangleMesh& mesh, std::size_t begin) const;
   void find_lost_components(const TriangleMesh& mesh);
   [[nodiscard]] bool is_held(std::size_t triangle) const { return !held_.empty() && held_[triangle]; }
   [[nodiscard]] bool is_of_lost(std::uint32_t triangle) const { return !is_of_lost_.empty() && is_of_lost_[triangle]; }
   void take_samples(const TriangleMesh& mesh, Part& part) const;
-  void find_doubtful(Part& part) const;
+  [[nodiscard]] std::vector<Group> groups_of(std::span<Part> parts) const;
+  [[nodiscard]] std::vector<double> distances_of(std::span<const Vec3> points, double limit);
   void decide(std::span<Part> parts);
   void remember(std::span<const Part> parts);
 
   const SurfaceMesh& surface_;
   const NodeSet& inside_;
   std::vector<bool> held_;
-  double thickness_, step_, most_, on_surface_;
+  double thickness_, step_, farthest_, on_surface_;
   std::vector<bool> is_of_lost_;               // of each triangle, whether no face is of its component
-  std::optional<DistanceEvaluator> distance_;  // of the surface: most need it for no sample
+  std::optional<DistanceEvaluator> distance_;  // of the surface: many need it for no sample
   std::vector<bool> dropped_;                  // of each sample, in order, since it was decided
   bool is_decided_ = false;                    // of all samples
 };

@@ -121,4 +121,15 @@ void SourceSettler::settle(SurfaceMesh& surface) const {
   spread_holes(off_mesh, surface);
 }
 
+void SourceSettler::forget_far_sources(SurfaceMesh& surface, double most) const {
+  const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  std::vector<double> distances(vertices.size());
+  distance_.evaluate(vertices, distances, most);
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    const bool is_far = std::ranges::any_of(surface.mesh.triangles[face],
+                                            [&](std::uint32_t corner) { return distances[corner] > most; });
+    if (is_far) surface.sources[face] = kHole;
+  }
+}
+
 }  // namespace raycone

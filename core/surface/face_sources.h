@@ -31,6 +31,10 @@ class SourceSettler {
   // a source keep none. The same for any number of threads. Precondition: sources are triangles of `input`, or kHole.
   void settle(SurfaceMesh& surface) const;
 
+  // Takes theirs from faces with a corner that is farther from the mesh than `most`, world units: since vertices have
+  // gone, they reach into what closes a hole. The same for any number of threads.
+  void forget_far_sources(SurfaceMesh& surface, double most) const;
+
  private:
   [[nodiscard]] bool may_be_of(const SurfaceMesh& surface, std::size_t number, std::uint32_t source) const;
   [[nodiscard]] std::vector<std::uint32_t> doubtful_faces(const SurfaceMesh& surface) const;

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <numeric>
 #include <tuple>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -35,6 +34,7 @@
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_in_scale.h"
+#include "core/surface/surface_measures.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {
@@ -107,47 +107,31 @@ bool keep_border(SurfaceMesh& surface, const Rule& rule) {
   return !surface.sources.empty();
 }
 
-// What triangles of the mesh are in components that are not left, and have other faces in those that are.
-LostPieces lost_pieces(const SurfaceMesh& surface, const Components& components, const std::vector<bool>& is_left,
-                       const TriangleMesh& mesh) {
-  const auto component_of = [&](std::size_t face) { return components.of_vertex[surface.mesh.triangles[face][0]]; };
-  std::unordered_set<std::int32_t> left;
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    if (is_left[component_of(face)] && surface.sources[face] != kHole) left.insert(surface.sources[face]);
-  }
-  std::vector<double> areas(is_left.size(), 0.0);
-  std::vector<bool> is_piece(is_left.size(), false);
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    const std::uint32_t component = component_of(face);
-    if (is_left[component] || surface.sources[face] == kHole) continue;
-    areas[component] += area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
-    is_piece[component] = is_piece[component] || left.contains(surface.sources[face]);
-  }
-  LostPieces lost;
-  for (std::size_t n = 0; n < areas.size(); ++n) {
-    if (!is_piece[n]) continue;
-    ++lost.count;
-    lost.of_all += areas[n];
-  }
-  double whole = 0.0;
-  for (const Triangle& t : mesh.triangles) whole += area_of_triangle(mesh, t);
-  lost.of_all = whole > 0.0 ? lost.of_all / whole : 0.0;
-  return lost;
+double area_of(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (const Triangle& t : mesh.triangles) area += area_of_triangle(mesh, t);
+  return area;
 }
 
-// Leaves the components that the lattice sees, as keep_border() does. Returns whether it sees all of each, and any is
-// left.
-bool keep_seen(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const Rule& rule) {
-  SurfaceMesh& surface = made.surface;
+// Of the faces with a source.
+double own_area(const SurfaceMesh& surface) { return area_of(surface.mesh) - hole_area(surface); }
+
+// Leaves the components that the lattice sees, as keep_border() does, and tells of the others. Returns whether it sees
+// all of each, and any is left.
+bool keep_seen(SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside, const Rule& rule, OwnFaces& own) {
   const Components components = components_of(surface.mesh);
   const std::vector<Sight> sights = sights_of(inside, parts_of(surface.mesh, components), surface.mesh.vertices);
   if (std::ranges::find(sights, Sight::kInPart) != sights.end()) return false;
   if (std::ranges::find(sights, Sight::kUnseen) == sights.end()) return true;
   std::vector<bool> is_seen;
   for (const Sight sight : sights) is_seen.push_back(sight == Sight::kWhole);
-  made.lost = lost_pieces(surface, components, is_seen, mesh);
+  const double before = own_area(surface);
   keep(surface, components, is_seen);
-  return keep_border(surface, rule);  // what was within an unseen one may separate nothing now
+  if (!keep_border(surface, rule)) return false;  // what was within an unseen one may separate nothing now
+  own.left_out = components.count - components_of(surface.mesh).count;
+  const double whole = area_of(mesh);
+  if (whole > 0.0) own.left_out_of_all = (before - own_area(surface)) / whole;
+  return true;
 }
 
 // Without vertices that no triangle uses.
@@ -174,26 +158,31 @@ bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& insid
   return true;
 }
 
-void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, double most, int rounds) {
+// `most`: how far pulls may be, so that the surface moves by `options.simplify` at most.
+void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, double most,
+              const SurfaceOptions& options) {
   made.bound_too_small = !(most > 0.0);
-  made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside, most, rounds);
+  made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside, most, options.rounds);
   if (!made.simplified) return;
   const TriangleNormals normals(mesh);
   const DistanceEvaluator distance(mesh);
-  SourceSettler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0)).settle(made.surface);
+  const SourceSettler settler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0));
+  settler.settle(made.surface);
+  settler.forget_far_sources(made.surface, options.simplify);
 }
 
-// Of each triangle of the mesh, whether it is a face, with all three corners.
-std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMesh& mesh, bool single_precision) {
-  std::vector<bool> held(mesh.triangles.size(), false);
+// Of each triangle of the mesh, whether faces have all of its area.
+std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMesh& mesh) {
+  constexpr double kAll = 1.0 - 0x1p-20;  // rounding of vertices moves sides of faces
+  std::vector<double> areas(mesh.triangles.size(), 0.0);
   for (std::size_t face = 0; face < surface.sources.size(); ++face) {
     if (surface.sources[face] == kHole) continue;
-    const auto source = static_cast<std::size_t>(surface.sources[face]);
-    held[source] = std::ranges::all_of(mesh.triangles[source], [&](std::uint32_t corner) {
-      const Vec3 place = single_precision ? rounded_to_float(mesh.vertices[corner]) : mesh.vertices[corner];
-      return std::ranges::any_of(surface.mesh.triangles[face],
-                                 [&](std::uint32_t vertex) { return surface.mesh.vertices[vertex] == place; });
-    });
+    areas[static_cast<std::size_t>(surface.sources[face])] +=
+        area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
+  }
+  std::vector<bool> held(areas.size());
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    held[n] = areas[n] >= kAll * area_of_triangle(mesh, mesh.triangles[n]);
   }
   return held;
 }
@@ -266,13 +255,14 @@ std::optional<FinishedSurface> whole_mesh(const Input& input) {
   }
   if (!border) return std::nullopt;
   FinishedSurface made{*std::move(border)};
-  if (!keep_seen(made, mesh, inside, rule)) return std::nullopt;
-  if (!(options.simplify > 0.0)) made.held = triangles_held_by(made.surface, mesh, options.single_precision);
+  made.own.emplace();
+  if (!keep_seen(made.surface, mesh, inside, rule, *made.own)) return std::nullopt;
+  if (!(options.simplify > 0.0)) made.own->held = triangles_held_by(made.surface, mesh);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
   if (made.surface.sources.size() > most) return std::nullopt;
-  if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options.rounds);
+  if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options);
   return made;
 }
 

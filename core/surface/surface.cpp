@@ -220,7 +220,9 @@ class SurfaceMaker {
     made.bound_too_small = !(most > 0.0);
     if (!made.bound_too_small) enter("simplifying");
     made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside_, most, options_.rounds);
-    if (made.simplified) settler_.settle(made.surface);
+    if (!made.simplified) return;
+    settler_.settle(made.surface);
+    settler_.forget_far_sources(made.surface, options_.thickness + options_.simplify);
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -26,10 +27,14 @@ struct SurfaceOptions {
   std::function<void(const char*)> at_stage{};
 };
 
-// What lies between the nodes of parts that are in the surface otherwise: cut off from these by other faces.
-struct LostPieces {
-  std::uint64_t count = 0;
-  double of_all = 0.0;  // their area as a part of the mesh's
+// What else there is to know of a surface whose faces are the mesh's own, or parts of these.
+struct OwnFaces {
+  // Of each triangle of the mesh whether all of it was part of the surface, until faces of a plane were merged. Empty
+  // where none is known to be.
+  std::vector<bool> held{};
+  // Components of the mesh's border that are left out: the lattice does not see them, or what they are within.
+  std::uint64_t left_out = 0;
+  double left_out_of_all = 0.0;  // their area as a part of the mesh's
 };
 
 struct FinishedSurface {
@@ -37,11 +42,8 @@ struct FinishedSurface {
   // Whether that was done as asked. Else too many rounds of undoing what intersects, or has nodes on the wrong side,
   // left faults still: the surface is the one before.
   bool merged = true, simplified = true;
-  bool bound_too_small = false;  // why it is not simplified: `simplify` is within what rounding needs
-  // Of each triangle of the mesh whether it was part of the surface as it is, until faces of a plane were merged. Empty
-  // where none is known to be.
-  std::vector<bool> held{};
-  LostPieces lost{};
+  bool bound_too_small = false;   // why it is not simplified: `simplify` is within what rounding needs
+  std::optional<OwnFaces> own{};  // none: a contour
 };
 
 // A surface with faults, in spite of all: an error of the program. what() says which.

@@ -16,9 +16,8 @@ struct SurfaceMeasures {
   double hole_area = 0.0;        // of faces without a source
 };
 
-// Of triangles of the mesh: the part that is farther from the surface than a cell's diagonal and the thickness of the
-// set, as judged at points half a diagonal apart, at some 16 000 of a triangle at most; and what is not on the surface
-// of components that no face is of. It separates nothing, or is of parts thinner than the lattice sees.
+// Of triangles of the mesh: the part that is dropped, as judged at points half a cell's diagonal apart, at some 16 000 of
+// a triangle at most. It separates nothing, or is of parts thinner than the lattice sees.
 struct DroppedArea {
   double area = 0.0;
   std::uint64_t samples = 0;  // how many of these points are dropped
@@ -41,7 +40,7 @@ struct ThinParts {
 
 [[nodiscard]] DroppedArea dropped_area(const TriangleMesh& mesh, DroppedSamples& dropped);
 
-// Of a surface that drops area. A point of that separates where the rule differs a margin before and behind the
+// Of a contour that drops area. A point of that separates where the rule differs a margin before and behind the
 // triangle. Where the set has a thickness it was to be thickened, unless it is within the set. What is outside of the
 // lattice does not count. Judged at the points that dropped_area is.
 [[nodiscard]] ThinParts thin_parts(const TriangleMesh& mesh, const RuleAlong& rule, DroppedSamples& dropped);

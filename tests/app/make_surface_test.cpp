@@ -105,6 +105,20 @@ TEST(MakeSurface, TellsThatPiecesAreLost) {
   EXPECT_TRUE(warnings(2.4).empty());
 }
 
+// A fin on a box, 1.2 voxels high: all of it is nearer to the contour than a cell's diagonal.
+TEST(MakeSurface, TellsThatWallsAreLostNextToTheSurface) {
+  const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {8, 8, 9}};
+  const auto warnings = [&](double top) {
+    const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({0.3, 0.4, 0.9}, {0.7, 0.41, top}));
+    SurfaceOptions options;
+    options.merge_planes = false;  // else the mesh's own faces are kept
+    return make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory).warnings;
+  };
+  ASSERT_EQ(warnings(1.3).size(), 1U);
+  EXPECT_EQ(warnings(1.3)[0].name, "thin-parts");
+  EXPECT_TRUE(warnings(0.95).empty());  // within the box
+}
+
 // A sphere and, beside it, a plate between the nodes, closed or a sheet.
 TEST(MakeSurface, TellsThatPartsAreTooThin) {
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 30}};

@@ -69,7 +69,8 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
 }
 
 bool holds_all(const FinishedSurface& made) {
-  return !made.held.empty() && std::ranges::all_of(made.held, [](bool is_held) { return is_held; });
+  return made.own && !made.own->held.empty() &&
+         std::ranges::all_of(made.own->held, [](bool is_held) { return is_held; });
 }
 
 double volume_of(const TriangleMesh& mesh) {
@@ -375,7 +376,7 @@ TEST(MeshAsSurface, IsWithoutWhatTheLatticeDoesNotSee) {
     const std::optional<FinishedSurface> made = kept(with_plate(samples, gap), samples);
     ASSERT_TRUE(made);
     EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(box));
-    EXPECT_EQ(std::ranges::count(made->held, true), 12);
+    EXPECT_EQ(std::ranges::count(made->own->held, true), 12);
   }
   const auto fin = [&](double voxels) { return finned(0.3 * voxel, voxels * voxel); };
   EXPECT_TRUE(kept(fin(3.9), 16.0 + 3.9));

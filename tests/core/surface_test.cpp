@@ -31,6 +31,7 @@
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/merge_planes.h"
+#include "core/surface/mesh_as_surface.h"
 #include "core/surface/mesh_corners.h"
 #include "core/surface/patch_merger.h"
 #include "core/surface/repeated_check.h"
@@ -1290,8 +1291,15 @@ TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
   EXPECT_NEAR(of_surface[0], 0.0, 1e-12);
 }
 
-DroppedArea dropped_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside) {
-  DroppedSamples dropped(surface, inside, 0.0, {});
+DroppedSamples dropped_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
+                               double thickness = 0.0, bool own_faces = false) {
+  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces) + thickness;
+  return {surface, inside, thickness, farthest, {}};
+}
+
+DroppedArea dropped_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
+                       bool own_faces = false) {
+  DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.0, own_faces);
   return dropped_area(mesh, dropped);
 }
 
@@ -1336,6 +1344,25 @@ TEST(Surface, FollowsItsRule) {
   EXPECT_LT(of_both, 0.8 * of_one);
 }
 
+// Simplified faces may reach from the mesh into what closes a hole: these are of no triangle.
+TEST(Surface, SimplifiedFacesWithASourceAreNearIt) {
+  Random random(3);
+  TriangleMesh sieve = rotated(weld(test::sphere(24), {}));
+  std::erase_if(sieve.triangles, [&](const Triangle&) { return uniform(random, 0.0, 1.0) < 0.1; });
+  for (const double simplify : {0.05, 0.01}) {  // voxels are 0.12
+    SurfaceOptions options;
+    options.simplify = simplify;
+    const auto [surface, lattice] = surface_of(sieve, 20, options);
+    const NodeSet inside = nodes_inside(WindingNumberEvaluator(sieve), Rule{}, lattice);
+    const std::optional<FinishedSurface> own = mesh_as_surface(sieve, WindingNumberEvaluator(sieve), inside, options);
+    ASSERT_TRUE(own);
+    for (const SurfaceMesh* made : {&surface, &own->surface}) {
+      EXPECT_GT(std::ranges::count(made->sources, kHole), 5) << simplify;
+      EXPECT_LE(measure_surface(*made, sieve, lattice).max_distance, simplify);
+    }
+  }
+}
+
 TEST(Surface, OfALatticeThatIsTooFineOrOutOfRangeIsRefused) {
   const TriangleMesh mesh = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {1, 1, 1}, {1e15, 1e15, 1e15});
   EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
@@ -1364,6 +1391,55 @@ TEST(SurfaceMeasures, TellWhatSeparatesNothing) {
   EXPECT_EQ(dropped_of(surface, box, inside).area, 0.0);
   EXPECT_TRUE(dropped_of(surface, wall, inside).is_some);
   EXPECT_FALSE(dropped_of(surface, box, inside).is_some);
+}
+
+// A sheet in a box, so far from faces that are the mesh's own.
+TEST(SurfaceMeasures, TellFacesNextToTheSurfaceFromItsOwn) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto [surface, lattice] = surface_of(box, 20);
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(box), Rule{}, lattice);
+  const auto dropped_at = [&, &surface = surface](double voxels) {
+    const double x = voxels * lattice.spacing.x;
+    TriangleMesh mesh = box;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{x, 0.2, 0.2}, {x, 0.8, 0.2}, {x, 0.2, 0.8}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    return dropped_of(surface, mesh, inside, true).area;
+  };
+  EXPECT_EQ(dropped_at(0.001), 0.0);
+  EXPECT_NEAR(dropped_at(0.01), 0.18, 1e-12);
+}
+
+// Many are looked at together. Each is as its own distance says.
+TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
+  Random random(41);
+  const auto [surface, lattice] = surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 20);
+  TriangleMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto point = [&](double most) {
+    return Vec3{uniform(random, -most, most), uniform(random, -most, most), uniform(random, -most, most)};
+  };
+  for (std::uint32_t n = 0; n < 300; ++n) {  // large ones, small ones, and needles, in and out of the box
+    const Vec3 a = Vec3{0.5, 0.5, 0.5} + point(0.7), to_b = point(n % 3 == 0 ? 0.9 : 0.05), to_c = point(0.05);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, a + to_b, n % 7 == 0 ? mesh.vertices[0] : a + to_c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
+  for (const bool own_faces : {false, true}) {
+    DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, own_faces);
+    const double farthest = farthest_kept(mesh, lattice, own_faces) + 0.25 * lattice.spacing.x;
+    std::size_t count = 0, far = 0;
+    dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
+      std::vector<double> distances(samples.points.size());
+      DistanceEvaluator(surface.mesh).evaluate(samples.points, distances);
+      for (std::size_t n = 0; n < is_dropped.size(); ++n) ASSERT_EQ(is_dropped[n], distances[n] > farthest) << n;
+      count += is_dropped.size();
+      far += static_cast<std::size_t>(std::ranges::count(is_dropped, true));
+    });
+    EXPECT_GT(count, 10000U);
+    EXPECT_GT(far, count / 4);
+    EXPECT_LT(far, 3 * count / 4);
+  }
 }
 
 // A triangle as one, and as a fan of needles, has the same area.
@@ -1412,7 +1488,7 @@ TEST(SurfaceMeasures, TellWhatIsTooThin) {
     mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
     for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     const WindingNumberEvaluator evaluator(mesh);
-    DroppedSamples dropped(surface, inside, thickness, {});
+    DroppedSamples dropped = dropped_samples(surface, mesh, inside, thickness);
     return thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);
   };
   const double h = lattice.spacing.x;
@@ -1440,7 +1516,7 @@ TEST(SurfaceMeasures, TellComponentsThatNoFaceIsOf) {
       test::joined(box, test::reversed(test::box_mesh({0.3, 0.3, 0.2 * h}, {0.7, 0.7, 0.6 * h})));
   const double area = 2 * 0.16 + 4 * 0.4 * 0.4 * h;
   EXPECT_NEAR(dropped_of(surface, cavity, inside).area, area, 1e-12);
-  DroppedSamples dropped(surface, inside, 0.0, {});
+  DroppedSamples dropped = dropped_samples(surface, cavity, inside);
   const WindingNumberEvaluator evaluator(cavity);
   const ThinParts thin = thin_parts(cavity, RuleAlong(evaluator, Rule{}), dropped);
   EXPECT_NEAR(thin.area, area, 1e-12);
@@ -1462,7 +1538,7 @@ TEST(SurfaceMeasures, AddUpManyThinParts) {
     const double z = (n + 30) * h;
     mesh = test::joined(mesh, test::reversed(test::box_mesh({0.2, 0.2, z + 0.2 * h}, {0.8, 0.8, z + 0.3 * h})));
   }
-  DroppedSamples dropped(surface, inside, 0.0, {});
+  DroppedSamples dropped = dropped_samples(surface, mesh, inside);
   EXPECT_GT(dropped_area(mesh, dropped).samples, std::uint64_t{1} << 18);
   const WindingNumberEvaluator evaluator(mesh);
   const ThinParts thin = thin_parts(mesh, RuleAlong(evaluator, Rule{}), dropped);

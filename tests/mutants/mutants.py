@@ -563,8 +563,10 @@ MUTANTS = [
     Mutant("settled_at_borders", "what a brick may not be pulled into, another may", [
         ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
          "    if (roles_[target] == VertexRole::kForeign) {\n")]),
-    Mutant("all_is_near_the_surface", "nodes of one kind say nothing about where the surface is", [
-        ("core/surface/dropped_samples.cpp", "return inside != 0 && inside != 8;", "return inside != 0 || inside != 8;")]),
+    Mutant("far_faces_keep_sources", "simplified faces that reach into a hole are of no triangle", [
+        ("core/surface/face_sources.cpp", "return distances[corner] > most;", "return distances[corner] > 1e9 * most;")]),
+    Mutant("groups_are_far_as_points", "points around one that is dropped are not all dropped", [
+        ("core/surface/dropped_samples.cpp", "of_middles[n] > group.radius + farthest_", "of_middles[n] > farthest_")]),
     Mutant("farthest_by_source_alone", "a vertex may be farther from the mesh than the others whose sources are", [
         ("core/surface/surface_measures.cpp", "largest = std::max(largest, std::ranges::max(distances));",
          "largest = std::max(largest, std::ranges::min(distances));")]),

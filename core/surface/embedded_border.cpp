@@ -76,9 +76,9 @@ std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleB
 
 std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeSet& inside,
                                            const SurfaceOptions& options) {
-  constexpr int kRounds = 2;
+  constexpr int kRounds = 3;
   constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
-  constexpr double kNear = 16.0, kFarther = 4.0;              // roundings, and so many times that the next time
+  constexpr double kNear = 16.0, kFarther = 16.0;             // roundings, and so many times that the next time
   const bool single_precision = options.single_precision;
   if (!may_be_closed(mesh)) return std::nullopt;
   const double rounding = rounding_of(mesh, single_precision);

@@ -8,13 +8,14 @@
 namespace raycone {
 
 // Whether the threshold is passed within a quarter of a voxel of nine tenths of the faces without a source, by their
-// area, and within a voxel of 99 in 100, as their middles tell; faces thinner than 2^-6 voxels aside. `along`: of the
-// mesh that the surface is of. Needs DefaultFloatingPoint. So does the next one. The same for any number of threads.
+// area, and within a voxel of 99 in 100, or of all but the area of a voxel's face, as their middles tell; faces thinner
+// than 2^-6 voxels aside. `along`: of the mesh that the surface is of. Needs DefaultFloatingPoint. So does the next
+// one. The same for any number of threads.
 [[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
 
 // Whether the surface passes by what separates of the triangles of `mesh`: what is farther than a quarter of a voxel
-// from it, with the rule holding on one side alone, is no more than a twentieth of the area without a source. Judged at
-// points half a voxel apart.
+// from it, with the rule holding on one side alone, is no more than a twentieth of the area without a source, or a
+// quarter of a voxel's face. Judged at points half a voxel apart.
 [[nodiscard]] bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along,
                                         double voxel);
 

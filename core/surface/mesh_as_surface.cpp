@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_simplify.h"
@@ -171,22 +173,6 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
   settler.forget_far_sources(made.surface, options.simplify);
 }
 
-// Of each triangle of the mesh, whether faces have all of its area.
-std::vector<bool> triangles_held_by(const SurfaceMesh& surface, const TriangleMesh& mesh) {
-  constexpr double kAll = 1.0 - 0x1p-20;  // rounding of vertices moves sides of faces
-  std::vector<double> areas(mesh.triangles.size(), 0.0);
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    if (surface.sources[face] == kHole) continue;
-    areas[static_cast<std::size_t>(surface.sources[face])] +=
-        area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
-  }
-  std::vector<bool> held(areas.size());
-  for (std::size_t n = 0; n < areas.size(); ++n) {
-    held[n] = areas[n] >= kAll * area_of_triangle(mesh, mesh.triangles[n]);
-  }
-  return held;
-}
-
 // What there is to know of the mesh and the lattice.
 struct Input {
   const TriangleMesh& mesh;
@@ -219,6 +205,13 @@ bool keeps_nodes(const TriangleMesh& closed, const NodeSet& inside, const Rule& 
   return misplaced.size() * kPartOfNodes <= inside.size();
 }
 
+// With vertices joined that rounding alone keeps apart: cracks of such a width may run around whole faces, and what
+// fills their loops would lie anywhere.
+TriangleMesh without_cracks(const TriangleMesh& mesh) {
+  const double rounding = 0x1p-48 * largest_coordinate(bounding_box(mesh));
+  return weld(mesh, {WeldMode::kDistance, std::max(rounding, std::numeric_limits<double>::min())});
+}
+
 // The surface of an open mesh, with faces that close its holes along the threshold.
 std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<ExteriorEdge>& edges) {
   constexpr std::uint64_t kPerFillFace = 3;  // as many of all faces there may be, once merged
@@ -247,17 +240,20 @@ std::optional<FinishedSurface> whole_mesh(const Input& input) {
   const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
   Rule rule = options.rule;
   std::optional<SurfaceMesh> border;
-  if (!edges.empty()) border = filled_border(input, edges);
-  if (border) {
+  if (edges.empty()) {
+    border = border_of(mesh, input, rule);
+  } else if (const TriangleMesh joined = without_cracks(mesh); exterior_edges(joined).empty()) {
+    border = border_of(joined, input, rule);
+  } else if (border = filled_border(input, edges); border) {
     rule = Rule{};
   } else {
-    border = border_of(mesh, input, rule);
+    border = border_of(mesh, input, rule);  // the boundary may be empty but for how it is cut into edges
   }
   if (!border) return std::nullopt;
   FinishedSurface made{*std::move(border)};
   made.own.emplace();
   if (!keep_seen(made.surface, mesh, inside, rule, *made.own)) return std::nullopt;
-  if (!(options.simplify > 0.0)) made.own->held = triangles_held_by(made.surface, mesh);
+  if (!(options.simplify > 0.0)) made.own->held = held_triangles(made.surface, mesh);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
   if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;

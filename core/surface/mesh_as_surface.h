@@ -11,8 +11,8 @@ namespace raycone {
 
 // The mesh itself, where it is closed, 2-manifold and free of self-intersections: those of its components at which the
 // rule ceases to hold. If it has faults, or the rule holds in front of a component alone, its embedded_border(). Open
-// ones are closed by caps first; fit_to_threshold() divides these, and the border of that is cut out. That must have
-// the `inside` nodes, and no others, behind its fronts. Components that the lattice does not see are left out
+// ones may be closed but for cracks of some roundings. Others are closed by caps first; fit_to_threshold() divides
+// these, and the border of that is cut out. That must have the `inside` nodes, and no others, behind its fronts. Components that the lattice does not see are left out
 // (sights_of()); if it sees others in part, or there are more than twelve triangles, once merged, to a cell with nodes
 // of both kinds, there is no surface: walls and parts that are too thin for the lattice are dropped as ever, and of
 // fine meshes a coarse lattice makes coarse surfaces. Faces of one plane are merged, then `options.simplify` holds, as

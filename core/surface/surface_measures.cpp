@@ -180,6 +180,21 @@ double hole_area(const SurfaceMesh& surface) {
   return area;
 }
 
+std::vector<bool> held_triangles(const SurfaceMesh& surface, const TriangleMesh& mesh) {
+  constexpr double kAll = 1.0 - 0x1p-20;  // rounding of vertices moves sides of faces
+  std::vector<double> areas(mesh.triangles.size(), 0.0);
+  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
+    if (surface.sources[face] == kHole) continue;
+    areas[static_cast<std::size_t>(surface.sources[face])] +=
+        area_of_triangle(surface.mesh, surface.mesh.triangles[face]);
+  }
+  std::vector<bool> held(areas.size());
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    held[n] = areas[n] >= kAll * area_of_triangle(mesh, mesh.triangles[n]);
+  }
+  return held;
+}
+
 SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh, const Lattice& lattice) {
   SurfaceMeasures measures;
   measures.components = components_of(surface.mesh).count;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/data/triangle_mesh.h"
 #include "core/surface/contour.h"
@@ -33,6 +34,9 @@ struct ThinParts {
 
 // Of the faces without a source.
 [[nodiscard]] double hole_area(const SurfaceMesh& surface);
+
+// Of each triangle of the mesh, whether faces with it as source have all of its area, but for rounding.
+[[nodiscard]] std::vector<bool> held_triangles(const SurfaceMesh& surface, const TriangleMesh& mesh);
 
 // `lattice`: around the surface.
 [[nodiscard]] SurfaceMeasures measure_surface(const SurfaceMesh& surface, const TriangleMesh& mesh,

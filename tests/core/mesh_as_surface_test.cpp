@@ -364,6 +364,29 @@ TEST(MeshAsSurface, IsNoneWithOtherNodes) {
   EXPECT_FALSE(mesh_as_surface(box, evaluator, inside, {}));
 }
 
+// The bottom's corners are off those of the sides by some roundings, or by more.
+TEST(MeshAsSurface, ClosesCracksOfRoundingsWithoutFaces) {
+  for (const double off : {1e-15, 1e-6}) {
+    TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    const auto first = static_cast<std::uint32_t>(box.vertices.size());
+    for (const Vec3& corner : std::vector<Vec3>{{0, 0, off}, {1, 0, -off}, {1, 1, off}, {0, 1, -off}}) {
+      box.vertices.push_back(corner);
+    }
+    std::erase_if(box.triangles, [&](const Triangle& t) {
+      return std::ranges::all_of(t, [&](std::uint32_t corner) { return box.vertices[corner].z == 0.0; });
+    });
+    ASSERT_EQ(box.triangles.size(), 10U);
+    box.triangles.push_back({first, first + 2, first + 1});
+    box.triangles.push_back({first, first + 3, first + 2});
+    ASSERT_EQ(exterior_edges(box).size(), 8U);
+    const std::optional<FinishedSurface> made = kept(box, 20.8);
+    ASSERT_TRUE(made) << off;
+    EXPECT_EQ(std::ranges::count(made->surface.sources, kHole) == 0, off < 1e-9);
+    EXPECT_EQ(made->surface.sources.size() == 12, off < 1e-9);
+    EXPECT_NEAR(volume_of(made->surface.mesh), 1.0, off);
+  }
+}
+
 TEST(MeshAsSurface, IsWithoutWhatTheLatticeDoesNotSee) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
   const double voxel = 1.0 / 16.0;

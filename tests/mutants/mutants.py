@@ -647,7 +647,7 @@ MUTANTS = [
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
         ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [
-        ("core/surface/fill_check.cpp", "return near >= kNearly * all && not_far >= kNearlyAll * all;", "return near >= kNearly * 0.0 && not_far >= kNearlyAll * 0.0;")]),
+        ("core/surface/fill_check.cpp", "constexpr double kLittle = 1.0,", "constexpr double kLittle = 1e9,")]),
     Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [
         ("core/surface/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [

@@ -11,6 +11,7 @@
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/far/far_kernel.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -212,9 +213,20 @@ struct Walk {
     return hn::Ge(hn::Set(d, static_cast<double>(k)), hn::Load(d, &until[i]));
   }
 
+  // Four in five nodes that are looked at are taken, and of a large tree they are in no cache: memory is asked for them
+  // before it is known whether they are far enough.
+  HWY_INLINE void fetch(const SourceNode& node, const double* coefficients) const {
+    constexpr std::size_t kLine = 8;  // numbers
+    const std::size_t count = 2 * multipole_index(node.order, node.order, node.order) + 2;
+    for (std::size_t n = 0; n < count; n += kLine) hwy::Prefetch(coefficients + n);
+    hwy::Prefetch(&node + 1);
+  }
+
   // Takes node k where it is far enough; whether it is too near for any sample.
   HWY_INLINE bool take(std::size_t k) {
     const SourceNode& node = tree.nodes()[k];
+    const double* const coefficients = tree.coefficients() + node.first_coefficient;
+    fetch(node, coefficients);
     const Lanes least = hn::Set(d, node.square_of_distance[static_cast<std::size_t>(node.order)]);
     const Lanes next = hn::Set(d, static_cast<double>(node.next));
     FarSamples far;
@@ -228,7 +240,6 @@ struct Walk {
       hn::Store(hn::IfThenElse(accepted, next, hn::Load(d, &until[i])), d, &until[i]);
       far.add(accepted, i);
     }
-    const double* coefficients = tree.coefficients() + node.first_coefficient;
     for (std::size_t n = 0; n < far.count; n += hn::Lanes(d)) {
       const LanesOfPoints r = seen_from(node.centre, far.points(samples, n));
       far.add_to(result.far, n, multipole(node, coefficients, degrees_at(node, square_of(r)), r));

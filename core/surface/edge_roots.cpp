@@ -146,6 +146,23 @@ std::vector<double> RuleAlong::near(const std::vector<Vec3>& points) const {
   return values;
 }
 
+std::vector<double> RuleAlong::roughly_near(const std::vector<Vec3>& points) const {
+  std::vector<double> values(points.size());
+  if (!points.empty()) rough_.evaluate_unsettled(points, values);
+  for (double& w : values) w = from_threshold(w);
+  if (&fine_ == &rough_) return values;
+  std::vector<std::size_t> doubtful;
+  std::vector<Vec3> there;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (std::abs(values[n]) > rough_doubt() + fine_.doubt()) continue;
+    doubtful.push_back(n);
+    there.push_back(points[n]);
+  }
+  const std::vector<double> finer = near(there);
+  for (std::size_t i = 0; i < doubtful.size(); ++i) values[doubtful[i]] = finer[i];
+  return values;
+}
+
 void find_roots(std::vector<Bracket>& brackets, const ValuesAt& values_at) {
   constexpr int kRounds = 90;  // halving alone would take 34
   std::vector<Vec3> points(2 * brackets.size());

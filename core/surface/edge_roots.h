@@ -40,6 +40,8 @@ class RuleAlong {
   }
   // The function for the search of roots: off by rounding also where that makes it another sign.
   [[nodiscard]] std::vector<double> near(const std::vector<Vec3>& points) const;
+  // Its signs, of rough values but where these may have others.
+  [[nodiscard]] std::vector<double> roughly_near(const std::vector<Vec3>& points) const;
   [[nodiscard]] bool is_closed() const { return fine_.exterior_edges() == 0; }
 
  private:

@@ -46,7 +46,7 @@ bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, doub
         points.insert(points.end(), {middle - reach * way, middle + reach * way});
     }
   }
-  const std::vector<double> values = along.near(points);
+  const std::vector<double> values = along.roughly_near(points);
   double all = 0.0, near = 0.0, not_far = 0.0;
   for (std::size_t n = 0; n < areas.size(); ++n) {
     const auto passes = [&](std::size_t count) {
@@ -62,16 +62,16 @@ bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, doub
          all - not_far <= std::max((1.0 - kNearlyAll) * all, little);
 }
 
-bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along, double voxel) {
-  constexpr double kStep = 0.5, kAside = 0x1p-20;  // voxels
-  constexpr double kMost = 0.05;                   // of the area without a source
+LostArea lost_area(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along, double voxel) {
+  constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;  // voxels
   const std::vector<bool> held = held_triangles(surface, mesh);
   const double step = kStep * voxel;
   AreaSamples samples;
   for (std::uint32_t n = 0; n < held.size(); ++n) {
     if (!held[n]) add_samples(samples, mesh, n, step);
   }
-  if (samples.points.empty()) return true;
+  LostArea lost;
+  if (samples.points.empty()) return lost;
   std::vector<double> distances(samples.points.size());
   DistanceEvaluator(surface.mesh).evaluate(samples.points, distances, kNear * voxel);
   const TriangleNormals normals(mesh);
@@ -79,14 +79,24 @@ bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, 
   std::vector<double> areas;
   for (std::size_t n = 0; n < distances.size(); ++n) {
     if (distances[n] <= kNear * voxel) continue;
-    const Vec3 aside = kAside * voxel * normals.of(samples.triangles[n]);
-    sides.insert(sides.end(), {samples.points[n] - aside, samples.points[n] + aside});
-    areas.push_back(samples.areas[n]);
+    const Vec3& p = samples.points[n];
+    const Vec3 normal = voxel * normals.of(samples.triangles[n]);
+    for (const double off : {-kThin, -kAside, kAside, kThin}) sides.push_back(p + off * normal);
+    areas.push_back(samples.areas[n] * step * step);
   }
   const std::vector<std::uint8_t> holds = along.holds_at(sides);
-  double lost = 0.0;  // in squares of a step
-  for (std::size_t n = 0; n < areas.size(); ++n) lost += holds[2 * n] != holds[2 * n + 1] ? areas[n] : 0.0;
-  return lost * step * step <= std::max(kMost * hole_area(surface), kLittleLost * voxel * voxel);
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    const bool behind = holds[4 * n + 1] != 0, before = holds[4 * n + 2] != 0;
+    if (behind == before) continue;
+    const bool is_thick = holds[behind ? 4 * n : 4 * n + 3] != 0;
+    (is_thick ? lost.thick : lost.thin) += areas[n];
+  }
+  return lost;
+}
+
+bool keeps_what_separates(const SurfaceMesh& surface, const LostArea& lost, double voxel) {
+  constexpr double kMost = 0.05;  // of the area without a source
+  return lost.thick <= std::max(kMost * hole_area(surface), kLittleLost * voxel * voxel);
 }
 
 }  // namespace raycone

@@ -13,10 +13,19 @@ namespace raycone {
 // one. The same for any number of threads.
 [[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
 
-// Whether the surface passes by what separates of the triangles of `mesh`: what is farther than a quarter of a voxel
-// from it, with the rule holding on one side alone, is no more than a twentieth of the area without a source, or a
-// quarter of a voxel's face. Judged at points half a voxel apart.
-[[nodiscard]] bool keeps_what_separates(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along,
-                                        double voxel);
+// What separates of the triangles of a mesh, with the rule holding on one side alone, and is farther than a quarter of a
+// voxel from a surface; square units.
+struct LostArea {
+  double thin = 0.0;   // what is behind ends within half a voxel, as next to a sheet that hangs on the mesh
+  double thick = 0.0;  // the rest
+};
+
+// Judged at points half a voxel apart.
+[[nodiscard]] LostArea lost_area(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along,
+                                 double voxel);
+
+// Whether that is little: what is thick no more than a twentieth of the area without a source, or a quarter of a
+// voxel's face.
+[[nodiscard]] bool keeps_what_separates(const SurfaceMesh& surface, const LostArea& lost, double voxel);
 
 }  // namespace raycone

@@ -1,6 +1,7 @@
 // The faces of a surface that close holes, while they are divided.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -50,6 +51,10 @@ class FillFaces {
   // update_edges().
   void divide(const Part& part, const Vec3& p);
   void update_edges();
+
+  // Adds an octahedron, whose tips are below and above a point along x, then y, then z; its fronts look outward, or
+  // inward. Ends with update_edges().
+  void add_octahedron(const std::array<Vec3, 6>& tips, bool outward);
 
   // Flips inner edges whose opposite angles sum up to more than 180 degrees (Delaunay), where faces do not turn over by
   // that, and no edge comes twice, or again. Returns the faces that have changed. Ends with update_edges().

@@ -29,8 +29,9 @@ using Part = FillFaces::Part;
 constexpr double kShort = 1.0, kFlat = 0x1p-6, kFlatIfShort = 0.125, kFinest = 0.25;
 // How far behind a node a vertex is where there is no threshold.
 constexpr double kBeyond = 0.5;
-// A node this near is on the fill. If nodes are too far from it, it is not why they are on the wrong side.
-constexpr double kOff = 0x1p-20, kFarthest = 2.0;
+// A node this near is on the fill. If nodes are too far from it, it is not why they are on the wrong side; others of
+// these are not, if they are at most so far around.
+constexpr double kOff = 0x1p-20, kFarthest = 2.0, kIsland = 0.875;
 // The weight of a corner for a place to be next to the side across from it.
 constexpr double kNextToSide = 0.05;
 
@@ -72,13 +73,14 @@ class ThresholdFit {
   }
 
   bool fit() {
-    constexpr int kMostRounds = 8;
+    constexpr int kMostRounds = 8, kRoundsOfDivision = 5;  // a face that is folded may never have a node on its side
     bool fits = false;
     for (int round = 0; round < kMostRounds && !fits && limits_.most_faces > 0; ++round) {
       if (!divide_bent()) break;
       const NodeSet misplaced = misplaced_nodes(fill_.mesh(), inside_, &kNoEdges);
       fits = misplaced.empty();
-      if (!fits && (misplaced.size() > limits_.most_faces || !divide_at(misplaced))) break;
+      if (fits || misplaced.size() > limits_.most_faces) break;
+      if (round < kRoundsOfDivision ? !divide_at(misplaced) : !add_islands(positions_of(misplaced))) break;
     }
     fill_.put_back();
     return fits;
@@ -180,7 +182,7 @@ class ThresholdFit {
         points.insert(points.end(), {line.point - step, line.point + step});
       }
     }
-    const std::vector<double> values = along_.near(points);
+    const std::vector<double> values = along_.roughly_near(points);
     const auto passes = [&](std::size_t n) { return (values[n] >= 0.0) != (values[n + 1] >= 0.0); };
     std::vector<Part> bent;
     for (std::size_t n = 0; n < parts.size(); ++n) {
@@ -214,7 +216,8 @@ class ThresholdFit {
 
   // Gives the parts that are nearest to these nodes a vertex beyond them: on the threshold or, where all beyond is on
   // the node's side, as it is where a tooth of the mesh has nothing inside, a bit farther. Nodes in a plane hole are on
-  // the threshold: so little beyond them that it makes no difference otherwise. Returns whether faces are near to all.
+  // the threshold: so little beyond them that it makes no difference otherwise. Nodes that no face is near to get an
+  // island. Returns whether anything has changed.
   bool divide_at(const NodeSet& nodes) {
     const std::vector<Misplaced> misplaced = positions_of(nodes);
     const std::vector<std::uint32_t> nearest = nearest_faces(misplaced);
@@ -224,12 +227,20 @@ class ThresholdFit {
     std::vector<Part> parts;
     std::vector<Line> lines;
     std::vector<Vec3> farther;  // where there is no threshold
-    for (std::size_t n = 0; n < nearest.size(); ++n) {
+    std::vector<Misplaced> far_off;
+    for (std::size_t n = 0; n < misplaced.size(); ++n) {
+      if (nearest.empty()) {
+        far_off = misplaced;
+        break;
+      }
       const auto& [point, is_inside] = misplaced[n];
       const auto [a, b, c] = fill_[nearest[n]];
       const Vec3 weights = nearest_place({fill_.at(a), fill_.at(b), fill_.at(c)}, point);
       const Vec3 away = point - (weights.x * fill_.at(a) + weights.y * fill_.at(b) + weights.z * fill_.at(c));
-      if (!(norm(away) <= kFarthest * voxel_)) return false;
+      if (!(norm(away) <= kFarthest * voxel_)) {
+        far_off.push_back(misplaced[n]);
+        continue;
+      }
       Part part{nearest[n]};
       for (int corner = 0; corner < 3; ++corner) {
         if (weights[corner] < kNextToSide) part.edge = sides[part.face][static_cast<std::size_t>(corner)];
@@ -248,13 +259,45 @@ class ThresholdFit {
     std::vector<std::optional<Vec3>> beyond = nearest_roots(lines, kFlat * voxel_, along_);
     for (std::size_t n = 0; n < lines.size(); ++n) beyond[n] = beyond[n].value_or(farther[n]);
     divide(parts, beyond);
-    return !parts.empty();
+    return add_islands(far_off) || !parts.empty();
   }
 
   struct Misplaced {
     Vec3 point;
     bool is_inside;
   };
+
+  // A sheet that hangs on the mesh separates nothing, so the caps of its rim take it away. But next to its back w may
+  // be above the threshold, or below it within the solid. Where that reaches a node, it gets a small part of its own:
+  // as far along each axis as the threshold, or a bit less. Returns whether there are any.
+  bool add_islands(const std::vector<Misplaced>& nodes) {
+    const double least = voxel_ * surface_margin(inside_.lattice(), limits_.single_precision);
+    std::vector<Line> lines;
+    for (const Misplaced& node : nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double way : {-1.0, 1.0}) {
+          Vec3 direction;
+          direction[axis] = way;
+          lines.push_back({node.point, direction, voxel_, false});
+        }
+      }
+    }
+    const std::vector<std::optional<Vec3>> roots = nearest_roots(lines, kFlat * voxel_, along_);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      std::array<Vec3, 6> tips;
+      for (std::size_t tip = 0; tip < tips.size(); ++tip) {
+        const Line& line = lines[6 * n + tip];
+        const std::optional<Vec3>& root = roots[6 * n + tip];
+        const double reach = kIsland * (root ? norm(*root - line.point) : voxel_);
+        tips[tip] = line.point + std::max(reach, least) * line.direction;
+        if (limits_.single_precision) tips[tip] = rounded_to_float(tips[tip]);
+      }
+      fill_.add_octahedron(tips, nodes[n].is_inside);
+    }
+    is_settled_.resize(fill_.size(), true);
+    return !nodes.empty();
+  }
+
   [[nodiscard]] std::vector<Misplaced> positions_of(const NodeSet& nodes) const {
     const Lattice& lattice = inside_.lattice();
     std::vector<Misplaced> positions;

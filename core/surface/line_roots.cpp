@@ -47,7 +47,7 @@ std::vector<std::optional<Vec3>> nearest_roots(const std::vector<Line>& lines, d
     places.push_back(places_on(line, first));
     for (const double place : places.back()) points.push_back(line.point + place * line.direction);
   }
-  const std::vector<double> values = along.near(points);
+  const std::vector<double> values = along.roughly_near(points);
   std::vector<Bracket> brackets;
   std::vector<std::size_t> of_line;
   for (std::size_t n = 0, begin = 0; n < lines.size(); begin += places[n++].size()) {

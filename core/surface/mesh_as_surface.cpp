@@ -132,7 +132,7 @@ bool keep_seen(SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& in
   if (!keep_border(surface, rule)) return false;  // what was within an unseen one may separate nothing now
   own.left_out = components.count - components_of(surface.mesh).count;
   const double whole = area_of(mesh);
-  if (whole > 0.0) own.left_out_of_all = (before - own_area(surface)) / whole;
+  if (whole > 0.0) own.left_out_of_all += (before - own_area(surface)) / whole;
   return true;
 }
 
@@ -212,8 +212,9 @@ TriangleMesh without_cracks(const TriangleMesh& mesh) {
   return weld(mesh, {WeldMode::kDistance, std::max(rounding, std::numeric_limits<double>::min())});
 }
 
-// The surface of an open mesh, with faces that close its holes along the threshold.
-std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<ExteriorEdge>& edges) {
+// The surface of an open mesh, with faces that close its holes along the threshold. `left_out`: what is
+// too thin for the lattice, as a part of the mesh's area.
+std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<ExteriorEdge>& edges, double& left_out) {
   constexpr std::uint64_t kPerFillFace = 3;  // as many of all faces there may be, once merged
   const auto& [mesh, evaluators, inside, options, most] = input;
   Rule rule = options.rule;
@@ -230,8 +231,10 @@ std::optional<SurfaceMesh> filled_border(const Input& input, const std::vector<E
   if (!again) return std::nullopt;
   for (std::int32_t& source : again->sources) source = border->sources[static_cast<std::size_t>(source)];
   const double voxel = inside.lattice().least_spacing();
-  if (!is_along_threshold(*again, along, voxel) || !keeps_what_separates(*again, mesh, along, voxel))
-    return std::nullopt;
+  if (!is_along_threshold(*again, along, voxel)) return std::nullopt;
+  const LostArea lost = lost_area(*again, mesh, along, voxel);
+  if (!keeps_what_separates(*again, lost, voxel)) return std::nullopt;
+  left_out = lost.thin / area_of(mesh);
   return again;
 }
 
@@ -239,20 +242,21 @@ std::optional<FinishedSurface> whole_mesh(const Input& input) {
   const auto& [mesh, evaluators, inside, options, most] = input;
   const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
   Rule rule = options.rule;
+  OwnFaces own;
   std::optional<SurfaceMesh> border;
   if (edges.empty()) {
     border = border_of(mesh, input, rule);
   } else if (const TriangleMesh joined = without_cracks(mesh); exterior_edges(joined).empty()) {
     border = border_of(joined, input, rule);
-  } else if (border = filled_border(input, edges); border) {
+  } else if (border = filled_border(input, edges, own.left_out_of_all); border) {
     rule = Rule{};
   } else {
     border = border_of(mesh, input, rule);  // the boundary may be empty but for how it is cut into edges
   }
   if (!border) return std::nullopt;
   FinishedSurface made{*std::move(border)};
-  made.own.emplace();
-  if (!keep_seen(made.surface, mesh, inside, rule, *made.own)) return std::nullopt;
+  if (!keep_seen(made.surface, mesh, inside, rule, own)) return std::nullopt;
+  made.own = std::move(own);
   if (!(options.simplify > 0.0)) made.own->held = held_triangles(made.surface, mesh);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};

@@ -34,7 +34,7 @@ struct OwnFaces {
   std::vector<bool> held{};
   // Components of the mesh's border that are left out: the lattice does not see them, or what they are within.
   std::uint64_t left_out = 0;
-  double left_out_of_all = 0.0;  // their area as a part of the mesh's
+  double left_out_of_all = 0.0;  // the area of these, and of other parts too thin, as a part of the mesh's
 };
 
 struct FinishedSurface {

@@ -1,4 +1,5 @@
 #include "core/surface/hole_fill.h"
+#include "core/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -175,11 +176,29 @@ TEST(FillCheck, TellsWhetherFacesAreLost) {
           std::min({surface.mesh.vertices[a].z, surface.mesh.vertices[b].z, surface.mesh.vertices[c].z}) > 0;
       surface.sources.push_back(is_lid ? kHole : face);
     }
-    return keeps_what_separates(surface, box, along, 0.1);
+    return keeps_what_separates(surface, lost_area(surface, box, along, 0.1), 0.1);
   };
   EXPECT_TRUE(keeps(1.0));
   EXPECT_TRUE(keeps(0.98));
   EXPECT_FALSE(keeps(0.9));
+}
+
+TEST(FillFaces, AddsOctahedra) {
+  const TriangleMesh box = test::open_box();
+  SurfaceMesh surface{closed_by_caps(box, exterior_edges(box)), {}};
+  surface.sources.assign(12, 0);
+  for (const bool outward : {true, false}) {
+    FillFaces fill(surface);
+    const std::uint32_t before = fill.size();
+    const std::size_t edges = fill.inner_edges().size();
+    const double volume = mesh_statistics(fill.mesh()).signed_volume.value();
+    fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, outward);
+    EXPECT_EQ(fill.size(), before + 8);
+    EXPECT_EQ(fill.inner_edges().size(), edges + 12);
+    const double added = mesh_statistics(fill.mesh()).signed_volume.value() - volume;
+    EXPECT_NEAR(added, outward ? 3.0 : -3.0, 1e-12);  // a sixth of 3 times 2 times 3
+    fill.put_back();
+  }
 }
 
 TEST(FillFaces, DividesAndFlips) {

@@ -1,4 +1,5 @@
 #include "core/surface/mesh_as_surface.h"
+#include "core/mesh/components.h"
 
 #include <gtest/gtest.h>
 
@@ -362,6 +363,25 @@ TEST(MeshAsSurface, IsNoneWithOtherNodes) {
   one.insert(2, 2, 2);
   inside.flip(one);
   EXPECT_FALSE(mesh_as_surface(box, evaluator, inside, {}));
+}
+
+// Above a box without top w is a bit more than 0, so behind a sheet there it is above 1/2. A sample is there, which the
+// sheet's caps leave outside.
+TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
+  TriangleMesh mesh = test::open_box();
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {{0.4, 0.4, 2.105}, {0.8, 0.4, 2.105}, {0.6, 0.8, 2.105}});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {10, 10, 13}};
+  const WindingNumberEvaluator evaluator(mesh);
+  const NodeSet inside = nodes_inside(evaluator, {}, lattice);
+  ASSERT_TRUE(inside.holds(4, 4, 10));
+  const std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, {});
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
+  EXPECT_EQ(components_of(made->surface.mesh).count, 2U);
+  EXPECT_EQ(std::ranges::count(made->own->held, true), 10);
+  EXPECT_GT(made->own->left_out_of_all, 0.0);  // the rest of what is behind the sheet
 }
 
 // The bottom's corners are off those of the sides by some roundings, or by more.

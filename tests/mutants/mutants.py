@@ -646,6 +646,10 @@ MUTANTS = [
         ("core/surface/line_roots.cpp", ".point(brackets[n].root)", ".point(1.001 * brackets[n].root)")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
         ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
+    Mutant("islands_inside_out", "the part that a node gets has the node on its side", [
+        ("core/surface/hole_fill.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
+    Mutant("sheets_are_thick", "what ends within half a voxel behind a sheet is too thin", [
+        ("core/surface/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [
         ("core/surface/fill_check.cpp", "constexpr double kLittle = 1.0,", "constexpr double kLittle = 1e9,")]),
     Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [

@@ -607,10 +607,10 @@ MUTANTS = [
     Mutant("faulty_fills_come_again", "where a fill has faults, the next one is tried", [
         ("core/surface/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
     Mutant("bubbles_in_solids", "what is within a solid, or inside out beside it, is no part of its border", [
-        ("core/surface/mesh_as_surface.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
+        ("core/surface/border_components.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
          "is_border[n] = true;")]),
     Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
-        ("core/surface/mesh_as_surface.cpp", "  if (input.options.single_precision) round_to_float(itself.mesh.vertices);\n",
+        ("core/surface/mesh_border.cpp", "  if (options.single_precision) round_to_float(itself.mesh.vertices);\n",
          "")]),
     Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
         ("core/surface/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),

@@ -138,8 +138,8 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
   if (options.at_stage) options.at_stage("measuring");
-  DroppedSamples samples(made.surface, inside, options.thickness,
-                         farthest_kept(mesh, lattice, closed.own.has_value()) + options.thickness + options.simplify,
+  const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.single_precision);
+  DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
                          closed.own ? std::move(closed.own->held) : std::vector<bool>());
   const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);

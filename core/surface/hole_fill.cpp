@@ -214,6 +214,17 @@ class ThresholdFit {
     return true;
   }
 
+  struct Misplaced {
+    Vec3 point;
+    bool is_inside;
+  };
+
+  // A part that is near to a node, and the way from there to the node.
+  struct NearPart {
+    Part part;
+    Vec3 away;
+  };
+
   // Gives the parts that are nearest to these nodes a vertex beyond them: on the threshold or, where all beyond is on
   // the node's side, as it is where a tooth of the mesh has nothing inside, a bit farther. Nodes in a plane hole are on
   // the threshold: so little beyond them that it makes no difference otherwise. Nodes that no face is near to get an
@@ -229,31 +240,18 @@ class ThresholdFit {
     std::vector<Vec3> farther;  // where there is no threshold
     std::vector<Misplaced> far_off;
     for (std::size_t n = 0; n < misplaced.size(); ++n) {
-      if (nearest.empty()) {
-        far_off = misplaced;
-        break;
-      }
       const auto& [point, is_inside] = misplaced[n];
-      const auto [a, b, c] = fill_[nearest[n]];
-      const Vec3 weights = nearest_place({fill_.at(a), fill_.at(b), fill_.at(c)}, point);
-      const Vec3 away = point - (weights.x * fill_.at(a) + weights.y * fill_.at(b) + weights.z * fill_.at(c));
-      if (!(norm(away) <= kFarthest * voxel_)) {
-        far_off.push_back(misplaced[n]);
-        continue;
-      }
-      Part part{nearest[n]};
-      for (int corner = 0; corner < 3; ++corner) {
-        if (weights[corner] < kNextToSide) part.edge = sides[part.face][static_cast<std::size_t>(corner)];
-      }
-      if (!take(part, is_taken)) continue;
-      parts.push_back(part);
-      if (norm(away) > kOff * voxel_) {
-        lines.push_back(line_through(point, away, kFarthest * voxel_));
+      const std::optional<NearPart> near = nearest.empty() ? std::nullopt : near_part(nearest[n], point, sides);
+      if (!near) far_off.push_back(misplaced[n]);
+      if (!near || !take(near->part, is_taken)) continue;
+      parts.push_back(near->part);
+      if (norm(near->away) > kOff * voxel_) {
+        lines.push_back(line_through(point, near->away, kFarthest * voxel_));
         lines.back().has_back = false;
         farther.push_back(point + kBeyond * voxel_ * lines.back().direction);
       } else {
         lines.push_back({point, {}});
-        farther.push_back(point + (is_inside ? lift : -lift) * across(part).direction);
+        farther.push_back(point + (is_inside ? lift : -lift) * across(near->part).direction);
       }
     }
     std::vector<std::optional<Vec3>> beyond = nearest_roots(lines, kFlat * voxel_, along_);
@@ -262,10 +260,19 @@ class ThresholdFit {
     return add_islands(far_off) || !parts.empty();
   }
 
-  struct Misplaced {
-    Vec3 point;
-    bool is_inside;
-  };
+  // Of the face that is nearest to a point: its side, where the nearest place is next to it. None where it is far.
+  [[nodiscard]] std::optional<NearPart> near_part(std::uint32_t face, const Vec3& point,
+                                                  std::span<const std::array<std::uint32_t, 3>> sides) const {
+    const auto [a, b, c] = fill_[face];
+    const Vec3 weights = nearest_place({fill_.at(a), fill_.at(b), fill_.at(c)}, point);
+    const Vec3 away = point - (weights.x * fill_.at(a) + weights.y * fill_.at(b) + weights.z * fill_.at(c));
+    if (!(norm(away) <= kFarthest * voxel_)) return std::nullopt;
+    Part part{face};
+    for (int corner = 0; corner < 3; ++corner) {
+      if (weights[corner] < kNextToSide) part.edge = sides[face][static_cast<std::size_t>(corner)];
+    }
+    return NearPart{part, away};
+  }
 
   // A sheet that hangs on the mesh separates nothing, so the caps of its rim take it away. But next to its back w may
   // be above the threshold, or below it within the solid. Where that reaches a node, it gets a small part of its own:

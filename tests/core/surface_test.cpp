@@ -1293,7 +1293,7 @@ TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
 
 DroppedSamples dropped_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
                                double thickness = 0.0, bool own_faces = false) {
-  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces) + thickness;
+  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces, false) + thickness;
   return {surface, inside, thickness, farthest, {}};
 }
 
@@ -1410,6 +1410,20 @@ TEST(SurfaceMeasures, TellFacesNextToTheSurfaceFromItsOwn) {
   EXPECT_NEAR(dropped_at(0.01), 0.18, 1e-12);
 }
 
+// Far from the origin, in double precision.
+TEST(SurfaceMeasures, AreAsFineFarAway) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1}), far = test::moved(box, {1, 1, 1}, {1e6 + 0.1, 0, 0});
+  const auto lattice_of = [](const TriangleMesh& mesh) {
+    return Lattice{bounding_box(mesh).lower, {0.1, 0.1, 0.1}, {-1, -1, -1}, {12, 12, 12}};
+  };
+  const auto off = [&](const TriangleMesh& mesh, bool single) {
+    return farthest_kept(mesh, lattice_of(mesh), true, single);
+  };
+  EXPECT_NEAR(off(box, false), 2e-4, 1e-4);  // 2^-9 voxels
+  EXPECT_NEAR(off(far, false), 2e-4, 1e-4);
+  EXPECT_NEAR(off(far, true), 0.25 * 0.1 * std::sqrt(3.0), 1e-9);  // more is too much in any case
+}
+
 // Many are looked at together. Each is as its own distance says.
 TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
   Random random(41);
@@ -1427,7 +1441,7 @@ TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
   for (const bool own_faces : {false, true}) {
     DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, own_faces);
-    const double farthest = farthest_kept(mesh, lattice, own_faces) + 0.25 * lattice.spacing.x;
+    const double farthest = farthest_kept(mesh, lattice, own_faces, false) + 0.25 * lattice.spacing.x;
     std::size_t count = 0, far = 0;
     dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
       std::vector<double> distances(samples.points.size());

@@ -116,7 +116,6 @@ void FillFaces::add_octahedron(const std::array<Vec3, 6>& tips, bool outward) {
     faces_.push_back(face);
     add_edges_of(face);
   }
-  update_edges();
 }
 
 // An edge of more than two faces, or of two in one direction, is none of them.

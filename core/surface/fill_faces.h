@@ -53,7 +53,7 @@ class FillFaces {
   void update_edges();
 
   // Adds an octahedron, whose tips are below and above a point along x, then y, then z; its fronts look outward, or
-  // inward. Ends with update_edges().
+  // inward. inner_edges() stay what they were until update_edges().
   void add_octahedron(const std::array<Vec3, 6>& tips, bool outward);
 
   // Flips inner edges whose opposite angles sum up to more than 180 degrees (Delaunay), where faces do not turn over by

@@ -301,6 +301,7 @@ class ThresholdFit {
       }
       fill_.add_octahedron(tips, nodes[n].is_inside);
     }
+    fill_.update_edges();
     is_settled_.resize(fill_.size(), true);
     return !nodes.empty();
   }

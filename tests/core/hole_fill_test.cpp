@@ -193,6 +193,7 @@ TEST(FillFaces, AddsOctahedra) {
     const std::size_t edges = fill.inner_edges().size();
     const double volume = mesh_statistics(fill.mesh()).signed_volume.value();
     fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, outward);
+    fill.update_edges();
     EXPECT_EQ(fill.size(), before + 8);
     EXPECT_EQ(fill.inner_edges().size(), edges + 12);
     const double added = mesh_statistics(fill.mesh()).signed_volume.value() - volume;

@@ -1,5 +1,6 @@
 #include "core/surface/mesh_as_surface.h"
 #include "core/mesh/components.h"
+#include "core/surface/border_components.h"
 
 #include <gtest/gtest.h>
 
@@ -382,6 +383,25 @@ TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
   EXPECT_EQ(components_of(made->surface.mesh).count, 2U);
   EXPECT_EQ(std::ranges::count(made->own->held, true), 10);
   EXPECT_GT(made->own->left_out_of_all, 0.0);  // the rest of what is behind the sheet
+}
+
+// Rounding may turn flat components over: beside a box, or within it.
+TEST(BorderComponents, AreWithoutThoseThatAreTurnedOver) {
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto small = [](double x, bool turned) {
+    const TriangleMesh other = test::box_mesh({x, 0.2, 0.2}, {x + 0.1, 0.3, 0.3});
+    return turned ? test::reversed(other) : other;
+  };
+  const auto left = [&](double x, bool turned) {
+    SurfaceMesh surface{weld(test::joined(box, small(x, turned)), {}), {}};
+    surface.sources.resize(surface.mesh.triangles.size(), 0);
+    EXPECT_TRUE(keep_border(surface, Rule{}));
+    return surface.sources.size();
+  };
+  EXPECT_EQ(left(2.0, false), 24U);
+  EXPECT_EQ(left(2.0, true), 12U);
+  EXPECT_EQ(left(0.2, true), 24U);  // a cavity
+  EXPECT_EQ(left(0.2, false), 12U);
 }
 
 // The bottom's corners are off those of the sides by some roundings, or by more.

@@ -49,6 +49,8 @@ std::uint64_t WindingNumberEvaluator::exterior_edges() const {
   return implementation_->scaled().boundary().exterior_edges();
 }
 
+const Accuracy& WindingNumberEvaluator::asked_accuracy() const { return implementation_->scaled().options().accuracy; }
+
 double tolerance_for_sides(const Rule& rule) { return thresholds_to_settle(rule).empty() ? 3e-5 : 1e-6; }
 
 double WindingNumberEvaluator::doubt() const { return implementation_->scaled().doubt(); }

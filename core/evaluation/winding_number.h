@@ -111,6 +111,9 @@ class WindingNumberEvaluator {
   // value is exactly an integer.
   [[nodiscard]] std::uint64_t exterior_edges() const;
 
+  // What it was made with.
+  [[nodiscard]] const Accuracy& asked_accuracy() const;
+
   // Sets the winding numbers (turns) of a block of `lattice`, x fastest. Precondition: values.size() == block.size().
   // If `done` is given, it grows by one per finished sample while the call runs. If `diagnostics` are given, they are
   // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Unless

@@ -152,11 +152,10 @@ std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const F
   if (static_cast<double>(mesh.triangles.size()) > kBeforeMerging * static_cast<double>(most)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
   if (!is_out_of_scale(inside.lattice(), options)) return whole_mesh({mesh, evaluators, inside, options, most});
-  const auto make = [&](const TriangleMesh& scaled, const NodeSet& nodes, const SurfaceOptions& as) {
-    const WindingNumberEvaluator evaluator(scaled);
-    return whole_mesh({scaled, evaluator, nodes, as, most});
+  const auto make = [&](auto& scaled, auto& in_scale, auto& nodes, auto& as) {
+    return whole_mesh({scaled, in_scale, nodes, as, most});
   };
-  return made_in_scale(mesh, inside, options, make);
+  return made_in_scale(mesh, evaluators, inside, options, make);
 }
 
 }  // namespace raycone

@@ -283,9 +283,8 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
     throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
   if (is_out_of_scale(inside.lattice(), options)) {
     std::optional<FinishedSurface> surface =
-        made_in_scale(mesh, inside, options, [](auto& scaled, auto& nodes, auto& as) {
-          const WindingNumberEvaluator evaluator(scaled);
-          return SurfaceMaker(scaled, evaluator, nodes, as).make();
+        made_in_scale(mesh, evaluators, inside, options, [](auto& scaled, auto& in_scale, auto& nodes, auto& as) {
+          return SurfaceMaker(scaled, in_scale, nodes, as).make();
         });
     if (surface) return *std::move(surface);
   }

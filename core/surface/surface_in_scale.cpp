@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
 
 namespace raycone {
@@ -46,13 +47,21 @@ bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options) {
   return !options.single_precision && std::abs(exponent_of(lattice)) > kFar;
 }
 
-std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const NodeSet& inside,
-                                             const SurfaceOptions& options, const SurfaceOf& make) {
+std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
+                                             const NodeSet& inside, const SurfaceOptions& options,
+                                             const SurfaceOf& make) {
   const int exponent = exponent_of(inside.lattice());
   const PowerOfTwo back(exponent), in_scale(-exponent);
   SurfaceInput input{mesh, inside, options};
   if (!input.scale(in_scale)) return std::nullopt;
-  std::optional<FinishedSurface> finished = make(input.mesh, input.inside, input.options);
+  const auto in_this = [&](const WindingNumberEvaluator& evaluator) {
+    return WindingNumberEvaluator(input.mesh, {.accuracy = evaluator.asked_accuracy()});
+  };
+  const WindingNumberEvaluator fine = in_this(evaluators.fine);
+  std::optional<WindingNumberEvaluator> rough;
+  if (&evaluators.rough != &evaluators.fine) rough = in_this(evaluators.rough);
+  std::optional<FinishedSurface> finished =
+      make(input.mesh, FineAndRough(fine, rough ? *rough : fine), input.inside, input.options);
   if (!finished) return std::nullopt;
   for (Vec3& v : finished->surface.mesh.vertices) {
     const Vec3 scaled = v;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/data/triangle_mesh.h"
+#include "core/surface/edge_roots.h"
 #include "core/surface/node_set.h"
 #include "core/surface/surface.h"
 
@@ -13,12 +14,14 @@ namespace raycone {
 // Whether products of four lengths and more could over- or underflow. Not where vertices are floats.
 [[nodiscard]] bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options);
 
-using SurfaceOf = std::function<std::optional<FinishedSurface>(const TriangleMesh& mesh, const NodeSet& inside,
-                                                               const SurfaceOptions& options)>;
+using SurfaceOf = std::function<std::optional<FinishedSurface>(const TriangleMesh& mesh, const FineAndRough& evaluators,
+                                                               const NodeSet& inside, const SurfaceOptions& options)>;
 
 // What `make` makes of all that in another scale, by a power of two, in which coordinates are near 1; back in this one.
-// None where it makes none, or where another scale costs a number bits.
-[[nodiscard]] std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const NodeSet& inside,
-                                                           const SurfaceOptions& options, const SurfaceOf& make);
+// Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale costs
+// a number bits.
+[[nodiscard]] std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
+                                                           const NodeSet& inside, const SurfaceOptions& options,
+                                                           const SurfaceOf& make);
 
 }  // namespace raycone

@@ -385,6 +385,27 @@ TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
   EXPECT_GT(made->own->left_out_of_all, 0.0);  // the rest of what is behind the sheet
 }
 
+// Beyond 2^64 the mesh is scaled. Of so many holes, evaluators differ by what they are made for.
+TEST(MeshAsSurface, IsTheSameInEveryUnitWithTwoEvaluators) {
+  test::Random random(8);
+  TriangleMesh sieve = weld(test::sphere(40), {});
+  std::erase_if(sieve.triangles, [&](const Triangle&) { return test::uniform(random, 0.0, 1.0) < 0.1; });
+  const auto made = [&](double unit) {
+    const TriangleMesh mesh = test::moved(sieve, {unit, unit, unit}, {0, 0, 0});
+    const double h = 0.1 * unit, first = -1.25 * unit;
+    const Lattice lattice{{first, first, first}, {h, h, h}, {0, 0, 0}, {26, 26, 26}};
+    constexpr double kPoints = 1e6;
+    const WindingNumberEvaluator fine(mesh, {.accuracy = {.tolerance = 1e-6, .samples = kPoints, .points = kPoints}});
+    const WindingNumberEvaluator rough(mesh, {.accuracy = {.tolerance = 1e-5, .samples = kPoints, .points = kPoints}});
+    std::optional<FinishedSurface> surface =
+        mesh_as_surface(mesh, FineAndRough(fine, rough), nodes_inside(rough, {}, lattice), {});
+    return surface ? test::moved(surface->surface.mesh, {1 / unit, 1 / unit, 1 / unit}, {0, 0, 0}) : TriangleMesh();
+  };
+  const TriangleMesh expected = made(1.0);
+  ASSERT_FALSE(expected.triangles.empty());
+  for (const double unit : {0x1p100, 0x1p-100}) EXPECT_EQ(made(unit).vertices, expected.vertices);
+}
+
 // Rounding may turn flat components over: beside a box, or within it.
 TEST(BorderComponents, AreWithoutThoseThatAreTurnedOver) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});

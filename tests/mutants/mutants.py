@@ -646,6 +646,8 @@ MUTANTS = [
         ("core/surface/line_roots.cpp", ".point(brackets[n].root)", ".point(1.001 * brackets[n].root)")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
         ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
+    Mutant("other_evaluators_in_scale", "scaled meshes have evaluators with the same accuracies", [
+        ("core/surface/surface_in_scale.cpp", "evaluator.asked_accuracy()", "(void(evaluator), Accuracy{})")]),
     Mutant("islands_inside_out", "the part that a node gets has the node on its side", [
         ("core/surface/hole_fill.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
     Mutant("sheets_are_thick", "what ends within half a voxel behind a sheet is too thin", [

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMostParts = 180.0 * 180.0;  // of a triangle, rows times parts of a row: each is a small part then
 constexpr double kOnSurface = 0x1p-9;         // voxels: more than planes of one surface are off each other
-constexpr double kOffContour = 0.25;          // of a cell's diagonal
+constexpr double kOffContour = 0.25;          // of a cell's diagonal: creases within a cell may be cut off by so much
 constexpr std::size_t kMostRemembered = std::size_t{1} << 27;  // samples, a bit each
 constexpr double kPerStep = 1.4;  // rows, and parts of a row: two of them to a square of a step
 

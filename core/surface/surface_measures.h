@@ -17,8 +17,8 @@ struct SurfaceMeasures {
   double hole_area = 0.0;        // of faces without a source
 };
 
-// Of triangles of the mesh: the part that is dropped, as judged at points half a cell's diagonal apart, at some 16 000 of
-// a triangle at most. It separates nothing, or is of parts thinner than the lattice sees.
+// Of triangles of the mesh: the part that is dropped, as judged at points half a cell's diagonal apart, at some 16 000
+// of a triangle at most. It separates nothing, or is of parts thinner than the lattice sees.
 struct DroppedArea {
   double area = 0.0;
   std::uint64_t samples = 0;  // how many of these points are dropped

@@ -16,7 +16,9 @@ namespace {
 // Hits that are nearer to each other, as fractions of an edge, are one: of triangles that share an edge.
 constexpr double kSameHit = 0x1p-40;
 
-constexpr std::size_t kBracketsPerTask = 4096;
+constexpr std::size_t kCellsPerTask = 1024, kBracketsPerTask = 4096;
+// Their open edges take a few hundred bytes each until they are decided, and are enough for all threads.
+constexpr std::size_t kCellsAtOnce = std::size_t{1} << 15;
 
 // An edge of which more has to be known than where it meets triangles.
 struct OpenEdge {
@@ -36,14 +38,12 @@ class EdgePointFinder {
         points_(sized_on_all_threads<EdgePoint>(cells.edges())) {}
 
   std::vector<EdgePoint> find() {
-    find_hits();
-    decide();
-    find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
-    parallel_for(brackets_.size(), kBracketsPerTask, [&](std::size_t begin, std::size_t end) {
-      for (const Bracket& bracket : std::span(brackets_).subspan(begin, end - begin)) {
-        points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
-      }
-    });
+    for (std::size_t first = 0; first < cells_.cells().size(); first += kCellsAtOnce) {
+      find_hits(first, std::min(first + kCellsAtOnce, cells_.cells().size()));
+      decide();
+      find_roots(brackets_, [&](const std::vector<Vec3>& places) { return rule_.near(places); });
+      set_roots();
+    }
     return std::move(points_);
   }
 
@@ -52,12 +52,13 @@ class EdgePointFinder {
   struct Sides {
     bool before, behind;
   };
-  void find_hits();
+  void find_hits(std::size_t first, std::size_t end);
   void find_hits(std::uint32_t number, HitFinder& finder, std::vector<SegmentHit>& hits, std::vector<OpenEdge>& open);
   void decide();
   [[nodiscard]] std::vector<Sides> sides_in_closed(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
   [[nodiscard]] std::vector<Sides> sides_in_open(const std::vector<const OpenEdge*>& edges, std::size_t place) const;
   [[nodiscard]] bool decides(const OpenEdge& open, std::size_t place, const Sides& sides);
+  void set_roots();
 
   void set_hit(const MixedEdge& edge, const SegmentHit& hit) {
     points_[edge.number] = {edge.point(within(hit.at)), static_cast<std::int32_t>(hit.triangle)};
@@ -87,17 +88,18 @@ void keep_places(std::vector<SegmentHit>& hits) {
   hits.resize(left);
 }
 
-void EdgePointFinder::find_hits() {
-  constexpr std::size_t kCellsAtOnce = 1024;
-  const std::size_t cells = cells_.cells().size();
-  std::vector<std::vector<OpenEdge>> open((cells + kCellsAtOnce - 1) / kCellsAtOnce);
+// Of the edges of some cells; leaves those that are open.
+void EdgePointFinder::find_hits(std::size_t first, std::size_t end) {
+  std::vector<std::vector<OpenEdge>> open((end - first + kCellsPerTask - 1) / kCellsPerTask);
   parallel_for_each(open.size(), [&](std::size_t n) {
     std::vector<SegmentHit> hits;
     HitFinder finder(mesh_);
-    for (std::size_t cell = n * kCellsAtOnce; cell < std::min(cells, (n + 1) * kCellsAtOnce); ++cell) {
+    const std::size_t from = first + n * kCellsPerTask;
+    for (std::size_t cell = from; cell < std::min(end, from + kCellsPerTask); ++cell) {
       find_hits(static_cast<std::uint32_t>(cell), finder, hits, open[n]);
     }
   });
+  open_.clear();
   for (std::vector<OpenEdge>& some : open) std::ranges::move(some, std::back_inserter(open_));
 }
 
@@ -135,8 +137,9 @@ double behind(const std::vector<SegmentHit>& hits, std::size_t i) {
   return here + std::min(kStep, (next - here) / 4);
 }
 
-// Of all edges the first place, then of those that are left the next one: most end at their first.
+// Of all open edges the first place, then of those that are left the next one: most end at their first.
 void EdgePointFinder::decide() {
+  brackets_.clear();
   std::vector<const OpenEdge*> left;
   for (const OpenEdge& open : open_) {
     if (open.hits.empty()) {
@@ -210,6 +213,14 @@ bool EdgePointFinder::decides(const OpenEdge& open, std::size_t place, const Sid
   }
   if (is_last) brackets_.push_back({open.edge, here, 1.0});
   return is_last;
+}
+
+void EdgePointFinder::set_roots() {
+  parallel_for(brackets_.size(), kBracketsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (const Bracket& bracket : std::span(brackets_).subspan(begin, end - begin)) {
+      points_[bracket.edge.number] = {bracket.edge.point(within(bracket.root)), kHole};
+    }
+  });
 }
 
 }  // namespace

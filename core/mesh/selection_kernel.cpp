@@ -1,6 +1,7 @@
 #include "core/mesh/selection_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -24,11 +25,58 @@ Columns columns_of(const PlacedTriangles& triangles) {
   return {triangles.place[0], triangles.place[1], triangles.place[2], triangles.number};
 }
 
+using Numbers = hn::ScalableTag<std::uint32_t>;
+
+// Moves the lanes of a set to the front of vectors.
+#if HWY_MAX_BYTES > 32
+class ToFront {
+ public:
+  explicit ToFront(const hn::Mask<Numbers>& set) : set_(set) {}
+  [[nodiscard]] hn::Vec<Numbers> operator()(const hn::Vec<Numbers>& v) const { return hn::Compress(v, set_); }
+
+ private:
+  hn::Mask<Numbers> set_;
+};
+#else
+// For each set of eight lanes, these in their order, then the others.
+constexpr auto kLanesFirst = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> order{};
+  for (std::size_t set = 0; set < order.size(); ++set) {
+    std::size_t next = 0;
+    for (const std::size_t chosen : {1, 0}) {
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        if ((set >> lane & 1) == chosen) order[set][next++] = static_cast<std::uint8_t>(lane);
+      }
+    }
+  }
+  return order;
+}();
+
+// hn::Compress of Highway 1.0 copies a table of a kilobyte to the stack at each call.
+class ToFront {
+ public:
+  explicit ToFront(const hn::Mask<Numbers>& set) : order_(order_of(set)) {}
+  [[nodiscard]] hn::Vec<Numbers> operator()(const hn::Vec<Numbers>& v) const { return hn::TableLookupLanes(v, order_); }
+
+ private:
+  using Order = decltype(hn::IndicesFromVec(Numbers(), hn::Zero(Numbers())));
+
+  static Order order_of(const hn::Mask<Numbers>& set) {
+    std::array<std::uint8_t, 8> bits{};
+    hn::StoreMaskBits(Numbers(), set, bits.data());
+    const hn::Rebind<std::uint8_t, Numbers> bytes;
+    return hn::IndicesFromVec(Numbers(), hn::PromoteTo(Numbers(), hn::LoadU(bytes, kLanesFirst[bits[0]].data())));
+  }
+
+  Order order_;
+};
+#endif
+
 // Without branches, which nobody could predict. Whole vectors are stored where their triangles, or those before them,
 // were read: what is behind the last triangle stays as it is.
 std::size_t partition(const PlacedTriangles& triangles, const PlacedTriangles& room, std::size_t count,
                       std::size_t axis, std::uint64_t pivot) {
-  const hn::ScalableTag<std::uint32_t> d;
+  const Numbers d;
   const Columns columns = columns_of(triangles), apart = columns_of(room);
   const auto place = hn::Set(d, static_cast<std::uint32_t>(pivot >> 32));
   const auto number = hn::Set(d, static_cast<std::uint32_t>(pivot));
@@ -37,10 +85,11 @@ std::size_t partition(const PlacedTriangles& triangles, const PlacedTriangles& r
     const auto places = hn::LoadU(d, columns[axis] + n);
     const auto ties = hn::And(hn::Eq(places, place), hn::Lt(hn::LoadU(d, triangles.number + n), number));
     const auto is_below = hn::Or(hn::Lt(places, place), ties);
+    const ToFront below_first(is_below), others_first(hn::Not(is_below));
     for (std::size_t c = 0; c < 4; ++c) {
       const auto column = hn::LoadU(d, columns[c] + n);
-      hn::StoreU(hn::Compress(column, is_below), d, columns[c] + below);
-      hn::StoreU(hn::Compress(column, hn::Not(is_below)), d, apart[c] + others);
+      hn::StoreU(below_first(column), d, columns[c] + below);
+      hn::StoreU(others_first(column), d, apart[c] + others);
     }
     const std::size_t found = hn::CountTrue(d, is_below);
     below += found;

@@ -1,19 +1,14 @@
 #include "core/arrangement/arranged_patches.h"
 
-#include <algorithm>
-#include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/data/vec3.h"
+#include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 
 namespace raycone {
 namespace {
-
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t face) {
-  while (parents[face] != face) face = parents[face] = parents[parents[face]];
-  return face;
-}
 
 // How many more triangles have an edge forward than backward.
 std::int64_t forward(std::span<const FaceEdge> edge, const Arrangement& arrangement) {
@@ -31,23 +26,20 @@ double area_of(const Triangle& triangle, const Arrangement& arrangement) {
   return safe_norm(cross(arrangement.rounded(triangle[1]) - a, arrangement.rounded(triangle[2]) - a));
 }
 
-// `roots`: of each triangle the first one of its patch.
-ArrangedPatches numbered(const std::vector<std::uint32_t>& roots, const Arrangement& arrangement) {
-  ArrangedPatches patches{std::vector<std::uint32_t>(roots.size()), {}};
+// Patches with the numbers of their triangles, of which the first ones are in order.
+ArrangedPatches with_largest(std::vector<std::uint32_t> of_triangle, const Arrangement& arrangement) {
+  ArrangedPatches patches{std::move(of_triangle), {}};
   std::vector<double> largest_areas;
-  for (std::uint32_t triangle = 0; triangle < roots.size(); ++triangle) {
-    const std::uint32_t root = roots[triangle];
+  for (std::uint32_t triangle = 0; triangle < patches.of_triangle.size(); ++triangle) {
+    const std::uint32_t patch = patches.of_triangle[triangle];
     const double area = area_of(arrangement.triangles()[triangle], arrangement);
-    if (root == triangle) {
-      patches.of_triangle[triangle] = static_cast<std::uint32_t>(patches.largest.size());
+    if (patch == patches.largest.size()) {
       patches.largest.push_back(triangle);
       largest_areas.push_back(area);
-      continue;
+    } else if (area > largest_areas[patch]) {
+      patches.largest[patch] = triangle;
+      largest_areas[patch] = area;
     }
-    const std::uint32_t patch = patches.of_triangle[triangle] = patches.of_triangle[root];
-    if (area <= largest_areas[patch]) continue;
-    patches.largest[patch] = triangle;
-    largest_areas[patch] = area;
   }
   return patches;
 }
@@ -56,21 +48,15 @@ ArrangedPatches numbered(const std::vector<std::uint32_t>& roots, const Arrangem
 
 std::optional<ArrangedPatches> patches_of(const Arrangement& arrangement) {
   const std::vector<Triangle>& triangles = arrangement.triangles();
-  std::vector<std::uint32_t> parents(triangles.size());
-  std::iota(parents.begin(), parents.end(), 0);
+  DisjointSets<> patches(triangles.size());
   bool is_closed = true;
   const std::vector<FaceEdge> edges = face_edges(triangles);
   for_each_edge(edges, [&](std::span<const FaceEdge> edge) {
     is_closed = is_closed && forward(edge, arrangement) == 0;
-    if (edge.size() != 2) return;
-    const std::uint32_t a = root_of(parents, edge[0].face), b = root_of(parents, edge[1].face);
-    parents[std::max(a, b)] = std::min(a, b);
+    if (edge.size() == 2) patches.join(edge[0].face, edge[1].face);
   });
   if (!is_closed) return std::nullopt;
-  for (std::uint32_t triangle = 0; triangle < parents.size(); ++triangle) {
-    parents[triangle] = root_of(parents, triangle);
-  }
-  return numbered(parents, arrangement);
+  return with_largest(patches.indices(), arrangement);
 }
 
 }  // namespace raycone

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -17,6 +16,7 @@
 #include "core/data/single_precision.h"
 #include "core/data/vec3.h"
 #include "core/exact/predicates.h"
+#include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 
 namespace raycone {
@@ -69,13 +69,10 @@ bool add_pairs(const TriangleMesh& mesh, std::span<const FaceEdge> faces, std::v
 // Corners of faces, numbered 3 * face + place, in sets that are joined across edges: the fans around the vertices.
 class Fans {
  public:
-  Fans(const TriangleMesh& mesh, const std::vector<FacePair>& pairs)
-      : mesh_(mesh), parents_(3 * mesh.triangles.size()) {
-    std::iota(parents_.begin(), parents_.end(), 0);
+  Fans(const TriangleMesh& mesh, const std::vector<FacePair>& pairs) : mesh_(mesh), fans_(3 * mesh.triangles.size()) {
     for (const auto& [forward, backward] : pairs) {
       for (const std::uint32_t vertex : {forward.low, forward.high}) {
-        const std::size_t a = root(corner(forward.face, vertex)), b = root(corner(backward.face, vertex));
-        parents_[std::max(a, b)] = std::min(a, b);
+        fans_.join(corner(forward.face, vertex), corner(backward.face, vertex));
       }
     }
   }
@@ -85,14 +82,11 @@ class Fans {
     return std::size_t{3} * face + static_cast<std::size_t>(std::ranges::find(t, vertex) - t.begin());
   }
   // The first corner of the same fan.
-  [[nodiscard]] std::size_t root(std::size_t corner) {
-    while (parents_[corner] != corner) corner = parents_[corner] = parents_[parents_[corner]];
-    return corner;
-  }
+  [[nodiscard]] std::size_t first_of(std::size_t corner) { return fans_.lowest(corner); }
 
  private:
   const TriangleMesh& mesh_;
-  std::vector<std::size_t> parents_;
+  DisjointSets<std::size_t> fans_;
 };
 
 class Apart {
@@ -130,7 +124,7 @@ class Apart {
       const bool is_shared = (n > 0 && pairs[n - 1].forward.is_same_edge(edge)) ||
                              (n + 1 < pairs.size() && pairs[n + 1].forward.is_same_edge(edge));
       if (!is_shared) continue;
-      const auto fan = [&](std::uint32_t vertex) { return fans.root(fans.corner(edge.face, vertex)); };
+      const auto fan = [&](std::uint32_t vertex) { return fans.first_of(fans.corner(edge.face, vertex)); };
       const bool is_new = known.insert({edge.low, edge.high, fan(edge.low), fan(edge.high)}).second;
       if (!is_new && (twice.empty() || twice.back() != std::array{edge.low, edge.high})) {
         twice.push_back({edge.low, edge.high});
@@ -180,11 +174,11 @@ class Apart {
     std::vector<std::uint32_t> count(border_.vertices.size(), 0);
     for_each_corner([&](std::uint32_t face, std::uint32_t vertex) {
       const std::size_t corner = fans.corner(face, vertex);
-      if (fans.root(corner) == corner) ++count[vertex];
+      if (fans.first_of(corner) == corner) ++count[vertex];
     });
     std::map<std::uint32_t, std::map<std::size_t, std::vector<std::uint32_t>>> shared;  // vertices, their fans' faces
     for_each_corner([&](std::uint32_t face, std::uint32_t vertex) {
-      if (count[vertex] > 1) shared[vertex][fans.root(fans.corner(face, vertex))].push_back(face);
+      if (count[vertex] > 1) shared[vertex][fans.first_of(fans.corner(face, vertex))].push_back(face);
     });
     constexpr std::size_t kMostCones = 64, kMostCuts = 256;  // each looks at others, or at all faces
     std::vector<Move> moves;

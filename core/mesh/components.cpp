@@ -1,53 +1,10 @@
 #include "core/mesh/components.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/mesh/disjoint_sets.h"
 
 namespace raycone {
-namespace {
-
-// Sets of numbers from 0 on, each number with a lower one or none above it.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t numbers) : count_(numbers), parent_(numbers) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-
-  [[nodiscard]] std::size_t count() const { return count_; }
-
-  void prefetch(std::uint32_t n) const { __builtin_prefetch(&parent_[n], 1); }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    if (parent_[a] == parent_[b]) return;
-    const std::uint32_t i = root(a), j = root(b);
-    if (i == j) return;
-    parent_[std::max(i, j)] = std::min(i, j);
-    --count_;
-  }
-
-  // 0, 1 ... for the sets by their lowest numbers, per number for which is_used(number); kUnused for the others.
-  template <class IsUsed>
-  [[nodiscard]] std::vector<std::uint32_t> indices(const IsUsed& is_used) const {
-    std::vector<std::uint32_t> indices(parent_.size(), Components::kUnused);
-    std::uint32_t next = 0;
-    for (std::size_t n = 0; n < parent_.size(); ++n) {
-      if (is_used(n)) indices[n] = parent_[n] == n ? next++ : indices[parent_[n]];
-    }
-    return indices;
-  }
-
- private:
-  [[nodiscard]] std::uint32_t root(std::uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-
-  std::size_t count_;
-  std::vector<std::uint32_t> parent_;  // never higher than its number
-};
-
-}  // namespace
-
 // Each vertex gets the label of the lower one that it is linked to: labels are as many as vertices that have no lower
 // neighbour, few nearly always. The triangles then say which labels are one component. Some of them tell nearly all of
 // that: the others then find equal labels at their corners (M. Sutton, T. Ben-Nun, A. Barak 2018).
@@ -65,7 +22,7 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
   if (components.count < 2) return components;
   constexpr std::size_t kSome = 4;
   for (const std::size_t step : {kSome, std::size_t{1}}) {
-    DisjointSets sets(components.count);
+    DisjointSets<> sets(components.count);
     for (std::size_t i = 0; i < mesh.triangles.size() && sets.count() > 1; i += step) {
       const Triangle& t = mesh.triangles[i];
       const std::uint32_t a = label[t[0]], b = label[t[1]], c = label[t[2]];
@@ -75,7 +32,7 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
     }
     if (sets.count() == components.count) continue;
     components.count = static_cast<std::uint32_t>(sets.count());
-    const std::vector<std::uint32_t> numbers = sets.indices([](std::size_t) { return true; });
+    const std::vector<std::uint32_t> numbers = sets.indices();
     for (std::uint32_t& l : label) {
       if (l != Components::kUnused) l = numbers[l];
     }
@@ -85,7 +42,7 @@ Components components_of(const TriangleMesh& mesh, const VertexLinks& links) {
 }
 
 Components components_of(const TriangleMesh& mesh) {
-  DisjointSets sets(mesh.vertices.size());
+  DisjointSets<> sets(mesh.vertices.size());
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);  // bits would wait for each other
   constexpr std::size_t kAhead = 16;                        // triangles: their vertices may be anywhere in memory
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -98,7 +55,8 @@ Components components_of(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) used[v] = 1;
   }
   const auto unused = static_cast<std::size_t>(std::ranges::count(used, 0));
-  return {static_cast<std::uint32_t>(sets.count() - unused), sets.indices([&](std::size_t v) { return used[v] != 0; })};
+  const auto is_used = [&](std::size_t v) { return used[v] != 0; };
+  return {static_cast<std::uint32_t>(sets.count() - unused), sets.indices(is_used, Components::kUnused)};
 }
 
 }  // namespace raycone

@@ -6,6 +6,7 @@
 
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
+#include "core/mesh/disjoint_sets.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/strip_pulls.h"
 
@@ -76,31 +77,18 @@ void Sharpener::extend_strips(const std::vector<Triangle>& triangles, const std:
 // Vertices with a face in common are of one part. Returns the part of each vertex of strips.
 std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& triangles,
                                                  const std::vector<std::uint32_t>& at_strips) {
-  std::vector<std::uint32_t> root(strip_vertices_.size());
-  std::iota(root.begin(), root.end(), 0U);
-  const auto root_of = [&](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
+  DisjointSets<> sets(strip_vertices_.size());
   for (const std::uint32_t face : at_strips) {
     std::uint32_t known = kNoPlace;
     for (const std::uint32_t corner : triangles[face]) {
       if (place_[corner] == kNoPlace) continue;
-      const std::uint32_t here = root_of(place_[corner]);
-      if (known != kNoPlace) root[std::max(known, here)] = std::min(known, here);
-      known = known == kNoPlace ? here : std::min(known, here);
+      if (known != kNoPlace) sets.join(known, place_[corner]);
+      known = place_[corner];
     }
   }
-  std::vector<std::uint32_t> part(root.size());  // roots come first
-  for (std::uint32_t v = 0; v < root.size(); ++v) {
-    const std::uint32_t of = root_of(v);
-    if (of == v) {
-      part[v] = static_cast<std::uint32_t>(parts_.size());
-      parts_.emplace_back();
-    }
-    part[v] = part[of];
-    ++parts_[part[v]].vertices;
-  }
+  std::vector<std::uint32_t> part = sets.indices();
+  parts_.resize(sets.count());
+  for (const std::uint32_t of : part) ++parts_[of].vertices;
   return part;
 }
 

@@ -1,6 +1,7 @@
 #include "core/crossings/crossings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -55,14 +56,40 @@ void find_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, 
   while (result.on_end < end && side(result.on_end) == 0) ++result.on_end;
 }
 
-// A line meets a closed triangle in an interval, so the samples on it are consecutive.
-void find_samples_on(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row, TriangleCrossing& result) {
+// Where the row's line meets the edge from p to q, which their projections along x say is on one line: between these
+// numbers, if at all. The fraction is off by at most 4 u of itself, which is at most 1, and the rest rounds to 3 u of
+// |p.x| + |q.x|. u = 2^-53.
+Interval meeting(const Vec3& p, const Vec3& q, const Row& row) {
+  const Interval whole{std::min(p.x, q.x), std::max(p.x, q.x)};
+  const Vec3 step = q - p;
+  const int axis = std::abs(step.y) >= std::abs(step.z) ? 1 : 2;
+  if (step[axis] == 0.0) return row.y == p.y && row.z == p.z ? whole : kEmptyInterval;
+  const double at = axis == 1 ? row.y : row.z;
+  if (at < std::min(p[axis], q[axis]) || at > std::max(p[axis], q[axis])) return kEmptyInterval;
+  constexpr double kRounding = 0x1p-49, kUnderflow = 0x1p-1000;
+  const double x = p.x + (at - p[axis]) / step[axis] * step.x;
+  const Interval near = widened({x, x}, kRounding * (std::abs(p.x) + std::abs(q.x)) + kUnderflow);
+  return near.empty() ? whole : near;  // NaN: what overflows
+}
+
+// A line that crosses no inside of a triangle meets it in an interval from edge to edge, so the samples on it are
+// consecutive, and only those next to its ends are in doubt. Large flat triangles have many, fans of needles many
+// intervals. `edges`: what the sides of edges from a, b and c say.
+void find_samples_on(const std::array<Vec3, 3>& corners, const std::array<EdgeSide, 3>& edges, const Row& row,
+                     TriangleCrossing& result) {
+  const auto& [a, b, c] = corners;
+  Interval met = kEmptyInterval;
+  for (std::size_t n = 0; n < 3; ++n) {
+    if (edges[n].tie) met = hull(met, meeting(corners[n], corners[(n + 1) % 3], row));
+  }
+  if (met.empty()) return;
   const auto on = [&](std::size_t i) { return on_triangle(a, b, c, row.query(i)); };
-  std::size_t i = count_below(row.xs, row.samples_per_unit, extent_along_x(a, b, c).lower);
-  while (i < result.met && !on(i)) ++i;
-  result.on_begin = i;
-  while (i < result.met && on(i)) ++i;
-  result.on_end = i;
+  std::size_t begin = count_below(row.xs, row.samples_per_unit, met.lower);
+  std::size_t end = count_up_to(row.xs, row.samples_per_unit, met.upper);
+  while (begin < end && !on(begin)) ++begin;
+  while (begin < end && !on(end - 1)) --end;
+  result.on_begin = begin;
+  result.on_end = end;
 }
 
 }  // namespace
@@ -111,7 +138,7 @@ TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, 
     result.sigma = ab.sign;
     find_crossing(a, b, c, row, plane, result);
   } else {
-    find_samples_on(a, b, c, row, result);
+    find_samples_on({a, b, c}, {ab, bc, ca}, row, result);
   }
   return result;
 }

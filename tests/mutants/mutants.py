@@ -29,7 +29,12 @@ MUTANTS = [
     Mutant("plane_is_crossed", "crossing: orient3d = 0 is none", [
         ("core/crossings/crossings.cpp", "if (side(middle) == -result.sigma) {", "if (side(middle) != result.sigma) {")]),
     Mutant("on_surface_not_at_ties", "on the surface: also where the line meets an edge or vertex", [
-        ("core/crossings/crossings.cpp", "  } else {\n    find_samples_on(a, b, c, row, result);\n", "")]),
+        ("core/crossings/crossings.cpp", "  } else {\n    find_samples_on({a, b, c}, {ab, bc, ca}, row, result);\n", "")]),
+    Mutant("on_surface_without_rounding", "on the surface: places on edges are rounded, samples are not", [
+        ("core/crossings/crossings.cpp", "constexpr double kRounding = 0x1p-49,", "constexpr double kRounding = 0.0,")]),
+    Mutant("on_surface_not_of_level_edges", "on the surface: edges along the line meet it in all of their points", [
+        ("core/crossings/crossings.cpp", "if (step[axis] == 0.0) return row.y == p.y && row.z == p.z ? whole : kEmptyInterval;",
+         "if (step[axis] == 0.0) return kEmptyInterval;")]),
     Mutant("on_surface_cancels", "on the surface: duplicated faces that cancel are surface, too", [
         ("core/crossings/lattice_sums.cpp", "std::atomic_ref(flags[first + i]).store(1, std::memory_order_relaxed);",
          "flags[first + i] ^= 1;")]),

@@ -126,6 +126,27 @@ double largest_stored(FieldFormat format, const OutputDescription& description) 
   return description.is(Precision::kHalf) ? kLargestHalf : std::numeric_limits<float>::max();
 }
 
+// Below, numbers of `format` lose digits.
+double least_stored(FieldFormat format, const OutputDescription& description) {
+  const double largest = largest_stored(format, description);
+  if (std::isinf(largest)) return 0.0;
+  return largest == kLargestHalf ? kLeastHalf : std::numeric_limits<float>::min();
+}
+
+// Of distances, some of which are about a voxel.
+void check_voxel(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
+  const double least = least_stored(command.encoding.format, description);
+  const double voxel = report.lattice->grid.least_spacing();
+  if (!command.field.has_distance() || voxel >= least) return;
+  const int bits = least == kLeastHalf ? 16 : 32;
+  char message[160];
+  std::snprintf(message, sizeof message,
+                ": a voxel of %.2g is below %.2g, where distances of %d bits lose digits; expected --dtype f%d, or "
+                "another --scale",
+                voxel, least, bits, 2 * bits);
+  throw OutputError(report.output + message);
+}
+
 // Of distances. Those that nothing cuts off may be halves after all, as writers find.
 void check_range(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
   const double largest = largest_stored(command.encoding.format, description);
@@ -169,6 +190,7 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
   check_range(command, report, description);
+  check_voxel(command, report, description);
   check_memory(report.mesh, writer_memory(command, report), run.limits().memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, *report.lattice, description, run.limits());

@@ -6,6 +6,7 @@
 namespace raycone {
 
 inline constexpr double kLargestHalf = 65504.0;
+inline constexpr double kLeastHalf = 0x1p-14;  // with all digits
 
 // The half nearest to `value`, ties to even; beyond the largest one, that. Precondition: not NaN.
 [[nodiscard]] float nearest_half(double value);

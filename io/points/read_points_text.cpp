@@ -33,7 +33,10 @@ class TextPointReader : public PointReader {
     batch.clear();
     while (batch.size() < max && (batch.empty() || !lines_.would_wait())) {
       const auto line = lines_.next();
-      if (!line) break;
+      if (!line) {
+        check_header_alone();
+        break;
+      }
       const bool is_first = !std::exchange(started_, true);
       if (is_first && take_header(*line)) continue;
       batch.push_back(parse(*line));
@@ -50,7 +53,14 @@ class TextPointReader : public PointReader {
     if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
     if (!is_header(line, given_)) return false;
     header_ = line;
+    header_number_ = lines_.number();
     return true;
+  }
+
+  // A header without rows is a table of no points, unless it is hardly one.
+  void check_header_alone() const {
+    if (!header_ || delimiter_ || has_fields_for(*header_, columns_)) return;
+    lines_.fail(header_number_, "found '" + excerpt(*header_) + "', expected a point, or names of columns");
   }
 
   void find_layout(std::string_view line) {
@@ -92,7 +102,8 @@ class TextPointReader : public PointReader {
   Columns columns_{0, 1, 2};
   bool started_ = false;
   std::optional<std::string> header_;
-  std::optional<char> delimiter_;  // of the data, known from their first line on
+  std::uint64_t header_number_ = 0;  // of its line
+  std::optional<char> delimiter_;    // of the data, known from their first line on
 };
 
 }  // namespace

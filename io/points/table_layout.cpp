@@ -157,6 +157,11 @@ bool is_header(std::string_view line, const std::optional<Columns>& given) {
   return std::ranges::all_of(delimiters, [&](char d) { return are_names(fields_of(line, d), columns); });
 }
 
+bool has_fields_for(std::string_view header, const Columns& columns) {
+  const std::size_t last = *std::ranges::max_element(columns);
+  return std::ranges::any_of(delimiters_of(header), [&](char d) { return fields_of(header, d).size() > last; });
+}
+
 TableLayout layout_of(const std::optional<std::string>& header, std::string_view line,
                       const std::optional<Columns>& given) {
   for (const char delimiter : kDelimiters) {

@@ -28,6 +28,9 @@ struct TableLayout {
 // no point is taken for a header. `given`: the columns, whatever the header names; here and below.
 [[nodiscard]] bool is_header(std::string_view line, const std::optional<Columns>& given);
 
+// Whether a header has as many fields, by one of the characters that it may have between them.
+[[nodiscard]] bool has_fields_for(std::string_view header, const Columns& columns);
+
 // Of a table whose first line of data is `line`. The delimiter is the first of tab, semicolon and comma for which the
 // coordinates are numbers; where there is none of these characters, a blank. Never guessed from the locale: a decimal
 // comma is an error. A header that names coordinates must have as many fields as the line: else they may be those of

@@ -40,10 +40,15 @@ class TableLines {
     return false;
   }
 
-  // Throws InputError about the line that was returned last.
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(input_->name() + ":" + std::to_string(number_) + ": " + what);
+  // Of the line that was returned last, from 1 on.
+  [[nodiscard]] std::uint64_t number() const { return number_; }
+
+  // Throws InputError about a line.
+  [[noreturn]] void fail(std::uint64_t line, const std::string& what) const {
+    throw InputError(input_->name() + ":" + std::to_string(line) + ": " + what);
   }
+  // The one that was returned last.
+  [[noreturn]] void fail(const std::string& what) const { fail(number_, what); }
 
  private:
   // No table has longer lines; a file without line ends is not a table.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "io/files/file_error.h"
+#include "io/files/half.h"
 
 namespace raycone::vdb {
 namespace {
@@ -49,12 +50,11 @@ void check_voxels(const PlacedLattice& lattice, const std::string& name) {
   }
 }
 
-// Halves range from 2^-14, below which they lose digits, to 65504.
 void check_half(const OutputDescription& description, const Lattice& lattice, const std::string& name) {
   if (!description.is(Precision::kHalf)) return;
   for (const FieldDescription& field : description.fields) {
     if (field.kind != FieldKind::kDistance) continue;
-    if (lattice.spacing.x >= 0x1p-14 && field.background <= 65504) continue;
+    if (lattice.spacing.x >= kLeastHalf && field.background <= kLargestHalf) continue;
     char message[160];
     std::snprintf(
         message, sizeof message,

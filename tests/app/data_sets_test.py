@@ -94,6 +94,12 @@ class Lattices(DataSets):
         self.works("lattice %s -o a.npy --field sdf --scale 1e40 --resolution 5 --double" % CUBE)
         self.assertTrue(numpy.isfinite(numpy.load("a.npy")).all())
         self.refused("points %s --sample uniform=5 -o a.npz --field sdf --dtype f32 --scale 1e40" % CUBE, 4, "32 bits")
+        for dtype, scale, next_dtype in (("f16", "1e-3", "f32"), ("f32", "1e-37", "f64")):
+            words = "lattice %s -o tiny_%s.npy --field sdf --resolution 33 --scale %s --dtype " % (CUBE, dtype, scale)
+            self.refused(words + dtype, 3, "lose digits; expected --dtype " + next_dtype)
+            self.assertFalse(os.path.exists("tiny_%s.npy" % dtype))
+            self.works(words + next_dtype)
+            self.works(words.replace("sdf", "winding") + dtype)
 
     def test_what_is_inside_has_a_negative_distance(self):
         """Also where 16 or 32 bits round it to 0."""

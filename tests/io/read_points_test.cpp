@@ -118,6 +118,20 @@ TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
   }
 }
 
+// A title is no table of no points.
+TEST_F(ReadPoints, HeadersWithoutRowsNameColumns) {
+  EXPECT_EQ(error_of("hello\n"), "pts:1: found 'hello', expected a point, or names of columns");
+  EXPECT_EQ(error_of("# none\n\n\"two words\"\n\n# end\n"),
+            "pts:3: found '\"two words\"', expected a point, or names of columns");
+  EXPECT_EQ(read("hello\n1 2 3\n-4 .5 6e-3\n"), kTwo);
+  for (const char* const table : {"x,y,z\n", "a b c\n", "note;x;y;z", "one\ttwo\tthree\tfour\n"}) {
+    EXPECT_TRUE(read(table).empty()) << table;
+  }
+  ReadPointsOptions options;
+  options.columns = {2, 3, 4};
+  EXPECT_EQ(error_of("x,y,z\n", options), "pts:1: found 'x,y,z', expected a point, or names of columns");
+}
+
 TEST_F(ReadPoints, DecimalCommasBelowAHeaderAreTold) {
   EXPECT_EQ(error_of("x;y;z\n1,5;2,5;3,5\n"), "pts:2: column 1 is '1,5', expected a finite number");
   EXPECT_EQ(error_of("x\ty\tz\n1\t2,5\t3\n"), "pts:2: column 2 is '2,5', expected a finite number");

@@ -1,17 +1,20 @@
 // VTI, VTK's XML files of regular grids, as ParaView reads them: a text head that says where each array begins, then
 // the arrays in binary ("appended raw"), each behind its size in bytes.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "io/fields/array_elements.h"
 #include "io/fields/format_writers.h"
-#include "io/fields/narrowing.h"
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/seekable_output.h"
@@ -46,28 +49,11 @@ std::string direction_of(const PlacedLattice& lattice) {
   return " Direction=\"" + text + '"';
 }
 
-struct ElementType {
-  const char* name;
-  std::size_t size;  // of a component
-};
-
-ElementType element_type(FieldKind kind, bool double_precision) {
-  switch (kind) {
-    case FieldKind::kFlag:
-      return {"UInt8", 1};
-    case FieldKind::kCount:
-      return {"Int64", 8};
-    case FieldKind::kLabel:
-      return {"Int32", 4};
-    case FieldKind::kBound:
-      return {"Float64", 8};
-    case FieldKind::kReal:
-    case FieldKind::kDensity:
-    case FieldKind::kVector:
-    case FieldKind::kDistance:
-      break;
-  }
-  return double_precision ? ElementType{"Float64", 8} : ElementType{"Float32", 4};
+// VTK's name of a type that NumPy calls so.
+std::string type_name(std::string_view descriptor) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames{
+      {{"|b1", "UInt8"}, {"<i4", "Int32"}, {"<i8", "Int64"}, {"<f4", "Float32"}, {"<f8", "Float64"}}};
+  return std::string(std::ranges::find(kNames, descriptor, [](const auto& name) { return name.first; })->second);
 }
 
 void check_indices(const Lattice& lattice, const std::string& name) {
@@ -88,11 +74,12 @@ class VtiWriter final : public LatticeWriter {
     std::string declarations;
     std::uint64_t offset = 0;  // behind the head
     for (const FieldDescription& field : description.fields) {
-      const ElementType type = element_type(field.kind, description.is(Precision::kDouble));
-      declarations += "        <DataArray type=\"" + std::string(type.name) + "\" Name=\"" + field.name + '"' +
-                      (field.components() > 1 ? " NumberOfComponents=\"3\"" : "") + " format=\"appended\" offset=\"" +
-                      std::to_string(offset) + "\"/>\n";
-      arrays_.push_back({type.size, offset, samples * type.size * field.components(), Narrowing(field)});
+      auto elements = make_array_elements(field, description.precision.value_or(Precision::kSingle), output.name());
+      declarations += "        <DataArray type=\"" + type_name(elements->descriptor()) + "\" Name=\"" + field.name +
+                      '"' + (field.components() > 1 ? " NumberOfComponents=\"3\"" : "") +
+                      " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+      const ArraySize bytes = samples * elements->size();
+      arrays_.push_back({std::move(elements), offset, bytes});
       offset += sizeof(ArraySize) + arrays_.back().bytes;
     }
     const std::string extent = extent_of(lattice.grid);
@@ -118,7 +105,7 @@ class VtiWriter final : public LatticeWriter {
 
   void write(const LatticeBlock&, std::span<const FieldValues> fields) override {
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      std::visit([&](const auto& numbers) { append_numbers(arrays_[f], numbers); }, fields[f]);
+      std::visit([&](const auto& numbers) { append_in_pieces(arrays_[f], numbers); }, fields[f]);
     }
   }
 
@@ -130,10 +117,9 @@ class VtiWriter final : public LatticeWriter {
 
  private:
   struct Array {
-    std::size_t element_size;
+    std::unique_ptr<ArrayElements> elements;
     std::uint64_t next;  // where in the file its next bytes go
     ArraySize bytes;
-    Narrowing narrowing;
   };
 
   void append(Array& array, const void* data, std::size_t size) {
@@ -141,36 +127,11 @@ class VtiWriter final : public LatticeWriter {
     array.next += size;
   }
 
-  void append_numbers(Array& array, std::span<const std::int64_t> numbers) {
-    append(array, numbers.data(), numbers.size_bytes());
-  }
-  void append_numbers(Array& array, std::span<const std::int32_t> numbers) {
-    append(array, numbers.data(), numbers.size_bytes());
-  }
-  void append_numbers(Array& array, std::span<const std::uint8_t> numbers) {
-    append(array, numbers.data(), numbers.size_bytes());
-  }
-  void append_numbers(Array& array, std::span<const Vec3> vectors) {
-    static_assert(sizeof(Vec3) == 3 * sizeof(double) && std::is_standard_layout_v<Vec3>);
-    append_numbers(array, std::span<const double>(vectors.empty() ? nullptr : &vectors.front().x, 3 * vectors.size()));
-  }
-  void append_numbers(Array& array, std::span<const double> numbers) {
-    if (array.element_size == sizeof(double)) return append_as<double>(array, numbers);
-    append_as<float>(array, numbers);
-  }
-
-  // -0 as 0.
-  template <typename Element>
-  void append_as(Array& array, std::span<const double> numbers) {
-    std::vector<Element> elements;
+  void append_in_pieces(Array& array, const auto& numbers) {
     for (std::size_t begin = 0; begin < numbers.size(); begin += kPiece) {
-      elements.clear();
-      for (const double number : numbers.subspan(begin, std::min(kPiece, numbers.size() - begin))) {
-        const bool is_float = std::is_same_v<Element, float>;
-        elements.push_back((is_float ? static_cast<Element>(array.narrowing(number)) : static_cast<Element>(number)) +
-                           Element{0});
-      }
-      append(array, elements.data(), elements.size() * sizeof(Element));
+      const auto piece = numbers.subspan(begin, std::min(kPiece, numbers.size() - begin));
+      const std::span<const char> bytes = array.elements->in_order(piece);
+      append(array, bytes.data(), bytes.size());
     }
   }
 

@@ -38,6 +38,7 @@ class RootSearch {
     part_ = round < kRoundsAtFirst ? part_by(before) : 0.5;
     const double part = last_.value / (last_.value - across_.value);  // NaN where both are 0
     bracket_->root = last_.at + (part >= 0.0 && part <= 1.0 ? part : 0.5) * (across_.at - last_.at);
+    bracket_->at_jump = std::abs(last_.value - across_.value) > 0.5;
     meet(before);
   }
 

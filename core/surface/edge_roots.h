@@ -52,8 +52,9 @@ class RuleAlong {
 // Two places of an edge, between which it leaves the set.
 struct Bracket {
   MixedEdge edge;
-  double low, high;   // inside, outside
-  double root = 0.0;  // between them, as find_roots() leaves it
+  double low, high;      // inside, outside
+  double root = 0.0;     // between them, as find_roots() leaves it
+  bool at_jump = false;  // values do not pass 0 there, but jump past it, by half a turn or more
 };
 
 // Answers for many points at once: a value for each, that does not depend on the others.

@@ -27,6 +27,9 @@ using Part = FillFaces::Part;
 // others where they are farther than kFlatIfShort; but none that are thinner than that, as the faces of cracks are, or
 // whose sides are all shorter than kFinest.
 constexpr double kShort = 1.0, kFlat = 0x1p-6, kFlatIfShort = 0.125, kFinest = 0.25;
+// How far behind a face of the mesh a vertex is that would be on it: faces in one plane but for roundings could not be
+// taken apart. Much less than kFlat, so that it is no reason to divide a face.
+constexpr double kBehind = 0x1p-10;
 // How far behind a node a vertex is where there is no threshold.
 constexpr double kBeyond = 0.5;
 // A node this near is on the fill. If nodes are too far from it, it is not why they are on the wrong side; others of
@@ -111,7 +114,7 @@ class ThresholdFit {
       if (bent.empty()) return true;
       std::vector<Line> lines;
       for (const Part& part : bent) lines.push_back(across(part));
-      divide(bent, nearest_roots(lines, kFlat * voxel_, along_));
+      divide(bent, nearest_roots(lines, kFlat * voxel_, kBehind * voxel_, along_));
       if (fill_.size() > limits_.most_faces) return false;
     }
     return false;
@@ -254,7 +257,7 @@ class ThresholdFit {
         farther.push_back(point + (is_inside ? lift : -lift) * across(near->part).direction);
       }
     }
-    std::vector<std::optional<Vec3>> beyond = nearest_roots(lines, kFlat * voxel_, along_);
+    std::vector<std::optional<Vec3>> beyond = nearest_roots(lines, kFlat * voxel_, kBehind * voxel_, along_);
     for (std::size_t n = 0; n < lines.size(); ++n) beyond[n] = beyond[n].value_or(farther[n]);
     divide(parts, beyond);
     return add_islands(far_off) || !parts.empty();
@@ -289,7 +292,7 @@ class ThresholdFit {
         }
       }
     }
-    const std::vector<std::optional<Vec3>> roots = nearest_roots(lines, kFlat * voxel_, along_);
+    const std::vector<std::optional<Vec3>> roots = nearest_roots(lines, kFlat * voxel_, kBehind * voxel_, along_);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       std::array<Vec3, 6> tips;
       for (std::size_t tip = 0; tip < tips.size(); ++tip) {

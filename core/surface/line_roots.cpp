@@ -33,6 +33,13 @@ std::size_t nearest_change(std::span<const double> places, std::span<const doubl
   return best;
 }
 
+// At a jump `behind` the root, or half of the way to the inside end if that is less.
+double place_of(const Bracket& bracket, double behind) {
+  if (!bracket.at_jump) return bracket.root;
+  const double length = norm(bracket.edge.outside - bracket.edge.inside);
+  return bracket.root - std::min(behind / length, bracket.root / 2);
+}
+
 }  // namespace
 
 Line line_through(const Vec3& point, const Vec3& direction, double reach) {
@@ -40,7 +47,8 @@ Line line_through(const Vec3& point, const Vec3& direction, double reach) {
   return {point, size > 0.0 ? (1.0 / size) * direction : Vec3{}, reach};
 }
 
-std::vector<std::optional<Vec3>> nearest_roots(const std::vector<Line>& lines, double first, const RuleAlong& along) {
+std::vector<std::optional<Vec3>> nearest_roots(const std::vector<Line>& lines, double first, double behind,
+                                               const RuleAlong& along) {
   std::vector<std::vector<double>> places;
   std::vector<Vec3> points;
   for (const Line& line : lines) {
@@ -60,7 +68,8 @@ std::vector<std::optional<Vec3>> nearest_roots(const std::vector<Line>& lines, d
   }
   find_roots(brackets, [&](const std::vector<Vec3>& there) { return along.near(there); });
   std::vector<std::optional<Vec3>> roots(lines.size());
-  for (std::size_t n = 0; n < brackets.size(); ++n) roots[of_line[n]] = brackets[n].edge.point(brackets[n].root);
+  for (std::size_t n = 0; n < brackets.size(); ++n)
+    roots[of_line[n]] = brackets[n].edge.point(place_of(brackets[n], behind));
   return roots;
 }
 

@@ -202,6 +202,26 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
   }
 }
 
+// A sphere with a hole whose border goes up and down. Its caps are in front of faces beside it.
+TriangleMesh bitten_sphere(int rings, double height, double depth, double times, double at) {
+  TriangleMesh mesh = weld(test::sphere(rings), {});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const Vec3 middle = (1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]);
+    return middle.z >= height + depth * std::sin(times * std::atan2(middle.y, middle.x) + at);
+  });
+  return used_part(mesh.vertices, std::move(mesh.triangles));
+}
+
+// The threshold is at the mesh's own faces where caps are in front of these.
+TEST(MeshAsSurface, ClosesHolesWhoseCapsAreInFrontOfFaces) {
+  for (const TriangleMesh& mesh : {bitten_sphere(6, 0.3, 0.46, 2, 5.5), bitten_sphere(13, -0.04, 0.1, 2, 4.4),
+                                   bitten_sphere(12, 0.51, 0.27, 1, 1.7), bitten_sphere(7, 0.43, 0.22, 1, 3.6)}) {
+    const std::optional<FinishedSurface> made = kept(test::moved(turned(mesh), {1.3, 1.4, 1.0}, {0, 0, 0}), 40);
+    ASSERT_TRUE(made);
+    EXPECT_GT(std::ranges::count(made->surface.sources, kHole), 0);
+  }
+}
+
 // Boxes of which an odd number are around what is inside: they touch along edges next to samples on their sides, and at
 // either end of an edge the same part must move.
 TEST(MeshAsSurface, HasSamplesBesidePartsThatTouch) {

@@ -648,7 +648,9 @@ MUTANTS = [
     Mutant("caps_as_they_are", "faces of caps are divided until they are along the threshold", [
         ("core/surface/hole_fill.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
     Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
-        ("core/surface/line_roots.cpp", ".point(brackets[n].root)", ".point(1.001 * brackets[n].root)")]),
+        ("core/surface/line_roots.cpp", "if (!bracket.at_jump) return bracket.root;", "if (!bracket.at_jump) return 1.001 * bracket.root;")]),
+    Mutant("fills_on_faces", "no vertex of a fill is on a face of the mesh", [
+        ("core/surface/line_roots.cpp", "std::min(behind / length,", "std::min(0.0 * behind / length,")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
         ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
     Mutant("other_evaluators_in_scale", "scaled meshes have evaluators with the same accuracies", [

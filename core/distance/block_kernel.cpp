@@ -175,9 +175,9 @@ HWY_INLINE std::size_t find_candidates(std::size_t count, std::size_t first, dou
   for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
     const LaneMask wanted = hn::Le(hn::LoadU(d, &scratch.bounds[n]), hn::Set(d, most));
     if (hn::AllFalse(d, wanted)) continue;
-    const ToFront front(wanted);
-    front.store(integers, hn::Iota(integers, static_cast<std::int64_t>(n)), &scratch.candidates[found]);
-    found += front.count();
+    const auto numbers = hn::Iota(integers, static_cast<std::int64_t>(n));
+    hn::StoreU(ToFront<Doubles>(wanted)(integers, numbers), integers, &scratch.candidates[found]);
+    found += hn::CountTrue(d, wanted);
   }
   return found;
 }

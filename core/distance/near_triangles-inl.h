@@ -18,13 +18,15 @@
 #include <vector>
 
 #include "core/distance/block_kernel.h"
-#include "core/distance/to_front-inl.h"
 #include "core/distance/triangle_lanes-inl.h"
+#include "core/machine/to_front-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
+
+using Places = hn::RebindToSigned<Doubles>;
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
@@ -108,19 +110,20 @@ class BearingFinder {
 HWY_INLINE void append(NearTriangles& list, const BoxLanes& boxes, const Bearings& bearings, hn::Vec<Places> places,
                        LaneMask wanted) {
   const std::size_t at = list.count;
-  const ToFront front(wanted);
-  front.store(d, bearings.distances, &list.distances[at]);
-  front.store(d, bearings.away.x, &list.away[0][at]);
-  front.store(d, bearings.away.y, &list.away[1][at]);
-  front.store(d, bearings.away.z, &list.away[2][at]);
-  front.store(d, boxes.lower.x, &list.lower[0][at]);
-  front.store(d, boxes.lower.y, &list.lower[1][at]);
-  front.store(d, boxes.lower.z, &list.lower[2][at]);
-  front.store(d, boxes.upper.x, &list.upper[0][at]);
-  front.store(d, boxes.upper.y, &list.upper[1][at]);
-  front.store(d, boxes.upper.z, &list.upper[2][at]);
-  front.store(Places(), places, &list.places[at]);
-  list.count += front.count();
+  const ToFront<Doubles> front(wanted);
+  const auto store = [&](auto tag, auto lanes, auto* to) { hn::StoreU(front(tag, lanes), tag, to); };  // whole vectors
+  store(d, bearings.distances, &list.distances[at]);
+  store(d, bearings.away.x, &list.away[0][at]);
+  store(d, bearings.away.y, &list.away[1][at]);
+  store(d, bearings.away.z, &list.away[2][at]);
+  store(d, boxes.lower.x, &list.lower[0][at]);
+  store(d, boxes.lower.y, &list.lower[1][at]);
+  store(d, boxes.lower.z, &list.lower[2][at]);
+  store(d, boxes.upper.x, &list.upper[0][at]);
+  store(d, boxes.upper.y, &list.upper[1][at]);
+  store(d, boxes.upper.z, &list.upper[2][at]);
+  store(Places(), places, &list.places[at]);
+  list.count += hn::CountTrue(d, wanted);
 }
 
 // The samples of a box from its middle.

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/machine/simd_kernel.h"
+#include "core/machine/to_front-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -27,51 +28,6 @@ Columns columns_of(const PlacedTriangles& triangles) {
 
 using Numbers = hn::ScalableTag<std::uint32_t>;
 
-// Moves the lanes of a set to the front of vectors.
-#if HWY_MAX_BYTES > 32
-class ToFront {
- public:
-  explicit ToFront(const hn::Mask<Numbers>& set) : set_(set) {}
-  [[nodiscard]] hn::Vec<Numbers> operator()(const hn::Vec<Numbers>& v) const { return hn::Compress(v, set_); }
-
- private:
-  hn::Mask<Numbers> set_;
-};
-#else
-// For each set of eight lanes, these in their order, then the others.
-constexpr auto kLanesFirst = [] {
-  std::array<std::array<std::uint8_t, 8>, 256> order{};
-  for (std::size_t set = 0; set < order.size(); ++set) {
-    std::size_t next = 0;
-    for (const std::size_t chosen : {1, 0}) {
-      for (std::size_t lane = 0; lane < 8; ++lane) {
-        if ((set >> lane & 1) == chosen) order[set][next++] = static_cast<std::uint8_t>(lane);
-      }
-    }
-  }
-  return order;
-}();
-
-// hn::Compress of Highway 1.0 copies a table of a kilobyte to the stack at each call.
-class ToFront {
- public:
-  explicit ToFront(const hn::Mask<Numbers>& set) : order_(order_of(set)) {}
-  [[nodiscard]] hn::Vec<Numbers> operator()(const hn::Vec<Numbers>& v) const { return hn::TableLookupLanes(v, order_); }
-
- private:
-  using Order = decltype(hn::IndicesFromVec(Numbers(), hn::Zero(Numbers())));
-
-  static Order order_of(const hn::Mask<Numbers>& set) {
-    std::array<std::uint8_t, 8> bits{};
-    hn::StoreMaskBits(Numbers(), set, bits.data());
-    const hn::Rebind<std::uint8_t, Numbers> bytes;
-    return hn::IndicesFromVec(Numbers(), hn::PromoteTo(Numbers(), hn::LoadU(bytes, kLanesFirst[bits[0]].data())));
-  }
-
-  Order order_;
-};
-#endif
-
 // Without branches, which nobody could predict. Whole vectors are stored where their triangles, or those before them,
 // were read: what is behind the last triangle stays as it is.
 std::size_t partition(const PlacedTriangles& triangles, const PlacedTriangles& room, std::size_t count,
@@ -85,11 +41,11 @@ std::size_t partition(const PlacedTriangles& triangles, const PlacedTriangles& r
     const auto places = hn::LoadU(d, columns[axis] + n);
     const auto ties = hn::And(hn::Eq(places, place), hn::Lt(hn::LoadU(d, triangles.number + n), number));
     const auto is_below = hn::Or(hn::Lt(places, place), ties);
-    const ToFront below_first(is_below), others_first(hn::Not(is_below));
+    const ToFront<Numbers> below_first(is_below), others_first(hn::Not(is_below));
     for (std::size_t c = 0; c < 4; ++c) {
       const auto column = hn::LoadU(d, columns[c] + n);
-      hn::StoreU(below_first(column), d, columns[c] + below);
-      hn::StoreU(others_first(column), d, apart[c] + others);
+      hn::StoreU(below_first(d, column), d, columns[c] + below);
+      hn::StoreU(others_first(d, column), d, apart[c] + others);
     }
     const std::size_t found = hn::CountTrue(d, is_below);
     below += found;

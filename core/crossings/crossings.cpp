@@ -66,6 +66,7 @@ Interval meeting(const Vec3& p, const Vec3& q, const Row& row) {
   if (step[axis] == 0.0) return row.y == p.y && row.z == p.z ? whole : kEmptyInterval;
   const double at = axis == 1 ? row.y : row.z;
   if (at < std::min(p[axis], q[axis]) || at > std::max(p[axis], q[axis])) return kEmptyInterval;
+  if (std::isinf(step[axis])) return whole;
   constexpr double kRounding = 0x1p-49, kUnderflow = 0x1p-1000;
   const double x = p.x + (at - p[axis]) / step[axis] * step.x;
   const Interval near = widened({x, x}, kRounding * (std::abs(p.x) + std::abs(q.x)) + kUnderflow);

@@ -5,6 +5,7 @@
 #include "core/mesh/disjoint_sets.h"
 
 namespace raycone {
+
 // Each vertex gets the label of the lower one that it is linked to: labels are as many as vertices that have no lower
 // neighbour, few nearly always. The triangles then say which labels are one component. Some of them tell nearly all of
 // that: the others then find equal labels at their corners (M. Sutton, T. Ben-Nun, A. Barak 2018).

@@ -90,6 +90,10 @@ TEST(TriangleCrossing, FindsTheSamplesOnTrianglesWithoutDifferences) {
   expect_samples_on({Vec3{-kFar, -1, 0}, Vec3{kFar, -1, 0}, Vec3{kFar, 1, 0}}, {-1.0, 0.0, xs, 0.0}, found);
   expect_samples_on({Vec3{-kFar, -kFar, 0}, Vec3{kFar, kFar, 0}, Vec3{kFar, 0, 0}}, {0.0, 0.0, xs, 0.0}, found);
   EXPECT_EQ(found.several, 4);
+  const std::vector<double> near{-2.0, -1.0, 0.0, 0.25, 0.5, 1.0, 2.0};
+  expect_samples_on({Vec3{-1, -kFar, 0}, Vec3{1, kFar, 0}, Vec3{1, -kFar, 0}}, {0.0, 0.0, near, 0.0}, found);
+  expect_samples_on({Vec3{1, kFar, 0}, Vec3{-1, -kFar, 0}, Vec3{1, -kFar, 0}}, {0.0, 0.0, near, 0.0}, found);
+  EXPECT_EQ(found.several, 8);
 }
 
 }  // namespace

@@ -133,8 +133,9 @@ double least_stored(FieldFormat format, const OutputDescription& description) {
   return largest == kLargestHalf ? kLeastHalf : std::numeric_limits<float>::min();
 }
 
-// Of distances, some of which are about a voxel.
+// Of distances, some of which are about a voxel. VDB has its own limits (io/vdb/check_lattice.h).
 void check_voxel(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
+  if (command.encoding.format == FieldFormat::kVdb) return;
   const double least = least_stored(command.encoding.format, description);
   const double voxel = report.lattice->grid.least_spacing();
   if (!command.field.has_distance() || voxel >= least) return;

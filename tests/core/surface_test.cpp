@@ -39,6 +39,7 @@
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/vertex_places.h"
+#include "tests/support/exact_intersections.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -130,15 +131,39 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   return faults;
 }
 
+// Of the eight nodes of a cell, all others are outside.
+NodeSet nodes_of_label(unsigned label) {
+  return nodes_where(lattice_of(4), [&](auto i, auto j, auto k) {
+    return (label >> static_cast<unsigned>((i - 1) + 2 * (j - 1) + 4 * (k - 1)) & 1U) != 0;
+  });
+}
+
 TEST(Surface, IsRightForEachLabellingOfACell) {
   Random random(1);
   for (unsigned label = 1; label < 256; ++label) {
-    const NodeSet nodes = nodes_where(lattice_of(4), [&](auto i, auto j, auto k) {
-      return (label >> static_cast<unsigned>((i - 1) + 2 * (j - 1) + 4 * (k - 1)) & 1U) != 0;
-    });
     for (const bool with_face_points : {false, true}) {
-      const SurfaceFaults faults = faults_of_random_surface(nodes, random, with_face_points);
+      const SurfaceFaults faults = faults_of_random_surface(nodes_of_label(label), random, with_face_points);
       ASSERT_TRUE(faults.none()) << label << ": " << described(faults);
+    }
+  }
+}
+
+// By the definition, for all pairs of triangles in rational numbers, which takes its time.
+TEST(Surface, IsFreeOfIntersectionsByTheDefinition) {
+  const DefaultFloatingPoint guard;
+  Random random(3);
+  for (unsigned label = 1; label < 256; label += 17) {
+    const NodeSet nodes = nodes_of_label(label);
+    const SurfaceCells cells(nodes);
+    for (const bool with_face_points : {false, true}) {
+      const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
+      const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
+      TriangleMesh mesh = contour(cells, points, face_points, {}, 0.0, kMargins).surface.mesh;
+      ASSERT_TRUE(test::exact_self_intersections(mesh).empty()) << label;
+      if (label > 1) continue;
+      const Vec3 across = mesh.vertices[mesh.triangles.back()[0]];
+      mesh.vertices[0] = mesh.vertices[0] + 3.0 * (across - mesh.vertices[0]);  // through other faces
+      EXPECT_FALSE(test::exact_self_intersections(mesh).empty());
     }
   }
 }

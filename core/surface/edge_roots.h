@@ -54,7 +54,7 @@ struct Bracket {
   MixedEdge edge;
   double low, high;      // inside, outside
   double root = 0.0;     // between them, as find_roots() leaves it
-  bool at_jump = false;  // values do not pass 0 there, but jump past it, by half a turn or more
+  bool at_jump = false;  // values do not pass 0 there, but jump past it, as at triangles
 };
 
 // Answers for many points at once: a value for each, that does not depend on the others.

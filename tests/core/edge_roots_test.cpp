@@ -99,6 +99,28 @@ TEST(EdgeRoots, AreFoundOfAnyFunction) {
   EXPECT_LT(values_for([&](double x) { return from(x) >= 0 ? 0.0 : -0.1; }, root), 80U);
 }
 
+// Not where one end is far from 0, and values reach it smoothly from the other one.
+TEST(EdgeRoots, TellJumps) {
+  const double root = 0.3141592653589793;
+  const auto is_jump = [&](const auto& f) {
+    std::vector<Bracket> brackets{{{{0, 0, 0}, {1, 0, 0}, 0}, 0.0, 1.0}};
+    find_roots(brackets, [&](const std::vector<Vec3>& places) {
+      std::vector<double> values;
+      for (const Vec3& p : places) values.push_back(f(p.x));
+      return values;
+    });
+    return brackets[0].at_jump;
+  };
+  for (const double jump : {1.0, 0.4, 0.01}) {
+    EXPECT_TRUE(is_jump([&](double x) { return (root - x) / 10 + (x < root ? 0.5 : -0.5) * jump; })) << jump;
+  }
+  for (const double scale : {0.1, 1.0, 100.0}) {
+    EXPECT_FALSE(is_jump([&](double x) { return scale * (root - x); })) << scale;
+    EXPECT_FALSE(is_jump([&](double x) { return std::atan(scale * (root - x)); })) << scale;
+    EXPECT_FALSE(is_jump([&](double x) { return std::expm1(scale * (root - x)); })) << scale;
+  }
+}
+
 // At triangles values may be those of their other side.
 TEST(EdgeRoots, MayHaveWrongValuesAtTheEnds) {
   const double root = 0.7;

@@ -16,11 +16,11 @@ namespace {
 constexpr double kFirst = 0x1p-6, kBehind = 0x1p-10;
 
 // Of the unit cube without its top, from a point along a direction.
-std::optional<Vec3> root_from(const Vec3& point, const Vec3& direction, double reach) {
+std::optional<Vec3> root_from(const Vec3& point, const Vec3& direction, double reach, const Rule& rule = {}) {
   const DefaultFloatingPoint guard;
   const TriangleMesh mesh = test::open_box();
   const WindingNumberEvaluator evaluator(mesh);
-  return nearest_roots({line_through(point, direction, reach)}, kFirst, kBehind, RuleAlong(evaluator, Rule{})).front();
+  return nearest_roots({line_through(point, direction, reach)}, kFirst, kBehind, RuleAlong(evaluator, rule)).front();
 }
 
 TEST(LineRoots, AreWhereTheWindingNumberIsTheThreshold) {
@@ -44,6 +44,15 @@ TEST(LineRoots, AreBehindTheFacesThatTheyAreAt) {
   const std::optional<Vec3> root = root_from({-0.1, 0.3, 0.2}, {3.0, 4.0, 0.0}, 0.4);
   ASSERT_TRUE(root);
   EXPECT_NEAR(root->x, 0.6 * kBehind, 1e-10);
+}
+
+// w is 0.7 inside, so -0.3 outside, and both are 0.2 from a threshold.
+TEST(LineRoots, AreBehindFacesByRulesThatFoldToo) {
+  for (const RuleKind kind : {RuleKind::kNonzero, RuleKind::kOdd, RuleKind::kAbs}) {
+    const std::optional<Vec3> root = root_from({-0.1, 0.5, 0.8}, {1.0, 0.0, 0.0}, 0.2, {kind, 0.5});
+    ASSERT_TRUE(root);
+    EXPECT_NEAR(root->x, kBehind, 1e-10);
+  }
 }
 
 // A place inside that is nearer than twice as far is half as near: there may be another face between them.

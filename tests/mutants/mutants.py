@@ -649,6 +649,10 @@ MUTANTS = [
         ("core/surface/hole_fill.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
     Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
         ("core/surface/line_roots.cpp", "if (!bracket.at_jump) return bracket.root;", "if (!bracket.at_jump) return 1.001 * bracket.root;")]),
+    Mutant("jumps_of_half_a_turn", "rules that fold w jump by less", [
+        ("core/surface/edge_roots.cpp", "kJump = 0x1p-8;", "kJump = 0x1p-1;")]),
+    Mutant("roots_are_jumps", "where values reach 0 they do not jump, however far the other end is", [
+        ("core/surface/edge_roots.cpp", "at_jump = !is_met_ && std::abs", "at_jump = std::abs")]),
     Mutant("fills_on_faces", "no vertex of a fill is on a face of the mesh", [
         ("core/surface/line_roots.cpp", "std::min(behind / length,", "std::min(0.0 * behind / length,")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [

@@ -213,6 +213,31 @@ HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk
   }
 }
 
+// Multiplies triangles [begin, end) of a chunk that looks small onto the products of all samples from i on. Arguments
+// are below 0.28 (looks_small_from()), so those of a block sum to less than pi: that of its product is their sum, and
+// nobody needs to see when single factors pass the real axis.
+template <class Views>
+HWY_INLINE void multiply_small_block(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
+                                     const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end) {
+  static_assert(kFactorsPerBlock * 0.28 < 3.14);
+  const auto factors = [&](std::size_t n) { return factors_at(views, chunk.triangles[n], n, samples, i); };
+  auto [re, im, trusted] = factors(begin);
+  for (std::size_t n = begin + 1; n < end; ++n) {
+    const TriangleFactors f = factors(n);
+    const Lanes next = hn::Sub(hn::Mul(re, f.re), hn::Mul(im, f.im));
+    im = hn::Add(hn::Mul(re, f.im), hn::Mul(im, f.re));
+    re = next;
+  }
+  const ProductLanes z = times(load(products, i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im));
+  const auto sound = is_sound(z);
+  if (HWY_LIKELY(hn::AllTrue(d, sound))) {
+    store(scaled(z), products, i);
+  } else {
+    multiply_carefully(products, chunk.triangles, views, samples, i, begin, end, bits_of(sound));
+    store_trusted(z, sound, products, i);
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace raycone

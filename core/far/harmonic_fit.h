@@ -32,7 +32,7 @@ class HarmonicFit {
 
   // No value of a fit exceeds kLargestWeights times the largest magnitude at the nodes. A fit rounds by at most
   // kRounding times that magnitude: measured (tests/core/lattice_blocks_test.cpp), not proved.
-  static constexpr double kLargestWeights = 41.0;
+  static constexpr double kLargestWeights = 27.5;
   static constexpr double kRounding = 4e-12;
 
   // The least squares of one parity, by a basis that is orthonormal at the nodes.

@@ -14,8 +14,8 @@
 namespace raycone {
 namespace {
 
-// The tolerance is spent on far triangles, the same share at each level of blocks; on coefficients left out; and on
-// multipoles, at nodes, where fits multiply their errors, and at samples.
+// The tolerance is spent on far triangles, level by level of blocks; on coefficients left out; and on multipoles, at
+// nodes, where fits multiply their errors, and at samples.
 constexpr double kFarShare = 0.6;
 constexpr double kTruncationShare = 0.05;
 constexpr double kNodeShare = 0.15;
@@ -64,16 +64,15 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
       near_triangle_(blocks.edges_ && axes_of == AxesOf::kSamples ? kInPatch : 1.0) {
   for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++levels_) {
     std::vector<SampleBlock> parts = halves(block);
-    if (parts.size() < 2) break;
     block = *std::ranges::max_element(parts, {}, &SampleBlock::size);
+    if (parts.size() < 2 || block.size() <= static_cast<double>(HarmonicFit::kNodes)) break;  // no fit would pay
   }
-  far_budget_ = kFarShare * blocks.tolerance_ / static_cast<double>(levels_);
 }
 
 SampleBlock LatticeBlocksWalk::lattice() const {
   const std::size_t ends = axes_of_ == AxesOf::kCells ? 1 : 0;
   const std::array<std::size_t, 3> last{axes_[0].size() - ends, axes_[1].size() - ends, axes_[2].size() - ends};
-  return {0, {0, 0, 0}, last, {}, {}, 0.0, nullptr};
+  return {0, {0, 0, 0}, last, {}, {}, 0.0, nullptr, 0.0};
 }
 
 double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) const {
@@ -83,7 +82,7 @@ double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) con
 // The block cut in two along its longer axes. Sub-blocks of cells are the same whatever the blocks, so they stay whole.
 std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) const {
   const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
-  std::vector<SampleBlock> pieces{{block.level + 1, block.first, block.last, {}, {}, 0.0, block.field}};
+  std::vector<SampleBlock> pieces{{block.level + 1, block.first, block.last, {}, {}, 0.0, block.field, block.spent}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t least = axes_of_ == AxesOf::kCells ? 2 * kSubBlock[axis] : 2;
     if (block.count(axis) < least || length(block, axis) <= 0.6 * longest) continue;
@@ -143,10 +142,11 @@ LatticeBlocksWalk::Division LatticeBlocksWalk::divided_into(std::vector<SampleBl
 
 Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const {
   block.cube = cube_around(block);
-  std::vector<std::uint32_t> far = far_triangles(block, triangles);
-  Cover cover = cover_at_nodes(far, block.cube);
-  if (making_cost(cover.cost, false) > static_cast<double>(far.size()) * block.size()) far.clear(), cover = {};
-  std::ranges::set_difference(triangles, far, std::back_inserter(block.near));
+  Far far = far_triangles(block, triangles);
+  Cover cover = cover_at_nodes(far.triangles, block.cube);
+  if (making_cost(cover.cost, false) > static_cast<double>(far.triangles.size()) * block.size()) far = {}, cover = {};
+  block.spent += far.error;
+  std::ranges::set_difference(triangles, far.triangles, std::back_inserter(block.near));
   block.near_cost = cover_at(block, block.first, block.last).cost;
   return cover;
 }
@@ -157,32 +157,40 @@ bool LatticeBlocksWalk::can_fit_in(const Cube& cube) const {
   return most_moved * cube.half >= 0x1p-53 * largest_coordinate(cube.centre);
 }
 
-// As many as the budget allows, the most harmless first; ascending. A block that is deeper than the largest ones ever
-// are has none.
-std::vector<std::uint32_t> LatticeBlocksWalk::far_triangles(const SampleBlock& block,
-                                                            std::span<const std::uint32_t> triangles) const {
-  std::vector<std::uint32_t> far;
-  if (block.level >= levels_ || !can_fit_in(block.cube)) return far;
+double LatticeBlocksWalk::far_budget() const { return kFarShare * blocks_.tolerance_; }
+
+// What the blocks around it have left is for this level and for those below, in equal parts.
+double LatticeBlocksWalk::far_budget_of(const SampleBlock& block) const {
+  return (far_budget() - block.spent) / static_cast<double>(levels_ - block.level + 1);
+}
+
+// As many as the budget allows, the most harmless first. A block that is deeper than the largest ones ever are has
+// none.
+LatticeBlocksWalk::Far LatticeBlocksWalk::far_triangles(const SampleBlock& block,
+                                                        std::span<const std::uint32_t> triangles) const {
+  Far far;
+  if (block.level > levels_ || !can_fit_in(block.cube)) return far;
+  const double budget = far_budget_of(block);
   using Error = std::pair<double, std::uint32_t>;
   std::vector<Error> errors;
   for (const std::uint32_t n : triangles) {
     const double error = error_of(blocks_.sources_[n], block.cube);
-    if (error <= far_budget_) errors.emplace_back(error, n);
+    if (error <= budget) errors.emplace_back(error, n);
   }
   // By halves: sorting all takes longer.
-  double sum = 0.0;
   for (auto begin = errors.begin(), end = errors.end(); begin != end;) {
     const auto middle = begin + (end - begin) / 2;
     std::nth_element(begin, middle, end);
-    const double with = std::accumulate(begin, middle + 1, sum, [](double s, const Error& e) { return s + e.first; });
-    if (with > far_budget_) {
+    const double with =
+        std::accumulate(begin, middle + 1, far.error, [](double s, const Error& e) { return s + e.first; });
+    if (with > budget) {
       end = middle;
       continue;
     }
-    sum = with;
-    for (; begin <= middle; ++begin) far.push_back(begin->second);
+    far.error = with;
+    for (; begin <= middle; ++begin) far.triangles.push_back(begin->second);
   }
-  std::ranges::sort(far);
+  std::ranges::sort(far.triangles);
   return far;
 }
 

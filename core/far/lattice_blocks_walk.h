@@ -39,6 +39,7 @@ struct SampleBlock {
   std::vector<std::uint32_t> near;  // triangles, ascending
   double near_cost;                 // of their sum at a sample, in units of a triangle's
   std::shared_ptr<const FieldOnCube> field;
+  double spent = 0.0;  // of the tolerance: by how much the field is off at most
 
   [[nodiscard]] std::size_t count(std::size_t axis) const { return last[axis] - first[axis]; }
   [[nodiscard]] double size() const {
@@ -54,8 +55,8 @@ class LatticeBlocksWalk {
 
   LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes, AxesOf axes_of = AxesOf::kSamples);
 
-  // Levels of blocks that may have triangles that are far: so often the budget of a level is spent on a sample at most.
-  [[nodiscard]] std::size_t levels() const { return levels_; }
+  // No field of a block may be off by more.
+  [[nodiscard]] double far_budget() const;
 
   // Children of a block, and those of its triangles that are far from each.
   struct Division {
@@ -111,8 +112,13 @@ class LatticeBlocksWalk {
                                       std::span<const std::uint32_t> triangles) const;
   // What is far from the block; the others become its near ones.
   [[nodiscard]] Cover far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const;
-  [[nodiscard]] std::vector<std::uint32_t> far_triangles(const SampleBlock& block,
-                                                         std::span<const std::uint32_t> triangles) const;
+  // Triangles, ascending, and by how much the fit of their field is off at most.
+  struct Far {
+    std::vector<std::uint32_t> triangles;
+    double error = 0.0;
+  };
+  [[nodiscard]] Far far_triangles(const SampleBlock& block, std::span<const std::uint32_t> triangles) const;
+  [[nodiscard]] double far_budget_of(const SampleBlock& block) const;
   [[nodiscard]] bool can_fit_in(const Cube& cube) const;
   static double error_of(const TriangleExtent& source, const Cube& cube);
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
@@ -127,9 +133,8 @@ class LatticeBlocksWalk {
   AxesOf axes_of_;
   CoverKernels kernels_;
   MatrixKernel matrices_;
-  double near_triangle_;  // at a sample, in units of a triangle that is summed by itself
-  std::size_t levels_ = 1;
-  double far_budget_;  // of a level
+  double near_triangle_;    // at a sample, in units of a triangle that is summed by itself
+  std::size_t levels_ = 0;  // that of the smallest blocks with triangles that are far
 };
 
 }  // namespace raycone

@@ -112,20 +112,40 @@ TEST(SharedCorners, RoughFactorsAreOffByNoMoreThanTheyMayBe) {
   EXPECT_GT(largest, 1e-5 * most) << "the control: they are rough";
 }
 
-// What is known to look small is not looked at again: nothing changes by that.
+// What is known to look small is not looked at again, and multiplied by eights: sums change by rounding alone.
 TEST(SharedCorners, TrianglesThatLookSmallNeedNoSecondLook) {
-  const std::vector<SolidTriangle> triangles = fan_at({0.5, 0.0, 0.1}, 0.1);
+  // Not much nearer, they would not look small: arguments are about as large as they can be.
+  const std::vector<SolidTriangle> triangles = fan_at({0.44, 0.0, 0.1}, 0.1);
   const SampleTile tile = rows(8, {0.0, 0.0, 0.0});
   ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
+  const std::vector<double> looked_at = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kSse4);
+  const double doubt = doubt_of_factors(3 * static_cast<double>(triangles.size()));
+  const std::vector<double> sums = sums_of(triangles, true, tile, TileShape::kScattered, SimdLevel::kSse4);
+  for (std::size_t i = 0; i < sums.size(); ++i) EXPECT_NEAR(sums[i], looked_at[i], doubt);
   for (const SimdLevel level : kLevels) {
     for (const TileShape shape : {TileShape::kScattered, TileShape::kInRows}) {
-      EXPECT_EQ(sums_of(triangles, true, tile, shape, level), sums_of(triangles, false, tile, shape, level));
+      EXPECT_EQ(sums_of(triangles, true, tile, shape, level), sums);
     }
   }
   // The control: among the triangles, the second look is needed.
   const std::vector<SolidTriangle> around = fan_at({4 * kStep, 3 * kStep, 0.0}, 0.1);
   EXPECT_NE(sums_of(around, true, tile, TileShape::kInRows, SimdLevel::kBest),
             sums_of(around, false, tile, TileShape::kInRows, SimdLevel::kBest));
+}
+
+// Thousands of triangles on one side, and so the sum of many arguments: whole turns must not be lost.
+TEST(SharedCorners, ManySmallTrianglesSumToTurns) {
+  TriangleMesh sphere = test::sphere(64);
+  const std::vector<SolidTriangle> triangles = solid_faces(sphere).triangles;
+  SampleTile tile;
+  tile.clear();
+  for (std::size_t i = 0; i < 64; ++i)
+    tile.add({1e-3 * static_cast<double>(i % 8), 1e-3 * static_cast<double>(i / 8), 0.0});
+  ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
+  const double doubt = doubt_of_factors(3 * static_cast<double>(triangles.size()));
+  for (const SimdLevel level : kLevels) {
+    for (const double sum : sums_of(triangles, true, tile, TileShape::kScattered, level)) EXPECT_NEAR(sum, 1.0, doubt);
+  }
 }
 
 TEST(SharedCorners, ATriangleLooksSmallBeyondItsLongestSide) {

@@ -731,7 +731,9 @@ MUTANTS = [
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
-        ("core/far/harmonic_error.cpp", "Entry{2.187911, 1.218e-05}", "Entry{2.187911, 1.218e-06}")]),
+        ("core/far/harmonic_error.cpp", "&Entry::distance))->error;", "&Entry::distance))->error / 8;")]),
+    Mutant("levels_forget_what_is_spent", "what is far at all levels together keeps the budget", [
+        ("core/far/lattice_blocks_walk.cpp", "block.spent += far.error;", "block.spent = far.error;")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
         ("core/evaluation/lattice_far.cpp", "if (doubtful != 0)", "if (doubtful < 0)")]),
     Mutant("cells_without_their_ends", "the cube of a block of cells has all points in them", [

@@ -52,12 +52,14 @@ class SharedCorners {
 
 // Whether the triangle is so far from a box, for its size, that nobody needs to look whether its factors can be
 // trusted: they can at all points of the box. Its sides then appear under 60 degrees at most, so that two corners have
-// a . b >= |a||b| / 2. Hence Re z_T >= 2.5 |a||b||c|, and the absolute terms of Im z_T are below 2 |a||b||c|.
+// a . b >= |a||b| / 2. Hence Re z_T >= 2.5 |a||b||c|, the absolute terms of Im z_T are below 2 |a||b||c|, and Im z_T is
+// at most 0.71 |a||b||c|, so that the argument is below 0.28.
 [[nodiscard]] bool looks_small_from(const SolidTriangle& triangle, const Box& box);
 // The square of the distance beyond which it does, its longest side; infinite where no factor may be trusted.
 [[nodiscard]] double square_to_look_small(const SolidTriangle& triangle);
 
-// As SolidAngleKernel, with the bits that it has for samples with a ray each, whatever the shape.
+// As SolidAngleKernel, with the bits that it has for samples with a ray each, whatever the shape; but for groups that
+// look small, whose factors are multiplied in another order.
 using SharedCornersKernel = void (*)(const SharedCorners& triangles, const SampleTile& samples, TileShape shape,
                                      ProductTile& products);
 

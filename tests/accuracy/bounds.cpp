@@ -14,6 +14,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -324,14 +325,23 @@ int check_slice(const char* path) {
   return embree == scan && one_by_one == scan && largest < 1e-9 ? 0 : 1;
 }
 
+// Digits alone: 1e7 would be taken as 1, and few values would pass any test.
+std::uint64_t number_of_values(const char* text) {
+  char* end = nullptr;
+  const std::uint64_t number = std::strtoull(text, &end, 10);
+  if (*end == '\0' && number > 0) return number;
+  std::fprintf(stderr, "raycone_bounds: %s is no number of values; expected digits, such as 10000000\n", text);
+  std::exit(2);
+}
+
 }  // namespace
 }  // namespace raycone
 
 int main(int argc, char** argv) {
   if (argc == 3 && std::strcmp(argv[1], "--slice") == 0) return raycone::check_slice(argv[2]);
   if (argc >= 2 && std::strcmp(argv[1], "--far") == 0) {
-    return raycone::check_bounded_engines(argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 10'000'000);
+    return raycone::check_bounded_engines(argc == 3 ? raycone::number_of_values(argv[2]) : 10'000'000);
   }
   const bool given = argc == 3 && std::strcmp(argv[1], "--values") == 0;
-  return raycone::check_bounds(given ? std::strtoull(argv[2], nullptr, 10) : 2'000'000);
+  return raycone::check_bounds(given ? raycone::number_of_values(argv[2]) : 2'000'000);
 }

@@ -62,7 +62,7 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
                far_kernel(blocks.level_)},
       matrices_(matrix_kernel(blocks.level_)),
       near_triangle_(blocks.edges_ && axes_of == AxesOf::kSamples ? kInPatch : 1.0) {
-  for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++levels_) {
+  for (SampleBlock block = lattice(); block.size() >= kSmallBlock; ++last_level_) {
     std::vector<SampleBlock> parts = halves(block);
     block = *std::ranges::max_element(parts, {}, &SampleBlock::size);
     if (parts.size() < 2 || block.size() <= static_cast<double>(HarmonicFit::kNodes)) break;  // no fit would pay
@@ -161,7 +161,7 @@ double LatticeBlocksWalk::far_budget() const { return kFarShare * blocks_.tolera
 
 // What the blocks around it have left is for this level and for those below, in equal parts.
 double LatticeBlocksWalk::far_budget_of(const SampleBlock& block) const {
-  return (far_budget() - block.spent) / static_cast<double>(levels_ - block.level + 1);
+  return (far_budget() - block.spent) / static_cast<double>(last_level_ - block.level + 1);
 }
 
 // As many as the budget allows, the most harmless first. A block that is deeper than the largest ones ever are has
@@ -169,7 +169,7 @@ double LatticeBlocksWalk::far_budget_of(const SampleBlock& block) const {
 LatticeBlocksWalk::Far LatticeBlocksWalk::far_triangles(const SampleBlock& block,
                                                         std::span<const std::uint32_t> triangles) const {
   Far far;
-  if (block.level > levels_ || !can_fit_in(block.cube)) return far;
+  if (block.level > last_level_ || !can_fit_in(block.cube)) return far;
   const double budget = far_budget_of(block);
   using Error = std::pair<double, std::uint32_t>;
   std::vector<Error> errors;

@@ -133,8 +133,8 @@ class LatticeBlocksWalk {
   AxesOf axes_of_;
   CoverKernels kernels_;
   MatrixKernel matrices_;
-  double near_triangle_;    // at a sample, in units of a triangle that is summed by itself
-  std::size_t levels_ = 0;  // that of the smallest blocks with triangles that are far
+  double near_triangle_;        // at a sample, in units of a triangle that is summed by itself
+  std::size_t last_level_ = 0;  // of blocks that may have triangles that are far
 };
 
 }  // namespace raycone

@@ -151,23 +151,16 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
   }
 }
 
-// Multiplies the factors of triangles [begin, end) onto the products of those of the samples from i on that are
-// `active`. `kCertain`: it is known beforehand that all factors are trusted.
-template <bool kCertain = false, class Rays>
-HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
-                               const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                               hn::Mask<Doubles> active) {
-  const ProductLanes before = load(products, i);
-  ProductLanes z = before;
-  auto trusted = active;
-  for (std::size_t n = begin; n < end; ++n) {
-    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
-    if constexpr (!kCertain) trusted = hn::And(trusted, factors.trusted);
-    z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
-  }
+// Stores z, the products of those of the samples from i on that are `active` times the factors of triangles [begin,
+// end): of the lanes that are trusted and sound. Multiplies the others factor by factor.
+template <class Rays>
+HWY_INLINE void finish_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
+                             const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
+                             hn::Mask<Doubles> active, const ProductLanes& z, hn::Mask<Doubles> trusted) {
   trusted = hn::And(trusted, is_sound(z));
   const auto done = hn::Or(trusted, hn::Not(active));
   if (HWY_LIKELY(hn::AllTrue(d, done))) {
+    const ProductLanes before = load(products, i);
     store(scaled({hn::IfThenElse(active, z.re, before.re), hn::IfThenElse(active, z.im, before.im),
                   hn::IfThenElse(active, z.passages, before.passages)}),
           products, i);
@@ -175,6 +168,22 @@ HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTrian
     multiply_carefully(products, triangles, rays, samples, i, begin, end, bits_of(done));
     store_trusted(z, trusted, products, i);
   }
+}
+
+// Multiplies the factors of triangles [begin, end) onto the products of those of the samples from i on that are
+// `active`. `kCertain`: it is known beforehand that all factors are trusted.
+template <bool kCertain = false, class Rays>
+HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
+                               const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
+                               hn::Mask<Doubles> active) {
+  ProductLanes z = load(products, i);
+  auto trusted = active;
+  for (std::size_t n = begin; n < end; ++n) {
+    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
+    if constexpr (!kCertain) trusted = hn::And(trusted, factors.trusted);
+    z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
+  }
+  finish_block(products, triangles, rays, samples, i, begin, end, active, z, trusted);
 }
 
 }  // namespace

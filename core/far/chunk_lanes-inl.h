@@ -197,44 +197,50 @@ HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const S
   return triangles.factors(n);
 }
 
-// Multiplies the factors of a chunk onto the products of those of the samples from i on that are `active`. `small`: it
-// looks small from all of these.
+// As multiply_block<true>(), for triangles that look small from all samples. Their arguments are below 0.28
+// (looks_small_from()), so those of a block sum to less than pi: to the argument of the block's product, which is all
+// that is seen to pass the real axis.
 template <class Views>
-HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
-                               const SampleTile& samples, std::size_t i, hn::Mask<Doubles> active, bool small) {
-  views.begin(i);
-  for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
-    const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());
-    if (small) {
-      multiply_block<true>(products, chunk.triangles, views, samples, i, begin, end, active);
-    } else {
-      multiply_block(products, chunk.triangles, views, samples, i, begin, end, active);
-    }
-  }
-}
-
-// Multiplies triangles [begin, end) of a chunk that looks small onto the products of all samples from i on. Arguments
-// are below 0.28 (looks_small_from()), so those of a block sum to less than pi: that of its product is their sum, and
-// nobody needs to see when single factors pass the real axis.
-template <class Views>
-HWY_INLINE void multiply_small_block(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
-                                     const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end) {
+HWY_INLINE void multiply_small_block(ProductTile& products, std::span<const SolidTriangle> triangles, Views& views,
+                                     const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
+                                     hn::Mask<Doubles> active) {
   static_assert(kFactorsPerBlock * 0.28 < 3.14);
-  const auto factors = [&](std::size_t n) { return factors_at(views, chunk.triangles[n], n, samples, i); };
-  auto [re, im, trusted] = factors(begin);
+  auto [re, im, trusted] = factors_at(views, triangles[begin], begin, samples, i);
   for (std::size_t n = begin + 1; n < end; ++n) {
-    const TriangleFactors f = factors(n);
+    const TriangleFactors f = factors_at(views, triangles[n], n, samples, i);
     const Lanes next = hn::Sub(hn::Mul(re, f.re), hn::Mul(im, f.im));
     im = hn::Add(hn::Mul(re, f.im), hn::Mul(im, f.re));
     re = next;
   }
   const ProductLanes z = times(load(products, i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im));
-  const auto sound = is_sound(z);
-  if (HWY_LIKELY(hn::AllTrue(d, sound))) {
-    store(scaled(z), products, i);
-  } else {
-    multiply_carefully(products, chunk.triangles, views, samples, i, begin, end, bits_of(sound));
-    store_trusted(z, sound, products, i);
+  finish_block(products, triangles, views, samples, i, begin, end, active, z, active);
+}
+
+// How triangles of a chunk are multiplied.
+enum class Looks {
+  kLarge,         // each is looked at
+  kSmall,         // they look small from the samples at hand: with the same bits
+  kSmallFromAll,  // from all samples that the chunk is ever seen from: with other bits
+};
+
+// Multiplies the factors of a chunk onto the products of those of the samples from i on that are `active`.
+template <class Views>
+HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
+                               const SampleTile& samples, std::size_t i, hn::Mask<Doubles> active, Looks looks) {
+  views.begin(i);
+  for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
+    const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());
+    switch (looks) {
+      case Looks::kLarge:
+        multiply_block(products, chunk.triangles, views, samples, i, begin, end, active);
+        break;
+      case Looks::kSmall:
+        multiply_block<true>(products, chunk.triangles, views, samples, i, begin, end, active);
+        break;
+      case Looks::kSmallFromAll:
+        multiply_small_block(products, chunk.triangles, views, samples, i, begin, end, active);
+        break;
+    }
   }
 }
 

@@ -258,7 +258,7 @@ struct Walk {
       for (std::size_t n = node.first_chunk; n < node.last_chunk; ++n) {
         const SharedCorners::Chunk chunk = tree.corners().chunk(n);
         TrianglesOfChunk<Care::kFull> views(chunk, samples);
-        multiply_chunk(result.near, chunk, views, samples, i, near, small);
+        multiply_chunk(result.near, chunk, views, samples, i, near, small ? Looks::kSmall : Looks::kLarge);
       }
       result.near_terms += (node.own_end - node.begin) * hn::CountTrue(d, near);
     }

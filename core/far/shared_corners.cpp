@@ -23,15 +23,7 @@ void multiply_chunk_at_all(ProductTile& products, const SharedCorners::Chunk& ch
   const auto every = hn::FirstN(d, hn::Lanes(d));
   Views views(chunk, samples);
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-    if (!chunk.small) {
-      multiply_chunk(products, chunk, views, samples, i, every, false);
-      continue;
-    }
-    views.begin(i);
-    for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
-      const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());
-      multiply_small_block(products, chunk, views, samples, i, begin, end);
-    }
+    multiply_chunk(products, chunk, views, samples, i, every, chunk.small ? Looks::kSmallFromAll : Looks::kLarge);
   }
 }
 

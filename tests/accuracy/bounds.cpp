@@ -327,9 +327,8 @@ int check_slice(const char* path) {
 
 // Digits alone: 1e7 would be taken as 1, and few values would pass any test.
 std::uint64_t number_of_values(const char* text) {
-  char* end = nullptr;
-  const std::uint64_t number = std::strtoull(text, &end, 10);
-  if (*end == '\0' && number > 0) return number;
+  const std::uint64_t number = std::strtoull(text, nullptr, 10);
+  if (text[std::strspn(text, "0123456789")] == '\0' && number > 0) return number;
   std::fprintf(stderr, "raycone_bounds: %s is no number of values; expected digits, such as 10000000\n", text);
   std::exit(2);
 }

@@ -133,14 +133,12 @@ TEST(SharedCorners, TrianglesThatLookSmallNeedNoSecondLook) {
             sums_of(around, false, tile, TileShape::kInRows, SimdLevel::kBest));
 }
 
-// Thousands of triangles on one side, and so the sum of many arguments: whole turns must not be lost.
+// Thousands of triangles around the samples: no turn must be lost.
 TEST(SharedCorners, ManySmallTrianglesSumToTurns) {
-  TriangleMesh sphere = test::sphere(64);
-  const std::vector<SolidTriangle> triangles = solid_faces(sphere).triangles;
+  const std::vector<SolidTriangle> triangles = solid_faces(test::sphere(64)).triangles;
   SampleTile tile;
   tile.clear();
-  for (std::size_t i = 0; i < 64; ++i)
-    tile.add({1e-3 * static_cast<double>(i % 8), 1e-3 * static_cast<double>(i / 8), 0.0});
+  for (int i = 0; i < 64; ++i) tile.add({1e-3 * (i % 8), 1e-3 * (i / 8), 0.0});
   ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
   const double doubt = doubt_of_factors(3 * static_cast<double>(triangles.size()));
   for (const SimdLevel level : kLevels) {

@@ -1,7 +1,6 @@
 // Lists of triangles as the tree of sources sees them from afar.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,11 +75,17 @@ class CoverSums {
   CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, const CoverKernels& kernels)
       : tree_(tree), cover_(cover), kernels_(kernels) {
     triangles_.reserve(cover.triangles.size());
-    for (const std::uint32_t n : cover.triangles) triangles_.push_back(tree.triangles()[n]);
-    const auto small = static_cast<std::size_t>(
-        std::stable_partition(triangles_.begin(), triangles_.end(),
-                              [&](const SolidTriangle& t) { return looks_small_from(t, samples); }) -
-        triangles_.begin());
+    std::vector<std::uint32_t> large;
+    for (const std::uint32_t n : cover.triangles) {
+      const SolidTriangle& triangle = tree.triangles()[n];
+      if (looks_small_from(triangle, samples)) {
+        triangles_.push_back(triangle);
+      } else {
+        large.push_back(n);
+      }
+    }
+    const std::size_t small = triangles_.size();
+    for (const std::uint32_t n : large) triangles_.push_back(tree.triangles()[n]);
     corners_ = SharedCorners(triangles_);
     corners_.add_group(small, true);
     corners_.add_group(triangles_.size() - small);

@@ -29,7 +29,7 @@ struct FieldOnCube {
 enum class AxesOf { kSamples, kCells };
 
 // In samples, or cells, which share a list of what is near.
-inline constexpr std::array<std::size_t, 3> kSubBlock{8, 8, 4};
+inline constexpr std::array<std::size_t, 3> kSubBlock{16, 16, 8};
 
 // Samples, or cells, [first, last) along each axis.
 struct SampleBlock {

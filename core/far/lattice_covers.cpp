@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/boundary/sample_tile.h"
@@ -25,11 +26,10 @@ LatticeCovers::LatticeCovers(const SourceTree& tree, const LatticeAxes& axes, co
 }
 
 void LatticeCovers::add(const Cover& cover, const Box& box, const SampleBox& samples, const BoxSums& sums) {
-  const std::span<const ChainStep> steps = boundary_ ? boundary_->of(cover.triangles) : std::span<const ChainStep>();
-  const bool by_boundary =
-      boundary_ && kEdge * static_cast<double>(boundary_->edges()) < static_cast<double>(cover.triangles.size());
-  if (by_boundary) add_crossings(cover.triangles, samples, sums);
-  CoverSums of_cover = by_boundary ? CoverSums(tree_, cover, steps, kernels_) : CoverSums(tree_, cover, box, kernels_);
+  const auto most_edges = static_cast<std::size_t>(static_cast<double>(cover.triangles.size()) / kEdge);
+  const auto steps = boundary_ ? boundary_->of(cover.triangles, most_edges) : std::nullopt;
+  if (steps) add_crossings(cover.triangles, samples, sums);
+  CoverSums of_cover = steps ? CoverSums(tree_, cover, *steps, kernels_) : CoverSums(tree_, cover, box, kernels_);
   SampleBox part = samples;
   for (part.begin[1] = samples.begin[1]; part.begin[1] < samples.end[1]; part.begin[1] = part.end[1]) {
     part.end[1] = std::min(part.begin[1] + kRow, samples.end[1]);

@@ -1,7 +1,10 @@
 #include "core/far/shared_corners.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -78,21 +81,46 @@ bool looks_small_from(const SolidTriangle& triangle, const Box& box) {
   return square_of_gap(box_of(triangle.a, triangle.b, triangle.c), box) > square_to_look_small(triangle);
 }
 
+namespace {
+
+// The corners of a chunk, found by their bits. A corner that has lost its slot to another one comes twice: a table that
+// kept both would take longer than looking at that one again.
+class CornerSlots {
+ public:
+  // The place of the corner among those from `first` on; where it is not found, it is added.
+  std::uint8_t place_of(const Vec3& corner, std::vector<Vec3>& corners, std::size_t first) {
+    std::uint8_t& place = places_[slot_of(corner)];
+    if (first + place >= corners.size() || corners[first + place] != corner) {
+      place = static_cast<std::uint8_t>(corners.size() - first);
+      corners.push_back(corner);
+    }
+    return place;
+  }
+
+ private:
+  static constexpr int kBits = 8;
+
+  static std::size_t slot_of(const Vec3& corner) {
+    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15, kOther = 0xC2B2AE3D27D4EB4F;  // as random as any
+    return ((bits(corner.x) * kOdd + bits(corner.y)) * kOther + bits(corner.z) * kOdd) >> (64 - kBits);
+  }
+
+  std::array<std::uint8_t, 1 << kBits> places_{};
+};
+
+}  // namespace
+
 void SharedCorners::add_group(std::size_t count, bool small) {
   const std::size_t begin = places_.size();
+  CornerSlots slots;
   for (std::size_t n = begin; n < begin + count; ++n) {
     if ((n - begin) % kInChunk == 0) chunks_.push_back({n, corners_.size(), small});
-    const auto place_of = [&](const Vec3& corner) {
-      const std::size_t first = chunks_.back().corners;
-      std::size_t place = corners_.size();
-      while (place > first && corners_[place - 1] != corner) --place;  // the latest are the likeliest
-      if (place > first) return static_cast<std::uint8_t>(place - 1 - first);
-      corners_.push_back(corner);
-      return static_cast<std::uint8_t>(corners_.size() - 1 - first);
-    };
+    const std::size_t first = chunks_.back().corners;
     const SolidTriangle& t = triangles_[n];
-    const std::uint8_t a = place_of(t.a), b = place_of(t.b), c = place_of(t.c);
-    places_.push_back({a, b, c, static_cast<std::uint8_t>(corners_.size() - chunks_.back().corners)});
+    const std::uint8_t a = slots.place_of(t.a, corners_, first), b = slots.place_of(t.b, corners_, first),
+                       c = slots.place_of(t.c, corners_, first);
+    places_.push_back({a, b, c, static_cast<std::uint8_t>(corners_.size() - first)});
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -58,31 +59,46 @@ SharedEdges::SharedEdges(std::span<const SolidTriangle> triangles) {
 SharedEdges::Boundary::Boundary(const SharedEdges& edges)
     : all_(edges), multiplicities_(edges.edges_.size()), leaving_(edges.vertices_.size(), kNone) {}
 
-std::span<const ChainStep> SharedEdges::Boundary::of(std::span<const std::uint32_t> triangles) {
+std::optional<std::span<const ChainStep>> SharedEdges::Boundary::of(std::span<const std::uint32_t> triangles,
+                                                                    std::size_t most) {
+  if (set_multiplicities(triangles) > most) {
+    for (const std::uint32_t edge : touched_) multiplicities_[edge] = 0;
+    return std::nullopt;
+  }
+  set_chains();
+  return steps_;
+}
+
+std::size_t SharedEdges::Boundary::set_multiplicities(std::span<const std::uint32_t> triangles) {
   touched_.clear();
-  steps_.clear();
-  count_ = 0;
+  std::int64_t left = 0;
   for (const std::uint32_t n : triangles) {
     for (std::size_t i = 3 * std::size_t{n}; i < 3 * std::size_t{n} + 3; ++i) {
       const Side side = all_.sides_[i];
       if (side.edge == kNone) continue;
       std::int32_t& multiplicity = multiplicities_[side.edge];
-      if (multiplicity == 0) touched_.push_back(side.edge);
+      if (multiplicity == 0) touched_.push_back(side.edge);  // perhaps not for the first time
+      left -= std::abs(multiplicity);
       multiplicity += side.reversed ? -1 : 1;
+      left += std::abs(multiplicity);
     }
   }
-  const auto from = [&](std::uint32_t edge) {
-    return multiplicities_[edge] > 0 ? all_.edges_[edge].from : all_.edges_[edge].to;
-  };
+  return static_cast<std::size_t>(left);
+}
+
+// All multiplicities are 0 afterwards.
+void SharedEdges::Boundary::set_chains() {
+  steps_.clear();
   std::erase_if(touched_, [&](std::uint32_t edge) { return multiplicities_[edge] == 0; });
-  for (const std::uint32_t edge : touched_) leaving_[from(edge)] = edge;
+  for (const std::uint32_t edge : touched_) {
+    leaving_[multiplicities_[edge] > 0 ? all_.edges_[edge].from : all_.edges_[edge].to] = edge;
+  }
   for (const std::uint32_t edge : touched_) {
     if (multiplicities_[edge] != 0) add_chain(edge);
   }
   for (const std::uint32_t edge : touched_) {
     leaving_[all_.edges_[edge].from] = leaving_[all_.edges_[edge].to] = kNone;
   }
-  return steps_;
 }
 
 // As long as there is an edge that has not been added.
@@ -95,7 +111,6 @@ void SharedEdges::Boundary::add_chain(std::uint32_t edge) {
     for (; multiplicity != 0; multiplicity += multiplicity < 0 ? 1 : -1) {
       if (begins) steps_.push_back({all_.vertices_[from], false, false});
       steps_.push_back({all_.vertices_[to], true, false});
-      ++count_;
       begins = true;  // a second copy begins where this one did
     }
     begins = false;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,13 +25,15 @@ class SharedEdges {
     explicit Boundary(const SharedEdges& edges);
 
     // Of the triangles with these numbers, each of them once: edges that do not cancel, as often as they are left, but
-    // for those along the rays, whose factor is 1 from everywhere. Valid until the next call.
-    [[nodiscard]] std::span<const ChainStep> of(std::span<const std::uint32_t> triangles);
-
-    // Edges of the last answer.
-    [[nodiscard]] std::size_t edges() const { return count_; }
+    // for those along the rays, whose factor is 1 from everywhere. Valid until the next call. Nothing where it has more
+    // than `most` edges.
+    [[nodiscard]] std::optional<std::span<const ChainStep>> of(std::span<const std::uint32_t> triangles,
+                                                               std::size_t most);
 
    private:
+    // How many edges are left, each as often as that.
+    std::size_t set_multiplicities(std::span<const std::uint32_t> triangles);
+    void set_chains();
     void add_chain(std::uint32_t edge);
 
     const SharedEdges& all_;
@@ -38,7 +41,6 @@ class SharedEdges {
     std::vector<std::uint32_t> leaving_;        // an edge of the boundary, by the vertex that it leaves
     std::vector<std::uint32_t> touched_;        // edges of the triangles, some of them several times
     std::vector<ChainStep> steps_;
-    std::size_t count_ = 0;
   };
 
  private:

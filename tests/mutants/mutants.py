@@ -740,7 +740,7 @@ MUTANTS = [
         ("core/far/lattice_blocks_walk.h", "axes_[axis][axes_of_ == AxesOf::kCells ? last : last - 1]",
          "axes_[axis][last - 1]")]),
     Mutant("patches_without_crossings", "a patch that is summed by its boundary has the crossings of its triangles, too", [
-        ("core/far/lattice_covers.cpp", "if (by_boundary) add_crossings(cover.triangles, samples, sums);", "")]),
+        ("core/far/lattice_covers.cpp", "if (steps) add_crossings(cover.triangles, samples, sums);", "")]),
     Mutant("boundaries_without_orientation", "edges that triangles run along in opposite directions cancel", [
         ("core/far/shared_edges.cpp", "multiplicity += side.reversed ? -1 : 1;", "multiplicity += 1;")]),
     Mutant("rows_of_a_tile_alike", "each row of a tile has its own projections", [

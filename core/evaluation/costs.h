@@ -16,7 +16,7 @@ struct BlocksCost {
   double beside_blocks;  // at a sample, beside what they sum
   double fit, tree;      // once: making the operator, and for each unit of the direct sum at a sample, the tree
 };
-inline constexpr BlocksCost kBlocksOnLattice{1.92, 19.2, 2.1e6, 3.5e3};
+inline constexpr BlocksCost kBlocksOnLattice{2.4, 24.0, 2.1e6, 3.5e3};
 inline constexpr BlocksCost kBlocksAtPoints{1.6, 0.0, 1.5e6, 1e3};
 
 }  // namespace raycone

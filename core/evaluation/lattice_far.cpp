@@ -12,7 +12,7 @@
 namespace raycone {
 namespace {
 
-// An estimate of blocks is 0.95 to 1.4 times what they take, that of the far field no better than this.
+// An estimate of blocks is 0.8 to 1.15 times what they take, that of the far field no better than this.
 constexpr double kSafetyOfBlocks = 1.03;
 constexpr double kSafety = 0.92;
 // An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples, where that
@@ -22,7 +22,7 @@ constexpr double kLeastCost = 4e7;
 // Where a lattice is smaller than this, soups and so many exterior edges are left to the far field: a second tree would
 // take a twentieth of the time.
 constexpr double kSmallLattice = 2e5;  // samples
-constexpr std::uint64_t kManyForSmall = 1500;
+constexpr std::uint64_t kManyForSmall = 5000;
 
 double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
   return kBlocksOnLattice.in_blocks * mesh.blocks().sums.cost(axes) + kBlocksOnLattice.beside_blocks;

@@ -17,6 +17,12 @@ LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolera
       level_(level) {
   sources_.reserve(tree_.triangles().size());
   for (const SolidTriangle& triangle : tree_.triangles()) sources_.push_back(extent_of(triangle));
+  leaf_ends_.reserve(sources_.size());
+  for (const SourceNode& node : tree_.nodes()) {
+    for (std::uint32_t n = node.begin; n < node.own_end; ++n) {
+      leaf_ends_.push_back(node.own_end == node.end ? node.end : n + 1);
+    }
+  }
   if (near == Near::kBoundary) edges_.emplace(tree_.triangles());
 }
 

@@ -69,8 +69,9 @@ class LatticeBlocks {
   friend class LatticeBlocksWalk;
 
   SourceTree tree_;
-  std::vector<TriangleExtent> sources_;  // the triangles of the tree
-  std::optional<SharedEdges> edges_;     // likewise, where boundaries are asked for
+  std::vector<TriangleExtent> sources_;   // the triangles of the tree
+  std::vector<std::uint32_t> leaf_ends_;  // of each, where those of its leaf end; in no leaf, the next one
+  std::optional<SharedEdges> edges_;      // likewise, where boundaries are asked for
   double tolerance_;
   SimdLevel level_;
   mutable std::atomic<std::uint64_t> near_terms_ = 0, far_terms_ = 0;

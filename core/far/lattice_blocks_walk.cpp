@@ -171,27 +171,44 @@ LatticeBlocksWalk::Far LatticeBlocksWalk::far_triangles(const SampleBlock& block
   Far far;
   if (block.level > last_level_ || !can_fit_in(block.cube)) return far;
   const double budget = far_budget_of(block);
-  using Error = std::pair<double, std::uint32_t>;
-  std::vector<Error> errors;
-  for (const std::uint32_t n : triangles) {
-    const double error = error_of(blocks_.sources_[n], block.cube);
-    if (error <= budget) errors.emplace_back(error, n);
-  }
+  std::vector<Together> candidates = harmless_of(block.cube, triangles, budget);
   // By halves: sorting all takes longer.
-  for (auto begin = errors.begin(), end = errors.end(); begin != end;) {
+  for (auto begin = candidates.begin(), end = candidates.end(); begin != end;) {
     const auto middle = begin + (end - begin) / 2;
     std::nth_element(begin, middle, end);
     const double with =
-        std::accumulate(begin, middle + 1, far.error, [](double s, const Error& e) { return s + e.first; });
+        std::accumulate(begin, middle + 1, far.error, [](double s, const Together& t) { return s + t.error; });
     if (with > budget) {
       end = middle;
       continue;
     }
     far.error = with;
-    for (; begin <= middle; ++begin) far.triangles.push_back(begin->second);
+    for (; begin <= middle; ++begin) {
+      const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(begin->first);
+      far.triangles.insert(far.triangles.end(), first, first + static_cast<std::ptrdiff_t>(begin->count));
+    }
   }
   std::ranges::sort(far.triangles);
   return far;
+}
+
+// Of many triangles, those of a leaf are far together or not at all: parts of leaves are no expansions, neither at
+// nodes nor, of what is left, at samples.
+std::vector<LatticeBlocksWalk::Together> LatticeBlocksWalk::harmless_of(const Cube& cube,
+                                                                        std::span<const std::uint32_t> triangles,
+                                                                        double budget) const {
+  constexpr std::size_t kMany = 1 << 11;
+  std::vector<Together> harmless;
+  for (std::size_t begin = 0, end = 0; begin < triangles.size(); begin = end) {
+    const std::uint32_t leaf_end = triangles.size() >= kMany ? blocks_.leaf_ends_[triangles[begin]] : 0;
+    double error = 0.0;
+    do {
+      error += error_of(blocks_.sources_[triangles[end++]], cube);
+    } while (end < triangles.size() && triangles[end] < leaf_end);
+    const std::size_t count = end - begin;
+    if (error <= budget) harmless.push_back({error / static_cast<double>(count), begin, count, error});
+  }
+  return harmless;
 }
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -118,6 +119,16 @@ class LatticeBlocksWalk {
     double error = 0.0;
   };
   [[nodiscard]] Far far_triangles(const SampleBlock& block, std::span<const std::uint32_t> triangles) const;
+  // Some of a list of triangles, one after the other, and what they are off by together.
+  struct Together {
+    double mean_error;
+    std::size_t first, count;  // in the list
+    double error;
+    auto operator<=>(const Together&) const = default;
+  };
+  // Those that are within the budget.
+  [[nodiscard]] std::vector<Together> harmless_of(const Cube& cube, std::span<const std::uint32_t> triangles,
+                                                  double budget) const;
   [[nodiscard]] double far_budget_of(const SampleBlock& block) const;
   [[nodiscard]] bool can_fit_in(const Cube& cube) const;
   static double error_of(const TriangleExtent& source, const Cube& cube);

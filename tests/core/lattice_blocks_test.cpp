@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -304,6 +305,59 @@ TEST(LatticeBlocksTest, LevelsShareTheBudgetAndUseIt) {
     const double spent = most_spent(walk, walk.whole());
     EXPECT_LE(spent, walk.far_budget()) << nx << ' ' << ny << ' ' << nz;
     EXPECT_GE(spent, walk.far_budget() / 10) << nx << ' ' << ny << ' ' << nz;
+  }
+}
+
+// What the fit of a block is off by at most: the sum over those of `around`, which is near the block around it, that
+// are far from it.
+double error_of_fit(const LatticeBlocks& blocks, const SampleBlock& block, std::span<const std::uint32_t> around) {
+  std::vector<std::uint32_t> far;
+  std::ranges::set_difference(around, block.near, std::back_inserter(far));
+  double error = 0.0;
+  for (const std::uint32_t n : far) {
+    const TriangleExtent& t = blocks.extents()[n];
+    double distance = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      distance = std::max(
+          {distance, t.box.lower[axis] - block.cube.centre[axis], block.cube.centre[axis] - t.box.upper[axis]});
+    }
+    error += t.area / (block.cube.half * block.cube.half) * dipole_error(distance / block.cube.half);
+  }
+  return error;
+}
+
+// How many leaves of the tree are partly among the triangles.
+std::size_t parts_of_leaves(const SourceTree& tree, std::span<const std::uint32_t> triangles) {
+  std::size_t parts = 0;
+  for (const SourceNode& node : tree.nodes()) {
+    if (node.own_end != node.end) continue;
+    const auto in_leaf = [&](std::uint32_t n) { return node.begin <= n && n < node.end; };
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(triangles, in_leaf));
+    if (count > 0 && count < node.triangles()) ++parts;
+  }
+  return parts;
+}
+
+TEST(LatticeBlocksTest, WhatIsSpentIsTheSumOfErrorsAlsoOfWholeLeaves) {
+  Random random(10);
+  for (const int count : {600, 20'000}) {
+    const LatticeBlocks blocks(solid_faces(dust(random, count)).triangles, 1e-6, SimdLevel::kBest);
+    const LatticeAxes axes = axes_of(cube_lattice(200));
+    const LatticeBlocksWalk walk(blocks, axes);
+    SampleBlock block = walk.whole().children.front();
+    std::size_t far = 0, parts = 0;
+    for (int level = 0; level < 3; ++level) {
+      const LatticeBlocksWalk::Division division = walk.divide(block);
+      for (const SampleBlock& child : division.children) {
+        const double error = error_of_fit(blocks, child, block.near);
+        EXPECT_NEAR(child.spent - block.spent, error, 1e-9 * error + 1e-21);  // sums round
+        far += block.near.size() - child.near.size();
+        parts += parts_of_leaves(blocks.tree(), child.near);
+      }
+      block = division.children.front();
+    }
+    EXPECT_GT(far, 1000U);
+    EXPECT_EQ(parts > 0, count < 1000);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace raycone {
 namespace {
 
-// An estimate of blocks is 0.8 to 1.15 times what they take, that of the far field no better than this.
+// An estimate of blocks is 0.8 to 1.35 times what they take, that of the far field no better than this.
 constexpr double kSafetyOfBlocks = 1.03;
 constexpr double kSafety = 0.92;
 // An estimate needs the tree, which takes some hundredths of the time of the direct sum at so many samples, where that

@@ -126,7 +126,7 @@ class LatticeBlocksWalk {
     double error;
     auto operator<=>(const Together&) const = default;
   };
-  // Those that are within the budget.
+  // Those that may be far: each by itself is within the budget.
   [[nodiscard]] std::vector<Together> harmless_of(const Cube& cube, std::span<const std::uint32_t> triangles,
                                                   double budget) const;
   [[nodiscard]] double far_budget_of(const SampleBlock& block) const;

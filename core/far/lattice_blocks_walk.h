@@ -29,7 +29,7 @@ struct FieldOnCube {
 // less than there are coordinates, and one point is expected in each.
 enum class AxesOf { kSamples, kCells };
 
-// In samples, or cells, which share a list of what is near.
+// In samples, or cells, which share a list of what is near: smaller ones make too many lists, larger ones too long.
 inline constexpr std::array<std::size_t, 3> kSubBlock{16, 16, 8};
 
 // Samples, or cells, [first, last) along each axis.

@@ -9,9 +9,8 @@ import itertools
 import json
 import math
 import random
-import subprocess
 
-from command_case import RAYCONE, SURFACE, CommandCase, run_tests
+from command_case import SURFACE, CommandCase, run_tests
 
 SIZE = 5  # of the lattice of cells
 HOLDS = {"threshold=0.5": lambda w: w > 0, "threshold=1.5": lambda w: w > 1, "odd": lambda w: w % 2 == 1,
@@ -65,9 +64,7 @@ def volume(boxes, holds):
 class CutSolids(CommandCase):
     def measured(self, path):
         """Its volume, once it is what a surface has to be."""
-        self.works("info %s --require %s" % (path, SURFACE))
-        run = subprocess.run([RAYCONE, "info", path, "--json"], check=True, capture_output=True)
-        return json.loads(run.stdout)["signed_volume"]
+        return json.loads(self.works("info %s --json --require %s" % (path, SURFACE)))["signed_volume"]
 
     def solids(self, seed, count, turn=beside_samples):
         """Calls with the words for a surface, and its volume, of those that are not empty."""

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/boundary/edge_time.h"
 #include "core/evaluation/costs.h"
 #include "core/evaluation/lattice_tile.h"
 
@@ -24,8 +25,8 @@ constexpr double kLeastCost = 4e7;
 constexpr double kSmallLattice = 2e5;  // samples
 constexpr std::uint64_t kManyForSmall = 5000;
 
-double blocks_cost(const ScaledMesh& mesh, const LatticeAxes& axes) {
-  return kBlocksOnLattice.in_blocks * mesh.blocks().sums.cost(axes) + kBlocksOnLattice.beside_blocks;
+double cost_in_blocks(const ScaledMesh& mesh, const LatticeAxes& axes) {
+  return kBlocksOnLattice.in_blocks * mesh.blocks().sums.cost(axes);
 }
 
 double far_field_cost(const ScaledMesh& mesh) { return kFarFieldCost * mesh.far_field()->cost_on_lattice(); }
@@ -65,7 +66,8 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   const bool far = takes_far_field_on_lattice(mesh);
   const double other = far ? std::min(direct, far_field_cost(mesh)) : direct;
   // The tree is there by now.
-  if (blocks_cost(mesh, axes) * samples + kBlocksOnLattice.fit > kSafetyOfBlocks * other * samples) return std::nullopt;
+  const double blocks = cost_in_blocks(mesh, axes) + kBlocksOnLattice.beside_blocks;
+  if (blocks * samples + kBlocksOnLattice.fit > kSafetyOfBlocks * other * samples) return std::nullopt;
   return axes;
 }
 
@@ -81,20 +83,20 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
 }
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  // With AVX-512, an edge takes 0.9 to 1.8 ns at a sample: machines differ, so this is in the middle.
-  constexpr double kEdge = 1.3e-9;
-  constexpr double kSample = 1.2e-8;  // beside its edges
-  constexpr double kSource = 1e-5;    // in the tree
+  constexpr double kSample = 1.2e-8;          // beside its edges
+  constexpr double kSampleOfBlocks = 1.0e-8;  // beside what its block sums
+  constexpr double kSource = 1e-5;            // in the tree
   if (mesh.is_closed()) return 0.0;
-  const double samples = lattice.samples(), direct = (kSample + kEdge * mesh.direct_cost()) * samples;
+  const double edge = edge_seconds(mesh.options().level), samples = lattice.samples();
+  const double direct = (kSample + edge * mesh.direct_cost()) * samples;
   if (!by_far_field) return direct;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    return kEdge *
-           (blocks_cost(mesh, *axes) * samples + kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.direct_cost());
+    const double once = kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.direct_cost();
+    return kSampleOfBlocks * samples + edge * (cost_in_blocks(mesh, *axes) * samples + once);
   }
   if (takes_far_field_on_lattice(mesh)) {
     const auto sources = static_cast<double>(mesh.far_field()->sources().triangles().size());
-    return kEdge * far_field_cost(mesh) * samples + kSource * sources;
+    return edge * far_field_cost(mesh) * samples + kSource * sources;
   }
   return direct;
 }

@@ -23,9 +23,9 @@ namespace raycone {
 // samples were declared (Accuracy::samples), not of the part at hand.
 [[nodiscard]] bool takes_far_field_on_lattice(const ScaledMesh& mesh);
 
-// What the boundary term of the whole lattice takes on one thread, about, caps and trees included; as evaluate_block()
-// goes about it. Seconds of a machine that docs/benchmarks.md describes. `by_far_field`: whether blocks and far field
-// are looked at, which takes their trees; without, what a direct sum takes.
+// What the boundary term of the whole lattice takes on one thread of this machine, about, caps and trees included; as
+// evaluate_block() goes about it: seconds. `by_far_field`: whether blocks and far field are looked at, which takes
+// their trees; without, what a direct sum takes.
 [[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field);
 
 // The crossings of row j + k * block.counts[1] of a block: of its mesh, and of mesh.blocks().caps.

@@ -1,0 +1,20 @@
+#include "core/boundary/edge_time.h"
+
+#include <gtest/gtest.h>
+
+#include "core/machine/floating_point.h"
+
+namespace raycone {
+namespace {
+
+// A few dozen operations of doubles: less than one of them a nanosecond, or more than one each microsecond, is no time.
+TEST(EdgeTime, IsThatOfSomeDozenOperations) {
+  const DefaultFloatingPoint guard;
+  const double seconds = edge_seconds(SimdLevel::kBest);
+  EXPECT_GT(seconds, 1e-11);
+  EXPECT_LT(seconds, 1e-6);
+  EXPECT_EQ(edge_seconds(SimdLevel::kBest), seconds);
+}
+
+}  // namespace
+}  // namespace raycone

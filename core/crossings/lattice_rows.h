@@ -27,6 +27,7 @@ struct LatticeRows {
   [[nodiscard]] const std::vector<double>& along(std::size_t axis) const {
     return axis == 0 ? xs : axis == 1 ? ys : zs;
   }
+  [[nodiscard]] std::array<std::size_t, 3> counts() const { return {xs.size(), ys.size(), zs.size()}; }
   [[nodiscard]] Vec3 query(const std::array<std::size_t, 3>& sample) const {
     return {xs[sample[0]], ys[sample[1]], zs[sample[2]]};
   }

@@ -7,17 +7,12 @@
 namespace raycone {
 namespace {
 
-// In samples: the sides of the largest blocks, and rows that are worth halving no more.
-constexpr std::array<std::size_t, 3> kSides{64, 64, 64};
-constexpr std::size_t kRow = 32;
+constexpr std::size_t kRow = 32;  // samples: rows that are worth halving no more
 
 }  // namespace
 
 CutBlocks::CutBlocks(const LatticeRows& rows, std::span<const FlatPiece> caps, std::vector<FlatPiece> cones)
-    : rows_(rows), caps_(caps), cones_(std::move(cones)) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    counts_[axis] = (rows_.along(axis).size() + kSides[axis] - 1) / kSides[axis];
-  }
+    : rows_(rows), caps_(caps), cones_(std::move(cones)), boxes_(rows.counts(), kLargestBlockSide) {
   columns_of_caps_ = by_column(caps_);
   columns_of_cones_ = by_column(cones_);
 }
@@ -29,33 +24,29 @@ CutBlocks::Columns CutBlocks::by_column(std::span<const FlatPiece> pieces) const
     const std::vector<double>& all = rows_.along(axis);
     const auto first = static_cast<std::size_t>(std::ranges::lower_bound(all, lower) - all.begin());
     const auto last = static_cast<std::size_t>(std::ranges::upper_bound(all, upper) - all.begin());
-    return std::array{(std::max<std::size_t>(first, 1) - 1) / kSides[axis],
-                      std::min(last, all.size() - 1) / kSides[axis]};
+    return std::array{(std::max<std::size_t>(first, 1) - 1) / kLargestBlockSide,
+                      std::min(last, all.size() - 1) / kLargestBlockSide};
   };
   const auto overlaps = [&](std::size_t axis, double lower, double upper) {
     return lower <= rows_.along(axis).back() && upper >= rows_.along(axis).front();
   };
-  Columns columns(counts_[1] * counts_[2]);
+  const auto [x_count, y_count, z_count] = boxes_.counts();
+  Columns columns(y_count * z_count);
   for (std::uint32_t number = 0; number < pieces.size(); ++number) {
     const Box& box = pieces[number].box();
     if (!overlaps(1, box.lower.y, box.upper.y) || !overlaps(2, box.lower.z, box.upper.z)) continue;
     const auto [y_first, y_last] = range(1, box.lower.y, box.upper.y);
     const auto [z_first, z_last] = range(2, box.lower.z, box.upper.z);
     for (std::size_t z = z_first; z <= z_last; ++z) {
-      for (std::size_t y = y_first; y <= y_last; ++y) columns[z * counts_[1] + y].push_back(number);
+      for (std::size_t y = y_first; y <= y_last; ++y) columns[z * y_count + y].push_back(number);
     }
   }
   return columns;
 }
 
 CutBlock CutBlocks::operator[](std::size_t n) const {
-  const std::array<std::size_t, 3> number{n % counts_[0], n / counts_[0] % counts_[1], n / counts_[0] / counts_[1]};
-  CutBlock block{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.samples.begin[axis] = number[axis] * kSides[axis];
-    block.samples.end[axis] = std::min(block.samples.begin[axis] + kSides[axis], rows_.along(axis).size());
-  }
-  const std::size_t column = number[2] * counts_[1] + number[1];
+  CutBlock block{boxes_[n]};
+  const std::size_t column = n / boxes_.counts()[0];
   block.caps = columns_of_caps_[column];
   if (!block.caps.empty()) block.cones = columns_of_cones_[column];
   return block;

@@ -23,6 +23,8 @@ struct CutBlock {
   [[nodiscard]] bool is_cut() const { return !caps.empty() && !cones.empty() && !is_row(); }
 };
 
+inline constexpr std::size_t kLargestBlockSide = 64;  // samples
+
 // Const calls are thread-safe.
 class CutBlocks {
  public:
@@ -30,7 +32,7 @@ class CutBlocks {
   CutBlocks(const LatticeRows& rows, std::span<const FlatPiece> caps, std::vector<FlatPiece> cones);
 
   // Of the largest blocks, which together are the lattice.
-  [[nodiscard]] std::size_t size() const { return counts_[0] * counts_[1] * counts_[2]; }
+  [[nodiscard]] std::size_t size() const { return boxes_.size(); }
   // Its pieces are those of a whole column of blocks along x.
   [[nodiscard]] CutBlock operator[](std::size_t n) const;
 
@@ -48,7 +50,7 @@ class CutBlocks {
   const LatticeRows& rows_;
   std::span<const FlatPiece> caps_;
   std::vector<FlatPiece> cones_;
-  std::array<std::size_t, 3> counts_;  // per axis
+  const SampleBoxes boxes_;
   Columns columns_of_caps_, columns_of_cones_;
 };
 

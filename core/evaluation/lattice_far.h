@@ -28,7 +28,7 @@ namespace raycone {
 // their trees; without, what a direct sum takes.
 [[nodiscard]] double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field);
 
-// The crossings of row j + k * block.counts[1] of a block: of its mesh, and of mesh.blocks().caps.
+// The crossings of row j + k * block.counts[1] of a block: of its mesh, and of mesh.caps().
 struct CrossingsOfRow {
   RowRuns mesh, caps;
 };

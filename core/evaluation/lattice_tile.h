@@ -26,7 +26,7 @@ class LatticeTile {
     add(index, scaled_query, crossings, 0);
   }
 
-  // With the crossings of mesh.changes().caps; of all samples, or of none.
+  // With the crossings of mesh.caps(); of all samples, or of none.
   void add(std::size_t index, const Vec3& scaled_query, std::int64_t crossings, std::int64_t cap_crossings) {
     indices_[samples_.count] = index;
     crossings_[samples_.count] = crossings;

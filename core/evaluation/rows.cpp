@@ -129,7 +129,7 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
   collect_crossings(mesh, lattice, block, rows, sums);
   const std::uint64_t on_surface = finish_all(rows, sums);
   LatticeSums of_caps(rows.size(), samples, LatticeSums::OnSurface::kIgnore);
-  sum_crossings(mesh.blocks().caps, rows, of_caps);
+  sum_crossings(mesh.caps().mesh, rows, of_caps);
   const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
     const std::span<const double> each = values.subspan(row * samples, samples);
     return {diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};

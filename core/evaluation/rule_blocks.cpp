@@ -34,6 +34,31 @@ std::vector<FlatPiece> cones_of(const Boundary& boundary) {
   return cones;
 }
 
+bool is_boundary_all_over(const ScaledMesh& mesh) {
+  constexpr double kAllOver = 0.1;  // exterior edges for each face
+  return static_cast<double>(mesh.boundary().exterior_edges()) >
+         kAllOver * static_cast<double>(mesh.mesh().triangles.size());
+}
+
+// Whether looking for certificates takes longer than what they save.
+bool takes_rough_sums_alone(const ScaledMesh& mesh) {
+  constexpr std::uint64_t kMany = 1000;  // exterior edges
+  return is_boundary_all_over(mesh) && mesh.boundary().exterior_edges() >= kMany && mesh.has_blocks() &&
+         mesh.blocks().are_sound;
+}
+
+void set_sides_by_rough_sums(const SideSamples& samples, std::atomic<std::uint64_t>* done) {
+  (void)samples.mesh().far_field();  // made on all threads outside loops
+  const SampleBoxes boxes(samples.rows().counts(), kLargestBlockSide);
+  parallel_for_each(boxes.size(), [&](std::size_t n) {
+    const SampleBox box = boxes[n];
+    std::vector<SampleBox> undecided;
+    set_sides_roughly(samples, {&box, 1}, undecided);
+    samples.evaluate_each(undecided);
+    if (done) done->fetch_add(box.size(), std::memory_order_relaxed);
+  });
+}
+
 struct Middle {
   SideSamples::Index sample;
   double radius;  // others are at most so far from it
@@ -79,7 +104,7 @@ class RuleBlocks {
       : samples_(samples),
         rows_(samples.rows()),
         mesh_(samples.mesh()),
-        changes_(mesh_.changes().bound),
+        changes_(mesh_.change_bound()),
         matrices_(matrix_kernel(mesh_.options().level)),
         has_rough_sums_(mesh_.has_blocks()),
         blocks_(rows_, changes_.wide_caps(), cones_of(mesh_.boundary())) {}
@@ -99,12 +124,8 @@ class RuleBlocks {
   void make_tree() const {
     if (takes_rough_sums()) (void)mesh_.far_field();
   }
-  // Whether certificates will leave most to rough sums: the mesh is boundary all over.
-  [[nodiscard]] bool expects_rough_sums() const {
-    constexpr double kAllOver = 0.1;  // exterior edges for each face
-    return has_rough_sums_ && static_cast<double>(mesh_.boundary().exterior_edges()) >
-                                  kAllOver * static_cast<double>(mesh_.mesh().triangles.size());
-  }
+  // Whether certificates will leave most to rough sums.
+  [[nodiscard]] bool expects_rough_sums() const { return has_rough_sums_ && is_boundary_all_over(mesh_); }
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
@@ -296,6 +317,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, 
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
                const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   const SideSamples samples(mesh, rows, rule, crossings, cap_crossings, sides);
+  if (takes_rough_sums_alone(mesh)) return set_sides_by_rough_sums(samples, done);
   RuleBlocks blocks(samples);
   const auto finish = [&](Undecided left) {
     const std::size_t count = left.samples;

@@ -13,7 +13,7 @@
 namespace raycone {
 
 // Sets each side to 1 where the rule holds and to 0 where it does not; x fastest. `crossings` are the finished runs of
-// the mesh, `cap_crossings` those of mesh.changes().caps, both of `rows`. Blocks of samples that are certain to be on
+// the mesh, `cap_crossings` those of mesh.caps(), both of `rows`. Blocks of samples that are certain to be on
 // one side of each threshold, but for the crossings between them, are evaluated at one sample (docs/method.md).
 // `done`, where given, grows by one per sample. Needs DefaultFloatingPoint. Precondition: the mesh is open.
 void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,

@@ -68,21 +68,24 @@ const SlabOrder& ScaledMesh::slab_order(int axis) const {
   return *slab_orders_[n];
 }
 
-const Changes& ScaledMesh::changes() const {
+const Caps& ScaledMesh::caps() const {
   constexpr double kNarrow = 0x1p-7;  // of the mesh's size: a voxel or some
-  std::call_once(changes_built_, [this] {
-    const Box box = bounding_box(mesh_);
-    changes_.emplace(make_caps(boundary_, kNarrow * longest_side(box)), options_.level);
+  std::call_once(caps_built_, [this] {
+    caps_ = counts_crossings() ? make_caps(boundary_, kNarrow * longest_side(bounding_box(mesh_))) : Caps();
   });
-  return *changes_;
+  return *caps_;
+}
+
+const ChangeBound& ScaledMesh::change_bound() const {
+  std::call_once(change_bound_built_, [this] { change_bound_.emplace(caps(), options_.level); });
+  return *change_bound_;
 }
 
 const Blocks& ScaledMesh::blocks() const {
   std::call_once(blocks_built_, [this] {
-    TriangleMesh caps = counts_crossings() ? all_caps(boundary_) : TriangleMesh();
-    SolidFaces faces = solid_faces(counts_crossings() ? caps : mesh_);
+    SolidFaces faces = solid_faces(counts_crossings() ? caps().mesh : mesh_);
     const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
-    blocks_.reset(new Blocks{std::move(caps), !faces.has_repeated_faces,
+    blocks_.reset(new Blocks{!faces.has_repeated_faces,
                              LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)});
   });
   return *blocks_;
@@ -114,7 +117,7 @@ std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const 
   if (!forced && (points < kLeastPoints || direct * points < kLeastCost)) return nullptr;
   if (!blocks().are_sound) return nullptr;
   std::unique_ptr<const BlocksOfPoints> result(
-      new BlocksOfPoints{CapCrossings(blocks().caps), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
+      new BlocksOfPoints{CapCrossings(caps().mesh), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
   const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
   const double at_point = kBlocksAtPoints.in_blocks * result->sums.cost() + kBlocksAtPoints.beside_blocks;
   const double cost = at_point * points + kBlocksAtPoints.fit + kBlocksAtPoints.tree * direct;
@@ -129,21 +132,21 @@ const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
 // The far field, where it is asked for and estimated to be cheaper.
 std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   if (!term_ || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return nullptr;
-  const bool caps = counts_crossings();
   // Many a sample lies in the plane of flat caps, which are ties then.
-  if (caps && boundary_.is_flat()) return nullptr;
+  if (counts_crossings() && boundary_.is_flat()) return nullptr;
   const bool forced = options_.summation == Summation::kFarField;
   constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
   const bool may_pay = options_.summation == Summation::kCheapest && boundary_.exterior_edges() >= kTooFew;
   if (!forced && !may_pay) return nullptr;
   std::unique_ptr<const FarField> far;
-  if (caps && options_.accuracy.sides_only && has_blocks()) {  // whose tree rough sums need, too
+  if (counts_crossings() && options_.accuracy.sides_only && has_blocks()) {  // whose tree rough sums need, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
-    far = std::make_unique<const FarField>(mesh_, boundary_, blocks().caps, sums.tree(), sums.tree_tolerance(),
+    far = std::make_unique<const FarField>(mesh_, boundary_, caps().mesh, sums.tree(), sums.tree_tolerance(),
                                            options_.level);
   } else {
-    far = std::make_unique<const FarField>(mesh_, boundary_, caps ? FarSources::kCaps : FarSources::kTriangles,
+    far = std::make_unique<const FarField>(mesh_, boundary_,
+                                           counts_crossings() ? FarSources::kCaps : FarSources::kTriangles,
                                            kFarShare * tolerance(), options_.level);
   }
   if (far->has_repeated_faces()) return nullptr;

@@ -32,18 +32,8 @@
 
 namespace raycone {
 
-// How winding numbers change from place to place: by integers where rays begin or cease to cross triangles of the mesh,
-// less those of the caps; beside that as the bound says.
-struct Changes {
-  Caps caps;
-  ChangeBound bound;
-
-  Changes(Caps all, SimdLevel level) : caps(std::move(all)), bound(caps, level) {}
-};
-
 // What blocks of lattices are evaluated with.
 struct Blocks {
-  TriangleMesh caps;   // of which crossings are taken off those of the mesh; none where values depend on none
   bool are_sound;      // no triangle is there so often that its error, multiplied, would show
   LatticeBlocks sums;  // of the caps, or of the mesh
 };
@@ -85,7 +75,11 @@ class ScaledMesh {
   [[nodiscard]] const RayCaster& rays() const;
   [[nodiscard]] const ProjectedGrid& grid() const;
   [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
-  [[nodiscard]] const Changes& changes() const;
+  // Of an open mesh; none where values depend on no crossings.
+  [[nodiscard]] const Caps& caps() const;
+  // How winding numbers change from place to place, beside the integers where rays begin or cease to cross triangles of
+  // the mesh, less those of the caps.
+  [[nodiscard]] const ChangeBound& change_bound() const;
   // Only for an open mesh and a tolerance.
   [[nodiscard]] const Blocks& blocks() const;
   // None where there are too few points for it. Only before loops over points.
@@ -131,7 +125,7 @@ class ScaledMesh {
 
   // values[i] = w at sample i, whose ray has crossings[i]. A value that may be a half-integer, where rules have their
   // thresholds, is on the right side of it or is it, whatever the tolerance; with kLeft it need not be. At least one
-  // sample. `of_closed`, where who calls knows them: crossings less those of changes().caps.
+  // sample. `of_closed`, where who calls knows them: crossings less those of caps().
   void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                   Settling settling = Settling::kDone, std::span<const std::int64_t> of_closed = {}) const;
   // The same by the direct sum.
@@ -180,11 +174,12 @@ class ScaledMesh {
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
   mutable std::atomic<bool> far_is_known_ = false;
-  mutable std::once_flag rays_built_, grid_built_, changes_built_, far_built_, blocks_built_, points_built_;
+  mutable std::once_flag rays_built_, grid_built_, caps_built_, change_bound_built_, far_built_, blocks_built_, points_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;
   mutable std::optional<RayCaster> rays_;
   mutable std::optional<ProjectedGrid> grid_;
-  mutable std::optional<Changes> changes_;
+  mutable std::optional<Caps> caps_;
+  mutable std::optional<ChangeBound> change_bound_;
   mutable std::unique_ptr<const Blocks> blocks_;
   mutable std::unique_ptr<const FarField> far_;                     // may refer to blocks_
   mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_

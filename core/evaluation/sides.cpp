@@ -72,7 +72,7 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
     return tally;
   }
   LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);
-  sum_crossings(mesh.changes().caps.mesh, rows, of_caps);
+  sum_crossings(mesh.caps().mesh, rows, of_caps);
   set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
   return tally;
 }

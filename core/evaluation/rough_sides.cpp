@@ -9,10 +9,11 @@
 namespace raycone {
 namespace {
 
-// What each part of a sum may be off by, turns. Some dozens of parts are off by little as a rule, so that most samples
-// are decided at once; where many are not, they are looked at again.
+// What each part of a sum may be off by in the smallest boxes, turns. Some dozens of parts are off by little as a rule,
+// so that most samples are decided at once; where many are not, they are looked at again.
 constexpr double kRoughly = 2.5e-3, kCloser = 1e-4;
 constexpr std::size_t kMany = 32;  // samples
+constexpr double kFiner = 0.7;     // in boxes of twice the side: all boxes in them take over what they are off by
 
 // In units of a triangle's solid angle at a sample: of looking at a box, and of each part of it that is not smooth in
 // the box around. Boxes are divided where that takes less.
@@ -20,6 +21,12 @@ constexpr double kLook = 5e3, kListed = 10.0;
 constexpr std::size_t kLeastSide = 8;  // samples: of the parts of boxes
 // Samples. A lattice may have few blocks, and of these one or two may take most of the time.
 constexpr std::size_t kForOneThread = 0x1p15;
+
+double roughness(const SampleBox& box) {
+  double each = kRoughly;
+  for (std::size_t size = box.size(); size > kLeastSide * kLeastSide * kLeastSide; size /= 8) each *= kFiner;
+  return each;
+}
 
 // Cut near the middles of its longer sides, at multiples of the least side from its beginning. One part where it is
 // small.
@@ -72,7 +79,7 @@ class RoughSides {
 
   // Of the samples of `wanted`, and maybe of others of `box`, which has them all.
   void set(const SampleBox& box, std::span<const SampleBox> wanted, const RoughBox* around) {
-    const RoughBox here = sums_.look_at(box, kRoughly, around);
+    const RoughBox here = sums_.look_at(box, roughness(box), around);
     if (here.is_smooth()) {
       const auto [middle, off] = RoughSums::range(here);
       if (samples_.decide(box, Crossings::kClosed, middle, off)) return;

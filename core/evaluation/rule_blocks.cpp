@@ -42,8 +42,8 @@ bool is_boundary_all_over(const ScaledMesh& mesh) {
 
 // Whether looking for certificates takes longer than what they save.
 bool takes_rough_sums_alone(const ScaledMesh& mesh) {
-  constexpr std::uint64_t kMany = 1000;  // exterior edges
-  return is_boundary_all_over(mesh) && mesh.boundary().exterior_edges() >= kMany && mesh.has_blocks() &&
+  constexpr std::uint64_t kManyEdges = 1000;
+  return is_boundary_all_over(mesh) && mesh.boundary().exterior_edges() >= kManyEdges && mesh.has_blocks() &&
          mesh.blocks().are_sound;
 }
 

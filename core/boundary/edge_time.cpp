@@ -1,9 +1,12 @@
 #include "core/boundary/edge_time.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
+#include <iterator>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include "core/boundary/chain.h"
@@ -52,8 +55,11 @@ double measured(SimdLevel level) {
 }  // namespace
 
 double edge_seconds(SimdLevel level) {
-  static const double of_first_level = measured(level);
-  return of_first_level;
+  static std::array<std::once_flag, 4> measured_once;
+  static std::array<double, 4> seconds;
+  const auto n = static_cast<std::size_t>(level);
+  std::call_once(measured_once[n], [&] { seconds[n] = measured(level); });
+  return seconds[n];
 }
 
 }  // namespace raycone

@@ -6,8 +6,8 @@
 namespace raycone {
 
 // Seconds that an exterior edge takes at a sample of a lattice in the direct sum on one thread: as measured by the
-// first call, which takes a millisecond or so. Machines differ by a factor of ten. Needs DefaultFloatingPoint.
-// Thread-safe.
+// first call with a level, which takes a millisecond or so. Machines differ by a factor of ten. Needs
+// DefaultFloatingPoint. Thread-safe.
 [[nodiscard]] double edge_seconds(SimdLevel level);
 
 }  // namespace raycone

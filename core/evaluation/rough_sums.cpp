@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/boundary/boundary_term.h"
@@ -73,7 +74,10 @@ double RoughSums::cost(const RoughBox& box) {
 }
 
 RoughSums::Range RoughSums::range(const RoughBox& box) {
-  const auto [least, most] = std::ranges::minmax(std::span(box.at_nodes).first(box.nodes.size()));
+  const auto at_nodes = std::span(box.at_nodes).first(box.nodes.size());
+  const bool are_known = std::ranges::none_of(at_nodes, [](double value) { return std::isnan(value); });
+  if (!are_known) return {0.0, std::numeric_limits<double>::infinity()};
+  const auto [least, most] = std::ranges::minmax(at_nodes);
   return {least / 2 + most / 2, box.nodes.growth() * (most / 2 - least / 2) + box.error};
 }
 

@@ -235,7 +235,7 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
   if (of_closed.empty() || !far->counts_crossings()) {
     far->winding_numbers(samples, crossings, values);
   } else {
-    far->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, in another order
+    far->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, perhaps in another order
   }
   if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, far->doubt());
 }

@@ -78,7 +78,7 @@ class ScaledMesh {
   // Of an open mesh; none where values depend on no crossings.
   [[nodiscard]] const Caps& caps() const;
   // How winding numbers change from place to place, beside the integers where rays begin or cease to cross triangles of
-  // the mesh, less those of the caps.
+  // the mesh, less those of the caps. Only in scale, and where values depend on crossings.
   [[nodiscard]] const ChangeBound& change_bound() const;
   // Only for an open mesh and a tolerance.
   [[nodiscard]] const Blocks& blocks() const;
@@ -182,8 +182,8 @@ class ScaledMesh {
   mutable std::optional<Caps> caps_;
   mutable std::optional<ChangeBound> change_bound_;
   mutable std::unique_ptr<const Blocks> blocks_;
-  mutable std::unique_ptr<const FarField> far_;                     // may refer to blocks_
-  mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_
+  mutable std::unique_ptr<const FarField> far_;                     // may refer to blocks_ and caps_
+  mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_ and caps_
   mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
 };
 

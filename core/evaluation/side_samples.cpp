@@ -49,9 +49,14 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
       const std::size_t last = std::min(some + kTogether, end - row);
       const auto values = rest.subspan(some - x, last - some);
       double least = values[0], most = values[0];
-      for (const double value : values) least = std::min(least, value), most = std::max(most, value);
+      bool are_known = true;  // no NaN
+      for (const double value : values) {
+        least = std::min(least, value), most = std::max(most, value);
+        are_known &= value == value;
+      }
       const double middle = n + (least + most) / 2;
-      if (is_certain(middle, needed + (most - least) / 2 + kTurnsRound * (1 + std::abs(least) + std::abs(most)))) {
+      if (are_known &&
+          is_certain(middle, needed + (most - least) / 2 + kTurnsRound * (1 + std::abs(least) + std::abs(most)))) {
         std::fill(place(row + some), place(row + last), holds(side_.rule(), middle) ? 1 : 0);
         continue;
       }

@@ -7,7 +7,7 @@
 namespace raycone {
 namespace {
 
-// A few dozen operations of doubles: less than one of them a nanosecond, or more than one each microsecond, is no time.
+// No machine does dozens of operations in 10 picoseconds, or needs a microsecond for them. Measured once.
 TEST(EdgeTime, IsThatOfSomeDozenOperations) {
   const DefaultFloatingPoint guard;
   const double seconds = edge_seconds(SimdLevel::kBest);

@@ -404,6 +404,8 @@ MUTANTS = [
         ("core/evaluation/rough_sums.cpp", "box.nodes.growth() * (most / 2 - least / 2)", "0 * (most / 2 - least / 2)")]),
     Mutant("boxes_around_are_exact", "what a box takes over is off as it was", [
         ("core/evaluation/rough_sums.cpp", "(around ? around->error : 0.0)", "(around ? 0.0 : 0.0)")]),
+    Mutant("rough_sums_alone_leave_samples", "samples that rough sums do not tell are evaluated", [
+        ("core/evaluation/rule_blocks.cpp", "    samples.evaluate_each(undecided);\n", "")]),
     Mutant("unopened_nodes_are_lost", "parts of a box open the nodes that it has left", [
         ("core/far/cover.cpp", "for (const std::uint32_t node : around->unopened) walk.take_node(node);", "")]),
     Mutant("smooth_nodes_do_not_bend", "interpolation of expansions is off by their derivatives", [

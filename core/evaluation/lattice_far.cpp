@@ -83,7 +83,7 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
 }
 
 double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  // As measured on AMD EPYC (Zen 4); small parts, where they are large.
+  // Seconds on an AMD EPYC (Zen 4). The first two matter where edges are few.
   constexpr double kSample = 1.2e-8;          // beside its edges
   constexpr double kSampleOfBlocks = 1.0e-8;  // beside what its block sums
   constexpr double kSource = 1e-5;            // in the tree

@@ -128,8 +128,8 @@ class WindingNumberEvaluator {
                        std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done = nullptr) const;
 
   // What evaluate() takes for a whole lattice on one thread of this machine, about, what is prepared included. Builds
-  // what it is estimated from, as an evaluation does; where that would take seconds, because boundary edges or triangles
-  // are too many, it is what a direct sum takes (`at_most`).
+  // what it is estimated from, as an evaluation does; where that would take seconds, because boundary edges or
+  // triangles are too many, it is what a direct sum takes (`at_most`).
   struct Estimate {
     double seconds;
     bool at_most;

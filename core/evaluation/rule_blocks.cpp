@@ -41,11 +41,13 @@ bool is_boundary_all_over(const ScaledMesh& mesh) {
          kAllOver * static_cast<double>(mesh.mesh().triangles.size());
 }
 
-// Whether looking for certificates takes longer than what they save.
+bool takes_rough_sums(const ScaledMesh& mesh) { return mesh.has_blocks() && mesh.blocks().are_sound; }
+
+// Whether looking for certificates takes longer than what they save: measured; with fewer edges they save up to a
+// third.
 bool takes_rough_sums_alone(const ScaledMesh& mesh) {
   constexpr std::uint64_t kManyEdges = 1000;
-  return is_boundary_all_over(mesh) && mesh.boundary().exterior_edges() >= kManyEdges && mesh.has_blocks() &&
-         mesh.blocks().are_sound;
+  return is_boundary_all_over(mesh) && mesh.boundary().exterior_edges() >= kManyEdges && takes_rough_sums(mesh);
 }
 
 void set_sides_by_rough_sums(const SideSamples& samples, std::atomic<std::uint64_t>* done) {
@@ -123,14 +125,13 @@ class RuleBlocks {
   // Whether finish() needs a tree where certificates leave boxes; it is made on all threads outside loops.
   [[nodiscard]] bool may_need_tree() const { return has_rough_sums_; }
   void make_tree() const {
-    if (takes_rough_sums()) (void)mesh_.far_field();
+    if (takes_rough_sums(mesh_)) (void)mesh_.far_field();
   }
   // Whether certificates will leave most to rough sums.
   [[nodiscard]] bool expects_rough_sums() const { return has_rough_sums_ && is_boundary_all_over(mesh_); }
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
-  [[nodiscard]] bool takes_rough_sums() const { return has_rough_sums_ && mesh_.blocks().are_sound; }
   void look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
                std::vector<SampleBox>& left) const;
   void find_certificates(CutBlock whole, Undecided& left) const;
@@ -172,7 +173,7 @@ Undecided RuleBlocks::certify(std::size_t n, bool by_certificates) {
 }
 
 void RuleBlocks::finish(Undecided left) const {
-  if (!left.boxes.empty() && takes_rough_sums()) {
+  if (!left.boxes.empty() && takes_rough_sums(mesh_)) {
     set_sides_roughly(samples_, left.boxes, left.runs);
   } else if (left.is_all) {
     samples_.evaluate_rows(left.boxes.front());

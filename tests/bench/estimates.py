@@ -1,7 +1,8 @@
 """What `raycone info` estimates beside what evaluation takes: python3 tests/bench/estimates.py RAYCONE MESH...
 
 One row for each of its two lattices that it estimates to take 0.1 to 20 seconds on one thread, where it does not tell a
-bound ("at most"): seconds to prepare and evaluate. Then the geometric mean of estimated / measured, and how many are off by more than a factor of two.
+bound ("at most"): seconds to prepare and evaluate. Then the geometric mean of estimated / measured, and how many are
+off by more than a factor of two.
 """
 
 import json

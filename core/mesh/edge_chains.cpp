@@ -1,6 +1,7 @@
 #include "core/mesh/edge_chains.h"
 
 #include <algorithm>
+#include <bit>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -12,43 +13,72 @@
 namespace raycone {
 namespace {
 
+// Some of the numbers below a limit: a bit for each number, and how many there are before each word of bits.
+class NumberSet {
+ public:
+  explicit NumberSet(std::size_t limit) : bits_(limit / kBits + 1, 0) {}
+
+  void add(std::uint32_t number) { bits_[number / kBits] |= std::uint64_t{1} << number % kBits; }
+
+  // All of them, ascending. No more are added then.
+  [[nodiscard]] std::vector<std::uint32_t> finish() {
+    std::vector<std::uint32_t> numbers;
+    before_.reserve(bits_.size());
+    for (std::size_t word = 0; word < bits_.size(); ++word) {
+      before_.push_back(static_cast<std::uint32_t>(numbers.size()));
+      for (std::uint64_t bits = bits_[word]; bits != 0; bits &= bits - 1) {
+        numbers.push_back(static_cast<std::uint32_t>(word * kBits + static_cast<std::size_t>(std::countr_zero(bits))));
+      }
+    }
+    return numbers;
+  }
+
+  // How many of them are less than `number`, once finished.
+  [[nodiscard]] std::uint32_t place(std::uint32_t number) const {
+    const std::uint64_t less = bits_[number / kBits] & ((std::uint64_t{1} << number % kBits) - 1);
+    return before_[number / kBits] + static_cast<std::uint32_t>(std::popcount(less));
+  }
+
+ private:
+  static constexpr std::size_t kBits = 64;
+
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint32_t> before_;
+};
+
 // Vertices of edges, each once.
 class EdgeVertices {
  public:
-  EdgeVertices(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges) {
+  EdgeVertices(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges) : vertices_(mesh.vertices.size()) {
     for (const ExteriorEdge& e : edges) {
-      numbers_.push_back(e.from);
-      numbers_.push_back(e.to);
+      vertices_.add(e.from);
+      vertices_.add(e.to);
     }
-    std::ranges::sort(numbers_);
-    numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
-    std::vector<Placed> placed(numbers_.size());
-    for (std::uint32_t i = 0; i < placed.size(); ++i) placed[i] = {mesh.vertices[numbers_[i]].x, i};
+    std::vector<Placed> placed;
+    for (const std::uint32_t v : vertices_.finish()) placed.push_back({mesh.vertices[v].x, v});
     // By coordinates; indices tell apart only vertices that were left unwelded at one position.
     std::ranges::sort(placed, [&](const Placed& a, const Placed& b) {
       if (a.x < b.x || a.x > b.x) return a.x < b.x;  // mostly decided without looking the vertices up
-      const auto order = lexicographic_order(mesh.vertices[numbers_[a.place]], mesh.vertices[numbers_[b.place]]);
-      return order != 0 ? order < 0 : a.place < b.place;
+      const auto order = lexicographic_order(mesh.vertices[a.vertex], mesh.vertices[b.vertex]);
+      return order != 0 ? order < 0 : a.vertex < b.vertex;
     });
     ranks_.resize(placed.size());
-    for (std::uint32_t rank = 0; rank < placed.size(); ++rank) ranks_[placed[rank].place] = rank;
+    for (std::uint32_t rank = 0; rank < placed.size(); ++rank) ranks_[vertices_.place(placed[rank].vertex)] = rank;
   }
 
-  [[nodiscard]] std::size_t size() const { return numbers_.size(); }
+  [[nodiscard]] std::size_t size() const { return ranks_.size(); }
 
   // How many vertices are lexicographically smaller than this one.
-  [[nodiscard]] std::uint32_t rank(std::uint32_t vertex) const {
-    return ranks_[static_cast<std::size_t>(std::ranges::lower_bound(numbers_, vertex) - numbers_.begin())];
-  }
+  [[nodiscard]] std::uint32_t rank(std::uint32_t vertex) const { return ranks_[vertices_.place(vertex)]; }
 
  private:
   struct Placed {
     double x;
-    std::uint32_t place;  // in numbers_
+    std::uint32_t vertex;
   };
 
-  std::vector<std::uint32_t> numbers_;  // ascending
-  std::vector<std::uint32_t> ranks_;    // of these
+  NumberSet vertices_;
+  std::vector<std::uint32_t> ranks_;  // of these, ascending
 };
 
 // Orders the edges of one |multiplicity| into chains, walking from the lexicographically smallest vertex with an unused

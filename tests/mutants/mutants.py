@@ -263,7 +263,11 @@ MUTANTS = [
 
     # --- Determinism, identity, error bound ---
     Mutant("edges_by_index", "exterior edges are ordered by coordinates", [
-        ("core/mesh/edge_chains.cpp", "ranks_[placed[rank].place] = rank;", "ranks_[rank] = rank;")]),
+        ("core/mesh/edge_chains.cpp", "ranks_[vertices_.place(placed[rank].vertex)] = rank;",
+         "ranks_[rank] = rank;")]),
+    Mutant("few_points_of_gauss", "moments are exact up to the order of their expansion", [
+        ("core/far/moment_kernel.cpp", "static_cast<std::size_t>(last / 2 + 1)",
+         "static_cast<std::size_t>(last / 2)")]),
     Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
         ("core/mesh/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
     Mutant("equal_hashes_are_equal", "vertices are merged by their coordinates, never by a hash alone", [

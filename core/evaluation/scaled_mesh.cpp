@@ -87,6 +87,7 @@ const Blocks& ScaledMesh::blocks() const {
     const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
     blocks_.reset(new Blocks{!faces.has_repeated_faces,
                              LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)});
+    blocks_are_known_.store(true, std::memory_order_release);
   });
   return *blocks_;
 }
@@ -139,15 +140,16 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   const bool may_pay = options_.summation == Summation::kCheapest && boundary_.exterior_edges() >= kTooFew;
   if (!forced && !may_pay) return nullptr;
   std::unique_ptr<const FarField> far;
-  if (counts_crossings() && options_.accuracy.sides_only && has_blocks()) {  // whose tree rough sums need, too
+  const FarSources sources = counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
+  const bool shares_tree = options_.accuracy.sides_only && has_blocks() &&
+                           (counts_crossings() || blocks_are_known_.load(std::memory_order_acquire));
+  if (shares_tree) {  // rough sums need it, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
-    far = std::make_unique<const FarField>(mesh_, boundary_, caps().mesh, sums.tree(), sums.tree_tolerance(),
+    far = std::make_unique<const FarField>(mesh_, boundary_, sources, caps().mesh, sums.tree(), sums.tree_tolerance(),
                                            options_.level);
   } else {
-    far = std::make_unique<const FarField>(mesh_, boundary_,
-                                           counts_crossings() ? FarSources::kCaps : FarSources::kTriangles,
-                                           kFarShare * tolerance(), options_.level);
+    far = std::make_unique<const FarField>(mesh_, boundary_, sources, kFarShare * tolerance(), options_.level);
   }
   if (far->has_repeated_faces()) return nullptr;
   constexpr double kSafety = 0.8;  // estimates are no better

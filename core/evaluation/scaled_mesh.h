@@ -173,7 +173,7 @@ class ScaledMesh {
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
-  mutable std::atomic<bool> far_is_known_ = false;
+  mutable std::atomic<bool> far_is_known_ = false, blocks_are_known_ = false;
   mutable std::once_flag rays_built_, grid_built_, caps_built_, change_bound_built_, far_built_, blocks_built_,
       points_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;

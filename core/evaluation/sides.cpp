@@ -48,12 +48,14 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
   return tally;
 }
 
-// Whether certificates do not pay. Soups have hardly a block that is decided; caps and their tree take about as long as
-// so many edges at samples.
+// Whether set_sides() does not pay, or may not be called.
 bool takes_values(const ScaledMesh& mesh, const LatticeBlock& block) {
-  constexpr double kWorthCaps = 0x1p20;
-  const double work = static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges());
-  return !mesh.is_in_scale() || !mesh.counts_crossings() || work <= kWorthCaps;
+  constexpr double kWorthCaps = 0x1p20;  // edges at samples take about as long as caps and their tree
+  constexpr double kWorthTree = 0x1p16;  // samples: with fewer, the far field of a soup takes less time
+  if (!mesh.is_in_scale()) return true;
+  const double samples = static_cast<double>(block.size());
+  if (!mesh.counts_crossings()) return samples <= kWorthTree || !mesh.has_blocks() || !mesh.blocks().are_sound;
+  return samples * static_cast<double>(mesh.boundary().exterior_edges()) <= kWorthCaps;
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
@@ -69,6 +71,10 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
   const Tally tally{crossings.ties(), finish_all(rows, crossings)};
   if (mesh.is_closed()) {
     set_sides_of_runs(rows, rule, crossings, sides, done);
+    return tally;
+  }
+  if (!mesh.counts_crossings()) {  // the triangles of a soup are its caps
+    set_sides(mesh, rows, rule, crossings, crossings, sides, done);
     return tally;
   }
   LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);

@@ -17,6 +17,17 @@ bool far_field_may_pay(double samples, double sources, double direct) {
   return kPreparation < small_part * samples * direct;
 }
 
+namespace {
+
+// Measured with soups of 100 000 triangles and CAD models, lattices of 50^3.
+SourceTree::Detail detail_for(double tolerance) {
+  constexpr int kLeast = 16;
+  const double digits = -std::log10(tolerance);
+  return {64, std::clamp(static_cast<int>(std::lround(14 + 0.8 * digits)), kLeast, kMultipoleOrder)};
+}
+
+}  // namespace
+
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,
                    SimdLevel level)
     : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)) {
@@ -27,13 +38,13 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
-  tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level);
+  tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level, detail_for(tolerance));
   set_costs(bounding_box(mesh), tolerance);
 }
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh& caps, const SourceTree& tree,
-                   double tolerance, SimdLevel level)
-    : boundary_(boundary), sources_(FarSources::kCaps), kernel_(far_kernel(level)), cap_crossings_(caps), tree_(&tree) {
+FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, const TriangleMesh& caps,
+                   const SourceTree& tree, double tolerance, SimdLevel level)
+    : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)), cap_crossings_(caps), tree_(&tree) {
   doubt_ = std::min(doubt(tolerance, static_cast<double>(tree.triangles().size())), Boundary::kMostDoubt);
   set_costs(bounding_box(mesh), tolerance);
 }

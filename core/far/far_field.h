@@ -31,10 +31,10 @@ class FarField final : public BoundaryTerm {
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
   // rounds included. `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
   FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance, SimdLevel level);
-  // The same of caps of which there is a tree, made with this tolerance. Both must outlive this, too. Precondition: no
-  // cap is repeated.
-  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh& caps, const SourceTree& tree,
-           double tolerance, SimdLevel level);
+  // The same where there is a tree of the sources, made with this tolerance. It must outlive this, too, as must `caps`,
+  // which are empty for a soup. Precondition: no source is repeated.
+  FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, const TriangleMesh& caps,
+           const SourceTree& tree, double tolerance, SimdLevel level);
 
   // Whether a face or a cap is there so often that its error, multiplied, would show: then do not use this.
   [[nodiscard]] bool has_repeated_faces() const { return faces_repeat_; }

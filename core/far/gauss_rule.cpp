@@ -7,9 +7,9 @@ namespace raycone {
 namespace {
 
 // By Newton's method from Chebyshev's points.
-GaussRule make_rule() {
-  GaussRule rule{};
-  constexpr int n = static_cast<int>(GaussRule::kPoints);
+GaussRule make_rule(std::size_t points) {
+  GaussRule rule{points, {}, {}};
+  const int n = static_cast<int>(points);
   for (int i = 0; i < n; ++i) {
     long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L)), slope = 1;
     for (int step = 0; step < 8; ++step) {
@@ -30,9 +30,13 @@ GaussRule make_rule() {
 
 }  // namespace
 
-const GaussRule& gauss_rule() {
-  static const GaussRule rule = make_rule();
-  return rule;
+const GaussRule& gauss_rule(std::size_t points) {
+  static const std::array<GaussRule, GaussRule::kMost> rules = [] {
+    std::array<GaussRule, GaussRule::kMost> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = make_rule(n + 1);
+    return all;
+  }();
+  return rules[points - 1];
 }
 
 }  // namespace raycone

@@ -1,4 +1,4 @@
-// Gauss's rule of eight points on [0, 1].
+// Gauss's rules on [0, 1].
 #pragma once
 
 #include <array>
@@ -6,11 +6,13 @@
 
 namespace raycone {
 
-// The integral of a polynomial of degree 15 at most is the sum of `weight` times its values at `at`.
+// The integral of a polynomial of degree 2 `points` - 1 at most is the sum of `weight` times its values at `at`.
 struct GaussRule {
-  static constexpr std::size_t kPoints = 8;
-  std::array<double, kPoints> at, weight;
+  static constexpr std::size_t kMost = 12;  // points
+  std::size_t points;
+  std::array<double, kMost> at, weight;
 };
-[[nodiscard]] const GaussRule& gauss_rule();
+// That of 1 to kMost points. Thread-safe.
+[[nodiscard]] const GaussRule& gauss_rule(std::size_t points);
 
 }  // namespace raycone

@@ -12,7 +12,7 @@
 namespace raycone {
 
 LatticeBlocks::LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Near near)
-    : tree_(std::move(triangles), LatticeBlocksWalk::kSampleShare * tolerance, level),
+    : tree_(std::move(triangles), LatticeBlocksWalk::kSampleShare * tolerance, level, {}),
       tolerance_(tolerance),
       level_(level) {
   sources_.reserve(tree_.triangles().size());

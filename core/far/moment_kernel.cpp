@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/far/gauss_rule.h"
 #include "core/far/multipole.h"
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -23,7 +22,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::CappedTag<double, kMomentLanes>;
 using Lanes = hn::Vec<Doubles>;
 constexpr Doubles d;
-constexpr int kOrder = kMomentOrder;
+
+// What leads from R_(n-1)^m and R_n^m to R_(n+1)^m, in the order of multipole_index(n, m, kMomentOrder).
+struct Step {
+  double forward, back;
+};
+constexpr std::array<Step, kMomentTerms> kSteps = [] {
+  std::array<Step, kMomentTerms> steps{};
+  for (int m = 0; m <= kMomentOrder; ++m) {
+    for (int n = m; n <= kMomentOrder; ++n) {
+      const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
+      steps[multipole_index(n, m, kMomentOrder)] = {(2 * n + 1) * step, step};
+    }
+  }
+  return steps;
+}();
 
 // Of each term, of as many edges as there are lanes.
 struct Integrals {
@@ -35,18 +48,18 @@ struct ComplexLanes {
   Lanes re, im;
 };
 
-// Of R_n^m at one point, times its weight: adds those of all n to the integrals.
-HWY_INLINE void add_column(int m, const ComplexLanes& corner, Lanes z, Lanes square, bool is_first,
+// Of R_n^m at one point, n <= last, times its weight: adds those of all n to the integrals.
+HWY_INLINE void add_column(int m, int last, const ComplexLanes& corner, Lanes z, Lanes square, bool is_first,
                            Integrals& integrals) {
   ComplexLanes value = corner, before{hn::Zero(d), hn::Zero(d)};
-  for (int n = m; n <= kOrder; ++n) {
-    const std::size_t term = multipole_index(n, m, kOrder);
+  const Step* step = &kSteps[multipole_index(m, m, kMomentOrder)];
+  std::size_t term = multipole_index(m, m, last);
+  for (int n = m; n <= last; ++n, ++term, ++step) {
     double* const re = integrals.re[term].data();
     double* const im = integrals.im[term].data();
     hn::Store(is_first ? value.re : hn::Add(hn::Load(d, re), value.re), d, re);
     hn::Store(is_first ? value.im : hn::Add(hn::Load(d, im), value.im), d, im);
-    const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
-    const Lanes forward = hn::Mul(hn::Set(d, (2 * n + 1) * step), z), back = hn::Mul(hn::Set(d, step), square);
+    const Lanes forward = hn::Mul(hn::Set(d, step->forward), z), back = hn::Mul(hn::Set(d, step->back), square);
     const ComplexLanes next{hn::Sub(hn::Mul(forward, value.re), hn::Mul(back, before.re)),
                             hn::Sub(hn::Mul(forward, value.im), hn::Mul(back, before.im))};
     before = value;
@@ -54,9 +67,9 @@ HWY_INLINE void add_column(int m, const ComplexLanes& corner, Lanes z, Lanes squ
   }
 }
 
-HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, Integrals& integrals) {
-  const GaussRule& rule = gauss_rule();
-  for (std::size_t point = 0; point < GaussRule::kPoints; ++point) {
+HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, int last, const GaussRule& rule,
+                          Integrals& integrals) {
+  for (std::size_t point = 0; point < rule.points; ++point) {
     const Lanes t = hn::Set(d, rule.at[point]);
     const auto at = [&](std::size_t axis) {
       return hn::Add(hn::Load(d, &edges.from[axis][lane]), hn::Mul(t, hn::Load(d, &edges.along[axis][lane])));
@@ -64,8 +77,8 @@ HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, Integrals&
     const Lanes x = at(0), y = at(1), z = at(2);
     const Lanes square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     ComplexLanes corner{hn::Set(d, rule.weight[point]), hn::Zero(d)};
-    for (int m = 0; m <= kOrder; ++m) {
-      add_column(m, corner, z, square, point == 0, integrals);
+    for (int m = 0; m <= last; ++m) {
+      add_column(m, last, corner, z, square, point == 0, integrals);
       const Lanes factor = hn::Set(d, -1.0 / (2 * (m + 1)));
       corner = {hn::Mul(factor, hn::Sub(hn::Mul(corner.re, x), hn::Mul(corner.im, y))),
                 hn::Mul(factor, hn::Add(hn::Mul(corner.re, y), hn::Mul(corner.im, x)))};
@@ -73,13 +86,15 @@ HWY_INLINE void integrate(const MomentEdges& edges, std::size_t lane, Integrals&
   }
 }
 
-void add_edges_here(const MomentEdges& edges, MomentSums& sums) {
+void add_edges_here(const MomentEdges& edges, int order, const GaussRule& rule, MomentSums& sums) {
+  const int last = order - 1;
+  const std::size_t terms = multipole_index(last, last, last) + 1;
   Integrals integrals;
   for (std::size_t lane = 0; lane < kMomentLanes; lane += hn::Lanes(d)) {
-    integrate(edges, lane, integrals);
+    integrate(edges, lane, last, rule, integrals);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Lanes normal = hn::Load(d, &edges.normal[axis][lane]);
-      for (std::size_t term = 0; term < kMomentTerms; ++term) {
+      for (std::size_t term = 0; term < terms; ++term) {
         double* const re = &sums.re[axis][term][lane];
         double* const im = &sums.im[axis][term][lane];
         hn::Store(hn::Add(hn::Load(d, re), hn::Mul(normal, hn::Load(d, integrals.re[term].data()))), d, re);
@@ -90,9 +105,9 @@ void add_edges_here(const MomentEdges& edges, MomentSums& sums) {
 }
 
 // One lane is one m.
-void shift_here(const DegreeRows& shift, const DegreeRows& part, DegreeRows& sums) {
+void shift_here(const DegreeRows& shift, const DegreeRows& part, int order, DegreeRows& sums) {
   constexpr int kMiddle = DegreeRows::kMiddle;
-  for (int n = 1; n <= kMomentOrder + 1; ++n) {
+  for (int n = 1; n <= order; ++n) {
     for (int m = 0; m <= n; m += static_cast<int>(hn::Lanes(d))) {
       Lanes re = hn::Zero(d), im = hn::Zero(d);
       for (int k = 0; k < n; ++k) {

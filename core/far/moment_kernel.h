@@ -4,11 +4,12 @@
 #include <array>
 #include <cstddef>
 
+#include "core/far/gauss_rule.h"
 #include "core/machine/simd.h"
 
 namespace raycone {
 
-inline constexpr int kMomentOrder = 15;  // of R_n^m, n at most
+inline constexpr int kMomentOrder = 21;  // of R_n^m, n at most
 inline constexpr std::size_t kMomentTerms = std::size_t{(kMomentOrder + 1) * (kMomentOrder + 2) / 2};
 inline constexpr std::size_t kMomentLanes = 8;
 using MomentLanes = std::array<double, kMomentLanes>;
@@ -18,10 +19,10 @@ struct MomentEdges {
   alignas(64) std::array<MomentLanes, 3> from, along, normal;
 };
 
-// For each component of these vectors the sums of it times the integral of R_n^m, in the order of multipole_index(n, m,
-// kMomentOrder); lane by lane.
+// For each component of these vectors the sums of it times the integral of R_n^m, n < order, in the order of
+// multipole_index(n, m, order - 1); lane by lane.
 struct MomentSums {
-  alignas(64) std::array<std::array<MomentLanes, kMomentTerms>, 3> re{}, im{};
+  alignas(64) std::array<std::array<MomentLanes, kMomentTerms>, 3> re, im;
 };
 
 // Complex numbers of degrees n up to kMomentOrder + 1 and all m: that of (n, m) is at [n][kMiddle + m].
@@ -33,11 +34,11 @@ struct DegreeRows {
 
 // Operations come in one order, without fused multiply-add: results are the same for every SIMD level. Thread-safe.
 struct MomentKernel {
-  // Adds eight edges, a lane each. Integrals are by Gauss's rule of eight points, exact but for rounding.
-  void (*add_edges)(const MomentEdges& edges, MomentSums& sums);
-  // Sets sums[n][m], 1 <= n and 0 <= m <= n, to the sum over k < n and |l| <= k of shift[k][l] * part[n - k][m - l]. Of
-  // `part`, what is beyond a degree, |m| > n, must be 0; of `sums` it gets no meaning.
-  void (*shift)(const DegreeRows& shift, const DegreeRows& part, DegreeRows& sums);
+  // Adds eight edges, a lane each.
+  void (*add_edges)(const MomentEdges& edges, int order, const GaussRule& rule, MomentSums& sums);
+  // Sets sums[n][m], 1 <= n <= order and 0 <= m <= n, to the sum over k < n and |l| <= k of shift[k][l] * part[n - k][m
+  // - l]. Of `part`, what is beyond a degree, |m| > n, must be 0; of `sums` it gets no meaning.
+  void (*shift)(const DegreeRows& shift, const DegreeRows& part, int order, DegreeRows& sums);
 };
 
 // That of the level, of the best one where the level is not available.

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/far/gauss_rule.h"
+
 namespace raycone {
 namespace {
 
@@ -27,10 +29,13 @@ struct Tables {
   std::array<double, kMultipoleTerms> regular{};   // what |R_n^m| is at most, all terms of its recurrence positive
   std::array<double, kMultipoleTerms> legendre{};  // likewise |b_n^m| at r = 1
   std::array<double, kP + 1> moment{};             // the norm of the moments of an edge with |a||b - a| = 1
-  std::array<double, kP + 1> shift{};              // the norm of `regular`
+  // [points][n]: what is left out of them by a rule of Gauss's of so few points, on an edge of length 1
+  std::array<std::array<double, kP + 1>, GaussRule::kMost + 1> left_out{};
+  std::array<double, kP + 1> shift{};                       // the norm of `regular`
   std::array<std::array<double, kP + 1>, kP + 1> choose{};  // sqrt of (2n over 2k)
 
   Tables();
+  void set_left_out();
   [[nodiscard]] double weight(int n, int m) const { return factorial[index(n + m)] * factorial[index(n - m)]; }
 };
 
@@ -74,6 +79,18 @@ Tables::Tables() {
       c = c * ((2 * n - 2 * k) * (2 * n - 2 * k - 1)) / ((2 * k + 1) * (2 * k + 2));
     }
   }
+  set_left_out();
+}
+
+// Gauss's rule of G points leaves out (G!)^4 / ((2G + 1) (2G)!^3) times a derivative of order 2G.
+void Tables::set_left_out() {
+  for (int points = 1; points <= static_cast<int>(GaussRule::kMost); ++points) {
+    const double ratio = factorial[index(points)] / factorial[index(2 * points)] * factorial[index(points)];
+    for (int n = 2 * points + 1; n <= kP; ++n) {
+      left_out[index(points)][index(n)] =
+          kUp * ratio * ratio * choose[index(n)][index(2 * points + 1)] / (kFourPi * (n + 1));
+    }
+  }
 }
 
 const Tables& tables() {
@@ -81,10 +98,15 @@ const Tables& tables() {
   return all;
 }
 
-// The sums of (a x b) times the integral of R_n^m along an edge a -> b, n < kP.
+// The sums of (a x b) times the integral of R_n^m along an edge a -> b, n < order.
 class EdgeSums {
  public:
-  explicit EdgeSums(const MomentKernel& kernel) : kernel_(kernel) {}
+  EdgeSums(int order, const GaussRule& rule, const MomentKernel& kernel) : kernel_(kernel), order_(order), rule_(rule) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::fill_n(lanes_.re[axis].begin(), terms(), MomentLanes{});
+      std::fill_n(lanes_.im[axis].begin(), terms(), MomentLanes{});
+    }
+  }
 
   void add(const Vec3& a, const Vec3& along, double sign) {
     const Vec3 normal = sign * cross(a, along);
@@ -95,13 +117,13 @@ class EdgeSums {
       edges_.normal[i][count_] = normal[axis];
     }
     if (++count_ < kMomentLanes) return;
-    kernel_.add_edges(edges_, lanes_);
+    kernel_.add_edges(edges_, order_, rule_, lanes_);
     count_ = 0;
   }
   void finish() {
     while (count_ > 0) add({}, {}, 0.0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t term = 0; term < kMomentTerms; ++term) {
+      for (std::size_t term = 0; term < terms(); ++term) {
         const MomentLanes &re = lanes_.re[axis][term], &im = lanes_.im[axis][term];
         sums_[axis][term] = {std::accumulate(re.begin(), re.end(), 0.0), std::accumulate(im.begin(), im.end(), 0.0)};
       }
@@ -110,26 +132,30 @@ class EdgeSums {
   // Of component `axis` of a x b, any m.
   [[nodiscard]] Complex operator()(std::size_t axis, int n, int m) const {
     if (std::abs(m) > n) return 0.0;
-    const Complex c = sums_[axis][multipole_index(n, std::abs(m), kMomentOrder)];
+    const Complex c = sums_[axis][multipole_index(n, std::abs(m), order_ - 1)];
     return m >= 0 ? c : m % 2 == 0 ? std::conj(c) : -std::conj(c);
   }
 
  private:
+  [[nodiscard]] std::size_t terms() const { return multipole_index(order_ - 1, order_ - 1, order_ - 1) + 1; }
+
   MomentKernel kernel_;
+  int order_;
+  const GaussRule& rule_;
   MomentEdges edges_;
   std::size_t count_ = 0;
   MomentSums lanes_;
   std::array<std::array<Complex, kMomentTerms>, 3> sums_;
 };
 
-// R_n^m(s), m >= 0, n < kP.
-std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s) {
+// R_n^m(s), m >= 0, n < order.
+std::array<Complex, kMultipoleTerms> regular_harmonics(const Vec3& s, int order) {
   std::array<Complex, kMultipoleTerms> all;
   const double square = dot(s, s);
   Complex corner = 1.0;
-  for (int m = 0; m < kP; ++m) {
+  for (int m = 0; m < order; ++m) {
     Complex value = corner, before = 0.0;
-    for (int n = m; n < kP; ++n) {
+    for (int n = m; n < order; ++n) {
       all[multipole_index(n, m)] = value;
       const double step = 1.0 / ((n + 1) * (n + 1) - m * m);
       const Complex next = (2 * n + 1) * step * s.z * value - step * square * before;
@@ -158,12 +184,40 @@ DegreeRows rows_of(int order, const At& at) {
   return rows;
 }
 
+// Those that are left out of the moments of degree n, per |a||b - a|, where no edge is longer than `longest`.
+double left_out_of_moments(std::size_t points, int n, double longest, double radius) {
+  const int derivative = 2 * static_cast<int>(points);
+  if (n <= derivative) return 0;
+  return tables().left_out[points][index(n)] * std::pow(longest, derivative) * std::pow(radius, n - derivative - 1);
+}
+
+std::size_t points_for(double longest, double radius, int order, double precision) {
+  const std::size_t exact = static_cast<std::size_t>(order - 1) / 2 + 1;
+  for (std::size_t points = 1; points < exact; ++points) {
+    double largest = 0;
+    for (int n = 1; n <= order; ++n) {
+      largest = std::max(largest, std::ldexp(left_out_of_moments(points, n, longest, radius), -(n + 1)));
+    }
+    if (largest <= precision / kFourPi) return points;
+  }
+  return exact;
+}
+
+double longest_side_of(std::span<const SolidTriangle> triangles) {
+  double longest = 0;
+  for (const SolidTriangle& t : triangles) {
+    longest = std::max({longest, norm(t.b - t.a), norm(t.c - t.b), norm(t.a - t.c)});
+  }
+  return longest;
+}
+
 }  // namespace
 
 Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius,
-                       const MomentKernel& kernel) {
-  EdgeSums sums(kernel);
-  const double scale = 1 / unit;
+                       int order, double precision, const MomentKernel& kernel) {
+  const double scale = 1 / unit, longest = kUp * scale * longest_side_of(triangles);
+  const std::size_t points = points_for(longest, radius, order, precision);
+  EdgeSums sums(order, gauss_rule(points), kernel);
   double reach = 0;  // the sum of |a||b - a|
   for (const SolidTriangle& t : triangles) {
     const std::array<Vec3, 3> corners{scale * (t.a - centre), scale * (t.b - centre), scale * (t.c - centre)};
@@ -174,9 +228,9 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
     }
   }
   sums.finish();
-  Multipole all;
+  Multipole all{order, {}, {}, {}};
   double power = 1;  // of the radius
-  for (int n = 1; n <= kP; ++n) {
+  for (int n = 1; n <= order; ++n) {
     for (int m = 0; m <= n; ++m) {
       const Complex gradient = sums(2, n - 1, m) + 0.5 * (sums(0, n - 1, m + 1) - sums(0, n - 1, m - 1)) -
                                Complex(0, 0.5) * (sums(1, n - 1, m + 1) + sums(1, n - 1, m - 1));
@@ -185,26 +239,29 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
       all.im[multipole_index(n, m)] = -factor * gradient.imag();
     }
     const auto i = index(n);
-    const double roundings = 2 * (20.0 * (n - 1) + 40 + 3 * static_cast<double>(triangles.size()));
-    all.error[i] = kUp * roundings * kUnitRoundoff * reach * power * tables().moment[i];
+    const double roundings = 2 * (20.0 * (n - 1) + 45 + 3 * static_cast<double>(triangles.size()));
+    all.error[i] =
+        kUp * reach *
+        (roundings * kUnitRoundoff * power * tables().moment[i] + left_out_of_moments(points, n, longest, radius));
     power *= radius;
   }
   return all;
 }
 
 void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio, const MomentKernel& kernel) {
-  const std::array<Complex, kMultipoleTerms> harmonics = regular_harmonics(shift);
-  const auto regular = rows_of(kP - 1, [&](int n, int m) { return std::conj(harmonics[multipole_index(n, m)]); });
+  const int order = sum.order;
+  const std::array<Complex, kMultipoleTerms> harmonics = regular_harmonics(shift, order);
+  const auto regular = rows_of(order - 1, [&](int n, int m) { return std::conj(harmonics[multipole_index(n, m)]); });
   std::array<double, kP + 1> powers{};  // of the ratio, the exponent being n + 1
   powers[0] = ratio;
   for (std::size_t n = 1; n <= kP; ++n) powers[n] = powers[n - 1] * ratio;
-  const auto moments = rows_of(kP, [&](int n, int m) {
+  const auto moments = rows_of(order, [&](int n, int m) {
     const std::size_t term = multipole_index(n, m);
     return powers[index(n)] * Complex(part.re[term], part.im[term]);
   });
   DegreeRows shifted;
-  kernel.shift(regular, moments, shifted);
-  for (int n = 1; n <= kP; ++n) {
+  kernel.shift(regular, moments, order, shifted);
+  for (int n = 1; n <= order; ++n) {
     for (int m = 0; m <= n; ++m) {
       sum.re[multipole_index(n, m)] += shifted.re[index(n)][index(DegreeRows::kMiddle + m)];
       sum.im[multipole_index(n, m)] += shifted.im[index(n)][index(DegreeRows::kMiddle + m)];
@@ -212,7 +269,7 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
   }
   const MultipoleBounds bounds = bounds_of(part);
   const double length = norm(shift);
-  for (int n = 1; n <= kP; ++n) {
+  for (int n = 1; n <= order; ++n) {
     double error = 0, power = 1;  // of the length
     for (int k = 0; k < n; ++k) {
       const auto i = index(n), j = index(n - k), l = index(k);
@@ -226,8 +283,9 @@ void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, doubl
 
 MultipoleBounds bounds_of(const Multipole& multipole) {
   MultipoleBounds bounds;
+  bounds.order = multipole.order;
   const Tables& t = tables();
-  for (int n = 1; n <= kP; ++n) {
+  for (int n = 1; n <= multipole.order; ++n) {
     const auto i = index(n);
     double square = 0, terms = 0;
     for (int m = 0; m <= n; ++m) {
@@ -244,12 +302,12 @@ MultipoleBounds bounds_of(const Multipole& multipole) {
 }
 
 // |grad of r^n P_n| <= n r^(n-1) (Bernstein and Szego), summed over n.
-double beyond_multipoles(double area, double radius, double rho) {
+double beyond_multipoles(double area, double radius, int order, double rho) {
   const double x = radius * rho;
   if (!(x < 1)) return std::numeric_limits<double>::infinity();
   double power = rho * rho;
-  for (int i = 0; i < kP; ++i) power *= x;
-  return kUp * area / kFourPi * power * (kP + 1 - kP * x) / ((1 - x) * (1 - x));
+  for (int i = 0; i < order; ++i) power *= x;
+  return kUp * area / kFourPi * power * (order + 1 - order * x) / ((1 - x) * (1 - x));
 }
 
 void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients) {

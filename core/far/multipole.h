@@ -17,45 +17,52 @@
 
 namespace raycone {
 
-inline constexpr int kMultipoleOrder = 16;  // n at most
+inline constexpr int kMultipoleOrder = 22;  // of an expansion at most
 inline constexpr std::size_t kMultipoleTerms = std::size_t{(kMultipoleOrder + 1) * (kMultipoleOrder + 2) / 2};
 
-// Where (n, m), 0 <= m <= n <= order, is among the terms of an expansion up to `order`: m by m.
+// Where (n, m), 0 <= m <= n <= order, is among the terms of an expansion of that order: m by m.
 [[nodiscard]] constexpr std::size_t multipole_index(int n, int m, int order = kMultipoleOrder) {
   const int place = m * (2 * order + 3 - m) / 2 + (n - m);
   return static_cast<std::size_t>(place);
 }
 
-// M_n^m for m >= 0; M_n^-m = (-1)^m times the conjugate. No lengths: with `unit` for the unit of length.
+// M_n^m for m >= 0 and n <= order, in the order of multipole_index(n, m); M_n^-m = (-1)^m times the conjugate. No
+// lengths: with `unit` for the unit of length.
 struct Multipole {
+  int order = kMultipoleOrder;
   std::array<double, kMultipoleTerms> re{}, im{};
-  // Of degree n: no potential at a distance of 1 is off by more, as moments are rounded (docs/method.md, "Far field").
+  // Of degree n: no potential at a distance of 1 is off by more, as integrals are by a rule of few points, and moments
+  // are rounded (docs/method.md, "Far field").
   std::array<double, kMultipoleOrder + 1> error{};
 };
 
 // Of the triangles, each of which is at most `radius` units away from the centre at every point; radius <= 1. `unit` is
-// a power of two. The result does not depend on the kernel.
+// a power of two; 1 <= order <= kMultipoleOrder. Where sides of triangles are short, integrals along them are off by
+// about `precision` of what they may be, seen from two units away, which `error` includes; 0: by no more than what
+// rounds. The result does not depend on the kernel.
 [[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit,
-                                     double radius, const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
+                                     double radius, int order, double precision,
+                                     const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
-// Adds an expansion that is about a centre that lies `shift` away, in units of the sum, and whose unit is `ratio` such
-// units, a power of two. The result does not depend on the kernel.
+// Adds an expansion of the same order that is about a centre that lies `shift` away, in units of the sum, and whose
+// unit is `ratio` such units, a power of two. The result does not depend on the kernel.
 void add_shifted(Multipole& sum, const Multipole& part, const Vec3& shift, double ratio,
                  const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
 // What bounds the error of an expansion that is cut off behind degree p, at a distance of 1 / rho units: at most the
-// sum of evaluation[n] rho^(n+1) over n <= p and of size[n] rho^(n+1) over n > p, and of beyond_multipoles().
+// sum of evaluation[n] rho^(n+1) over n <= p and of size[n] rho^(n+1) over p < n <= order, and of beyond_multipoles().
 struct MultipoleBounds {
+  int order = kMultipoleOrder;
   std::array<double, kMultipoleOrder + 1> size{}, evaluation{};
 };
 [[nodiscard]] MultipoleBounds bounds_of(const Multipole& multipole);
 
-// Of all degrees above kMultipoleOrder, for triangles of `area` square units within `radius` units. Infinite where rho
-// * radius is 1 or more.
-[[nodiscard]] double beyond_multipoles(double area, double radius, double rho);
+// Of all degrees above `order`, for triangles of `area` square units within `radius` units. Infinite where rho * radius
+// is 1 or more.
+[[nodiscard]] double beyond_multipoles(double area, double radius, int order, double rho);
 
-// The coefficients of the terms b_n^m in the evaluation, for n <= order, in the order of multipole_index(n, m, order):
-// re, im, re, im ...
+// The coefficients of the terms b_n^m in the evaluation, for n <= order, which is at most the multipole's, in the order
+// of multipole_index(n, m, order): re, im, re, im ...
 //   w = Re of the sum over m of ((x + iy) / r^2)^m times the sum over n of coefficient b_n^m, divided by |r|,
 //   b_m^m = 1, b_(n+1)^m = z / r^2 b_n^m - multipole_step(n, m) / r^2 b_(n-1)^m.
 void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients);

@@ -29,12 +29,12 @@ double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c -
 // Of the coefficients up to this degree.
 std::size_t numbers_of(int order) { return 2 * (multipole_index(order, order, order) + 1); }
 
-// The highest degree that is not dearer than the triangles one by one, per sample: a triangle takes about as long as 20
-// terms.
-int worthwhile_order(std::size_t triangles) {
+// The highest degree, up to `most`, that is not dearer than the triangles one by one, per sample: a triangle takes
+// about as long as 20 terms.
+int worthwhile_order(std::size_t triangles, int most) {
   const double terms = 20.0 * static_cast<double>(triangles) - 30;
   int order = 0;
-  while (order < kMultipoleOrder && (order + 2) * (order + 3) <= 2 * terms) ++order;
+  while (order < most && (order + 2) * (order + 3) <= 2 * terms) ++order;
   return order;
 }
 
@@ -42,15 +42,18 @@ int worthwhile_order(std::size_t triangles) {
 std::array<double, kOrders + 1> largest_ratios(const SourceNode& node, double share) {
   constexpr double kFarthest = 0x1p-60;
   constexpr int kSteps = 14;  // of bisection in the exponent
+  const auto known = static_cast<std::size_t>(node.bounds.order), orders = static_cast<std::size_t>(node.order);
   const double area = node.area / node.unit / node.unit, radius = node.radius / node.unit;
   const auto error_at = [&](const std::array<double, kOrders + 1>& rho) {
     std::array<double, kOrders + 1> sum{};
-    for (std::size_t n = kOrders; n >= 1; --n) {
-      for (std::size_t p = 1; p <= kOrders; ++p) {
+    for (std::size_t n = known; n >= 1; --n) {
+      for (std::size_t p = 1; p <= orders; ++p) {
         sum[p] = rho[p] * (sum[p] + (n <= p ? node.bounds.evaluation[n] : node.bounds.size[n]));
       }
     }
-    for (std::size_t p = 1; p <= kOrders; ++p) sum[p] = rho[p] * sum[p] + beyond_multipoles(area, radius, rho[p]);
+    for (std::size_t p = 1; p <= orders; ++p) {
+      sum[p] = rho[p] * sum[p] + beyond_multipoles(area, radius, node.bounds.order, rho[p]);
+    }
     return sum;
   };
   std::array<double, kOrders + 1> low, high;
@@ -59,11 +62,11 @@ std::array<double, kOrders + 1> largest_ratios(const SourceNode& node, double sh
   const auto at_low = error_at(low);
   for (int step = 0; step < kSteps; ++step) {
     std::array<double, kOrders + 1> between;
-    for (std::size_t p = 0; p <= kOrders; ++p) between[p] = std::sqrt(low[p] * high[p]);
+    for (std::size_t p = 0; p <= orders; ++p) between[p] = std::sqrt(low[p] * high[p]);
     const auto error = error_at(between);
-    for (std::size_t p = 1; p <= kOrders; ++p) (error[p] * (1 + kRounding) <= share ? low : high)[p] = between[p];
+    for (std::size_t p = 1; p <= orders; ++p) (error[p] * (1 + kRounding) <= share ? low : high)[p] = between[p];
   }
-  for (std::size_t p = 1; p <= kOrders; ++p) {
+  for (std::size_t p = 1; p <= orders; ++p) {
     if (!(at_low[p] * (1 + kRounding) <= share)) low[p] = 0;
   }
   return low;
@@ -80,7 +83,7 @@ struct SourceTree::PlacedTriangle {
 // Along the axis along which the middles of their boxes are farthest apart; of many, only so far that the first half
 // comes first.
 void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
-  constexpr std::size_t kMany = 4 * kLeaf;
+  constexpr std::size_t kMany = 64;
   Box middles = empty_box();
   for (const PlacedTriangle& t : placed) extend(middles, middle(t.box));
   const int axis = longest_axis(middles);
@@ -98,8 +101,8 @@ void SourceTree::sort_by_middles(std::span<PlacedTriangle> placed) {
   std::ranges::copy(sorted, placed.begin());
 }
 
-SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level)
-    : triangles_(std::move(triangles)), tolerance_(tolerance), moments_(moment_kernel(level)) {
+SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Detail detail)
+    : triangles_(std::move(triangles)), tolerance_(tolerance), detail_(detail), moments_(moment_kernel(level)) {
   if (triangles_.empty()) return;
   if (triangles_.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw std::length_error("raycone: more than 4294967295 sources of a far field");
@@ -141,14 +144,14 @@ void SourceTree::build_node(std::span<PlacedTriangle> placed, std::uint32_t begi
   nodes_.emplace_back();
   nodes_[number].begin = begin;
   nodes_[number].end = nodes_[number].own_end = end;
-  if (placed.size() > kLeaf) {
+  if (placed.size() > detail_.leaf) {
     Box box = placed.front().box;
     for (const PlacedTriangle& t : placed) extend(box, t.box);
     const double large = longest_side(box) / 2;
     const auto rest = std::stable_partition(placed.begin(), placed.end(),
                                             [&](const PlacedTriangle& t) { return longest_side(t.box) > large; });
     const auto own = static_cast<std::size_t>(rest - placed.begin());
-    if (placed.size() - own > kLeaf / 2) {
+    if (placed.size() - own > detail_.leaf / 2) {
       nodes_[number].own_end = begin + static_cast<std::uint32_t>(own);
       sort_by_middles(placed.subspan(own));
       const std::size_t half = own + (placed.size() - own) / 2;
@@ -186,7 +189,7 @@ void SourceTree::measure(SourceNode& node) const {
   node.square_of_distance.fill(kInfinity);
   if (!(node.radius > kSmallest)) return;
   node.unit = std::ldexp(1.0, std::ilogb(node.radius) + 1);
-  node.order = worthwhile_order(node.triangles());
+  node.order = worthwhile_order(node.triangles(), detail_.order);
 }
 
 // From the leaves up, in pieces that threads take; the nodes above the pieces at last.
@@ -224,9 +227,11 @@ void SourceTree::expand() {
 
 // Of the node's own triangles.
 Multipole SourceTree::expansion_of(const SourceNode& node) const {
-  if (!(node.radius > kSmallest)) return {};
+  if (!(node.radius > kSmallest)) return {detail_.order, {}, {}, {}};
   const std::span own = triangles().subspan(node.begin, node.own_end - node.begin);
-  return multipole_of(own, node.centre, node.unit, node.radius / node.unit, moments_);
+  constexpr double kPrecision = 0x1p-10;  // of the tolerance: nothing beside what is cut off
+  return multipole_of(own, node.centre, node.unit, node.radius / node.unit, detail_.order, kPrecision * tolerance_,
+                      moments_);
 }
 
 void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
@@ -246,8 +251,9 @@ void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
 
 double SourceTree::error(const SourceNode& node, int p, double distance) {
   const double rho = node.unit / distance * (1 + kRounding);
-  double sum = beyond_multipoles(node.area / node.unit / node.unit, node.radius / node.unit, rho), power = rho;
-  for (int n = 1; n <= kMultipoleOrder; ++n) {
+  const double area = node.area / node.unit / node.unit;
+  double sum = beyond_multipoles(area, node.radius / node.unit, node.bounds.order, rho), power = rho;
+  for (int n = 1; n <= node.bounds.order; ++n) {
     const auto i = static_cast<std::size_t>(n);
     power *= rho;
     sum += power * (n <= p ? node.bounds.evaluation[i] : node.bounds.size[i]);
@@ -260,9 +266,11 @@ std::optional<SourceTree::Cut> SourceTree::least_cut(const SourceNode& node, dou
   const double rho = node.unit / distance * (1 + kRounding);
   std::array<double, kOrders + 1> powers, left_out;  // [p]: of all beyond degree p
   powers[0] = rho;
-  for (std::size_t n = 1; n <= kOrders; ++n) powers[n] = powers[n - 1] * rho;
-  left_out[kOrders] = beyond_multipoles(node.area / node.unit / node.unit, node.radius / node.unit, rho);
-  for (std::size_t n = kOrders; n > 0; --n) left_out[n - 1] = left_out[n] + powers[n] * node.bounds.size[n];
+  const auto orders = static_cast<std::size_t>(node.bounds.order);
+  for (std::size_t n = 1; n <= orders; ++n) powers[n] = powers[n - 1] * rho;
+  const double area = node.area / node.unit / node.unit;
+  left_out[orders] = beyond_multipoles(area, node.radius / node.unit, node.bounds.order, rho);
+  for (std::size_t n = orders; n > 0; --n) left_out[n - 1] = left_out[n] + powers[n] * node.bounds.size[n];
   double evaluated = 0.0;
   for (int p = 0; p <= node.order; ++p) {
     const auto n = static_cast<std::size_t>(p);

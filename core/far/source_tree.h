@@ -41,11 +41,16 @@ struct SourceNode {
 // Thread-safe once made.
 class SourceTree {
  public:
-  static constexpr std::uint32_t kLeaf = 16;  // triangles
+  // How fine a tree is: triangles in a leaf, and the order of expansions. Where sources fill a volume, or the tolerance
+  // is small, high orders leave much less near, but they take longer to make.
+  struct Detail {
+    std::uint32_t leaf = 16;
+    int order = 16;
+  };
 
   // Triangles of a mesh in scale: coordinates of at most 1. Nodes that are accepted as square_of_distance says err by
   // at most `tolerance` turns (positive) together, whichever they are. Deterministic, also for every level.
-  SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level = SimdLevel::kBest);
+  SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Detail detail);
 
   [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any
   [[nodiscard]] std::span<const SolidTriangle> triangles() const { return triangles_; }
@@ -80,6 +85,7 @@ class SourceTree {
   std::vector<SolidTriangle> triangles_;
   SharedCorners corners_;  // of the triangles, node by node
   double tolerance_;
+  Detail detail_;
   MomentKernel moments_;
   std::vector<SourceNode> nodes_;
   std::unique_ptr<double[]> coefficients_;  // tens of megabytes, first touched by the threads that set them

@@ -189,7 +189,7 @@ TEST(RoughSumsTest, OfAPatchFromAfar) {
 }
 
 TEST(RoughSumsTest, LeastCutIsTheLeastThatErrsByNoMore) {
-  const SourceTree tree(solid_faces(scraps()).triangles, 1e-6);
+  const SourceTree tree(solid_faces(scraps()).triangles, 1e-6, SimdLevel::kBest, {});
   const SourceNode& root = tree.nodes().front();
   int nothing = 0, cut_off = 0, none = 0;
   for (double distance = 1.01 * root.radius; distance < 1e5; distance *= 1.5) {

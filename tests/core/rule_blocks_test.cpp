@@ -212,6 +212,23 @@ TEST(Sides, HoldByRoughSumsWhereFewBlocksNeedThem) {
   expect_rough_sums_to_hold(mesh, lattice_around(mesh, 140), {{0, 0, 60}, {140, 140, 9}});
 }
 
+// A soup: no two triangles of a sphere meet. Of a block of 2^16 samples or more.
+TEST(Sides, HoldByRoughSumsOfSoups) {
+  TriangleMesh mesh;
+  const TriangleMesh sphere = test::sphere(16);
+  for (const Triangle& t : sphere.triangles) {
+    const Vec3 &a = sphere.vertices[t[0]], &b = sphere.vertices[t[1]], &c = sphere.vertices[t[2]];
+    const Vec3 middle = (1.0 / 3.0) * (a + b + c);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& v : {a, b, c}) mesh.vertices.push_back(0.05 * middle + 0.95 * v);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(exterior_edges(mesh).size(), 3 * mesh.triangles.size());
+  const LatticeBlock block{{5, 3, 40}, {80, 75, 12}};
+  ASSERT_GT(block.size(), 0x1p16);
+  expect_rough_sums_to_hold(mesh, lattice_around(mesh, 100), block);
+}
+
 // Cracks: every third triangle has a corner more on one side, which its neighbour has not.
 TEST(RuleBlocks, SeeThroughCracks) {
   TriangleMesh mesh = test::sphere(12);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -49,13 +50,18 @@ std::span<const SolidTriangle> triangles_of(const SourceTree& tree, const Source
   return tree.triangles().subspan(node.begin, node.triangles());
 }
 
+SourceTree tree_of(const TriangleMesh& mesh, double tolerance, SourceTree::Detail detail = {}) {
+  return {solid_faces(mesh).triangles, tolerance, SimdLevel::kBest, detail};
+}
+
+// What blocks take, what the far field takes at most, and an order for which one point of Gauss's would be too few.
+constexpr std::array<SourceTree::Detail, 3> kDetails{{{16, 16}, {64, kMultipoleOrder}, {8, 5}}};
+
 // The oracle is good to 1e-14.
 constexpr double kOracle = 1e-14;
 
-TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
-  const DefaultFloatingPoint guard;
-  test::Random random(1);
-  const SourceTree tree(solid_faces(small_triangles(random, 200, 0.05)).triangles, 1e-10);
+// By how much of its bound an error is off at most.
+double check_every_degree(const SourceTree& tree, test::Random& random) {
   const FarKernel kernel = far_kernel(SimdLevel::kBest);
   double closest = 0;  // an error comes to its bound
   for (std::uint32_t number = 0; number < tree.nodes().size(); ++number) {
@@ -80,7 +86,17 @@ TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
       }
     }
   }
-  EXPECT_GT(closest, 0.1);  // or the bounds would be of little use
+  return closest;
+}
+
+TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
+  const DefaultFloatingPoint guard;
+  for (const SourceTree::Detail& detail : kDetails) {
+    test::Random random(1);
+    const SourceTree tree = tree_of(small_triangles(random, 200, 0.05), 1e-10, detail);
+    EXPECT_EQ(tree.nodes().front().order, detail.order);
+    EXPECT_GT(check_every_degree(tree, random), 0.1) << detail.order;  // or the bounds would be of little use
+  }
 }
 
 // A small triangle at (1, 0, 0) from the centre that faces it: the potential of degree n is n P_n(x / r) A / 4 pi r^(n
@@ -88,38 +104,87 @@ TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
 TEST(SourceTree, BoundsOfADipoleAreThoseOfItsPotential) {
   const double size = 1e-4;  // so much, relative, is what it differs from a dipole by
   const SolidTriangle t = solid_faces({{{1, 0, 0}, {1, size, 0}, {1, 0, size}}, {{0, 1, 2}}}).triangles.front();
-  const Multipole multipole = multipole_of({&t, 1}, {}, 1.0, 1.0);
+  const Multipole multipole = multipole_of({&t, 1}, {}, 1.0, 1.0, kMultipoleOrder, 0);
   const MultipoleBounds bounds = bounds_of(multipole);
   const double area = size * size / 2;
-  double sum = 0;
   for (int n = kMultipoleOrder; n >= 1; --n) {
     const double expected = n * area / (4 * std::numbers::pi);
     EXPECT_NEAR(bounds.size[static_cast<std::size_t>(n)] / expected, 1, 20 * n * size) << n;
-    EXPECT_LT(bounds.evaluation[static_cast<std::size_t>(n)], 1e-11);  // some u times what recurrences may grow by
+    // Some u times what recurrences may grow by, a factor of 1 + sqrt(2) a degree.
+    EXPECT_LT(bounds.evaluation[static_cast<std::size_t>(n)], 1e-18 * std::pow(2.5, n)) << n;
   }
   const double rho = 0.5;
-  for (int n = kMultipoleOrder + 1; n < 200; ++n) sum += n * area / (4 * std::numbers::pi) * std::pow(rho, n + 1);
-  EXPECT_NEAR(beyond_multipoles(area, 1, rho) / sum, 1, 1e-9);  // a sum of 200 roundings
+  for (const int order : {kMultipoleOrder, 5}) {
+    double sum = 0;
+    for (int n = order + 1; n < 200; ++n) sum += n * area / (4 * std::numbers::pi) * std::pow(rho, n + 1);
+    EXPECT_NEAR(beyond_multipoles(area, 1, order, rho) / sum, 1, 1e-9);  // a sum of 200 roundings
+  }
 }
 
 TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
   test::Random random(2);
   const auto all = solid_faces(small_triangles(random, 12, 0.2)).triangles;
   const Vec3 from{0.5, 0.4, 0.6}, to{0.25, 0.5, 0.5};
-  const Multipole there = multipole_of(all, to, 4.0, 0.6);
-  Multipole shifted;
-  add_shifted(shifted, multipole_of(all, from, 2.0, 0.9), 0.25 * (from - to), 0.5);
-  for (int n = 1; n <= kMultipoleOrder; ++n) {
+  for (const int order : {16, kMultipoleOrder, 5}) {
+    const Multipole there = multipole_of(all, to, 4.0, 0.6, order, 0);
+    Multipole shifted{order, {}, {}, {}};
+    add_shifted(shifted, multipole_of(all, from, 2.0, 0.9, order, 0), 0.25 * (from - to), 0.5);
+    for (int n = 1; n <= order; ++n) {
+      Multipole difference;
+      for (int m = 0; m <= n; ++m) {
+        const std::size_t term = multipole_index(n, m);
+        difference.re[term] = there.re[term] - shifted.re[term];
+        difference.im[term] = there.im[term] - shifted.im[term];
+      }
+      const auto i = static_cast<std::size_t>(n);
+      const double error = bounds_of(difference).size[i];
+      EXPECT_LE(error, there.error[i] + shifted.error[i]) << order << ' ' << n;
+      EXPECT_LT(shifted.error[i], 1e-13) << order << ' ' << n;  // some u times what recurrences may grow by
+    }
+  }
+}
+
+// How far degrees are apart at most, as parts of what both may be off by.
+double largest_part_of_error(const Multipole& a, const Multipole& b) {
+  double largest = 0;
+  for (int n = 1; n <= std::min(a.order, b.order); ++n) {
     Multipole difference;
     for (int m = 0; m <= n; ++m) {
       const std::size_t term = multipole_index(n, m);
-      difference.re[term] = there.re[term] - shifted.re[term];
-      difference.im[term] = there.im[term] - shifted.im[term];
+      difference.re[term] = a.re[term] - b.re[term];
+      difference.im[term] = a.im[term] - b.im[term];
     }
     const auto i = static_cast<std::size_t>(n);
-    const double error = bounds_of(difference).size[i];
-    EXPECT_LE(error, there.error[i] + shifted.error[i]) << n;
-    EXPECT_LT(shifted.error[i], 1e-13) << n;  // some u times what recurrences may grow by
+    largest = std::max(largest, bounds_of(difference).size[i] / (a.error[i] + b.error[i]));
+  }
+  return largest;
+}
+
+// Those of a lower order are those of a higher one, as far as they go: an integral that is exact is the same by any
+// rule but for rounding.
+TEST(SourceTree, MomentsDoNotDependOnTheOrder) {
+  test::Random random(7);
+  const auto all = solid_faces(small_triangles(random, 12, 0.9)).triangles;
+  const Vec3 centre{0.5, 0.5, 0.5};
+  const Multipole high = multipole_of(all, centre, 1.0, 1.0, kMultipoleOrder, 0);
+  for (int order = 1; order < kMultipoleOrder; ++order) {
+    EXPECT_LE(largest_part_of_error(multipole_of(all, centre, 1.0, 1.0, order, 0), high), 1) << order;
+  }
+}
+
+// One edge next to the border of the ball, across it or along it, is the worst that there is.
+TEST(SourceTree, MomentsByFewPointsErrByNoMoreThanTheirBound) {
+  for (const double size : {0.1, 0.3, 0.6}) {
+    const TriangleMesh mesh{{{0.9, 0, 0.2}, {0.9, size, 0.2}, {0.9 - size, 0, 0.2}}, {{0, 1, 2}}};
+    const auto one = solid_faces(mesh).triangles;
+    const Multipole exact = multipole_of(one, {}, 1.0, 1.0, kMultipoleOrder, 0);
+    double closest = 0;  // an error comes to its bound
+    for (const double precision : {1e-2, 1e-5, 1e-8, 1e-11}) {
+      const double part = largest_part_of_error(multipole_of(one, {}, 1.0, 1.0, kMultipoleOrder, precision), exact);
+      EXPECT_LE(part, 1) << size << ' ' << precision;
+      closest = std::max(closest, part);
+    }
+    EXPECT_GT(closest, 1e-2) << size;  // or the bounds would be of little use
   }
 }
 
@@ -128,18 +193,20 @@ TEST(SourceTree, MomentsAndShiftsAreTheSameForEverySimdLevel) {
   test::Random random(4);
   for (const int count : {1, 2, 3, 7, 8, 9}) {
     const auto all = solid_faces(small_triangles(random, count, 0.3)).triangles;
-    const auto moments = [&](SimdLevel level) {
-      const MomentKernel kernel = moment_kernel(level);
-      const Multipole here = multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, kernel);
-      Multipole sum = here;
-      add_shifted(sum, here, {0.3, -0.2, 0.4}, 0.5, kernel);
-      return sum;
-    };
-    const Multipole best = moments(SimdLevel::kBest);
-    for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-      const Multipole here = moments(level);
-      EXPECT_EQ(here.re, best.re) << count;
-      EXPECT_EQ(here.im, best.im) << count;
+    for (const int order : {16, kMultipoleOrder, 5}) {
+      const auto moments = [&](SimdLevel level) {
+        const MomentKernel kernel = moment_kernel(level);
+        const Multipole here = multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, order, 0, kernel);
+        Multipole sum = here;
+        add_shifted(sum, here, {0.3, -0.2, 0.4}, 0.5, kernel);
+        return sum;
+      };
+      const Multipole best = moments(SimdLevel::kBest);
+      for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+        const Multipole here = moments(level);
+        EXPECT_EQ(here.re, best.re) << count << ' ' << order;
+        EXPECT_EQ(here.im, best.im) << count << ' ' << order;
+      }
     }
   }
 }
@@ -147,7 +214,7 @@ TEST(SourceTree, MomentsAndShiftsAreTheSameForEverySimdLevel) {
 TEST(SourceTree, HoldsEachTriangleInEveryNodeAbove) {
   test::Random random(3);
   TriangleMesh mesh = test::joined(small_triangles(random, 300, 0.02), test::soup(random, 20));
-  const SourceTree tree(solid_faces(mesh).triangles, 1e-10);
+  const SourceTree tree = tree_of(mesh, 1e-10);
   ASSERT_EQ(tree.nodes().front().next, tree.nodes().size());
   for (std::uint32_t number = 0; number < tree.nodes().size(); ++number) {
     const SourceNode& node = tree.nodes()[number];
@@ -175,24 +242,31 @@ TEST(SourceTree, SumsKeepTheTolerance) {
   const DefaultFloatingPoint guard;
   test::Random random(4);
   const TriangleMesh mesh = small_triangles(random, 3000, 0.02);
+  SampleTile samples;
+  samples.clear();
+  while (samples.count < 51) samples.add(test::uniform_point(random, {{-0.2, -0.2, -0.2}, {1.2, 1.2, 1.2}}));
+  samples.fill_up();
+  std::vector<double> expected;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    expected.push_back(test::direct_winding_number(mesh, samples.query(i)));
+  }
   for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
-    const SourceTree tree(solid_faces(mesh).triangles, tolerance);
-    FarTile result;
-    SampleTile samples;
-    samples.clear();
-    while (samples.count < 51) samples.add(test::uniform_point(random, {{-0.2, -0.2, -0.2}, {1.2, 1.2, 1.2}}));
-    samples.fill_up();
-    far_kernel(SimdLevel::kBest).sum(tree, samples, result);
-    double largest = 0;
-    for (std::size_t i = 0; i < samples.count; ++i) {
-      const double w = static_cast<double>(result.near.turns(i)) + result.near.argument[i] + result.far[i];
-      largest = std::max(largest, std::abs(w - test::direct_winding_number(mesh, samples.query(i))));
+    for (const SourceTree::Detail& detail : kDetails) {
+      const SourceTree tree = tree_of(mesh, tolerance, detail);
+      FarTile result;
+      far_kernel(SimdLevel::kBest).sum(tree, samples, result);
+      double largest = 0;
+      for (std::size_t i = 0; i < samples.count; ++i) {
+        const double w = static_cast<double>(result.near.turns(i)) + result.near.argument[i] + result.far[i];
+        largest = std::max(largest, std::abs(w - expected[i]));
+      }
+      EXPECT_LE(largest, tolerance) << detail.order;
+      if (detail.order < 16 && tolerance < 1e-4) continue;  // too little is far
+      EXPECT_GT(largest, tolerance * 1e-6) << detail.order;
+      // Most of the 51 * 3000 pairs are far.
+      EXPECT_LT(result.near_terms, 51U * 1500U) << detail.order;
+      EXPECT_GT(result.far_terms, 51U * 10U) << detail.order;
     }
-    EXPECT_LE(largest, tolerance);
-    EXPECT_GT(largest, tolerance * 1e-6);
-    // Most of the 51 * 3000 pairs are far.
-    EXPECT_LT(result.near_terms, 51U * 1500U);
-    EXPECT_GT(result.far_terms, 51U * 10U);
   }
 }
 
@@ -202,7 +276,7 @@ TEST(SourceTree, SumsKeepTheTolerance) {
 TEST(SourceTree, DecidesTiesOnTrianglesAsASumOverAllDoes) {
   const DefaultFloatingPoint guard;
   test::Random random(6);
-  const SourceTree tree(solid_faces(small_triangles(random, 300, 0.3)).triangles, 1e-10);
+  const SourceTree tree = tree_of(small_triangles(random, 300, 0.3), 1e-10, kDetails[1]);
   const auto value = [](const ProductTile& products, std::size_t i) {
     return static_cast<double>(products.turns(i)) + products.argument[i];
   };
@@ -227,7 +301,7 @@ TEST(SourceTree, DecidesTiesOnTrianglesAsASumOverAllDoes) {
 TEST(SourceTree, SumsAreTheSameAtEverySimdLevelAndInAnyTile) {
   const DefaultFloatingPoint guard;
   test::Random random(5);
-  const SourceTree tree(solid_faces(small_triangles(random, 1000, 0.05)).triangles, 1e-10);
+  const SourceTree tree = tree_of(small_triangles(random, 1000, 0.05), 1e-10, kDetails[1]);
   SampleTile samples;
   samples.clear();
   while (samples.count < kTile) samples.add(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));

@@ -266,8 +266,10 @@ MUTANTS = [
         ("core/mesh/edge_chains.cpp", "ranks_[vertices_.place(placed[rank].vertex)] = rank;",
          "ranks_[rank] = rank;")]),
     Mutant("few_points_of_gauss", "moments are exact up to the order of their expansion", [
-        ("core/far/moment_kernel.cpp", "static_cast<std::size_t>(last / 2 + 1)",
-         "static_cast<std::size_t>(last / 2)")]),
+        ("core/far/multipole.cpp", "const std::size_t exact = static_cast<std::size_t>(order - 1) / 2 + 1;",
+         "const std::size_t exact = static_cast<std::size_t>(order) / 2;")]),
+    Mutant("nothing_left_out_of_moments", "what few points leave out is within the bound", [
+        ("core/far/multipole.cpp", "if (n <= derivative) return 0;", "if (n >= 0) return 0;")]),
     Mutant("negative_zero_kept", "vertices are identified by position, and -0 is 0", [
         ("core/mesh/weld.cpp", "return {p.x + 0.0, p.y + 0.0, p.z + 0.0};", "return p;")]),
     Mutant("equal_hashes_are_equal", "vertices are merged by their coordinates, never by a hash alone", [

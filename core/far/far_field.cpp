@@ -10,23 +10,18 @@
 #include "core/data/even_places.h"
 
 namespace raycone {
+namespace {
+
+// Measured with soups of 100 000 triangles and CAD models on lattices of 50^3, for tolerances of 1e-4 to 1e-10.
+constexpr SourceTree::Detail kDetail{64, kMultipoleOrder};
+
+}  // namespace
 
 bool far_field_may_pay(double samples, double sources, double direct) {
   constexpr double kPreparation = 4500;  // of a source, in units of an exterior edge at a sample
   const double small_part = std::clamp(sources / 40'000, 0.04, 0.25);
   return kPreparation < small_part * samples * direct;
 }
-
-namespace {
-
-// Measured with soups of 100 000 triangles and CAD models, lattices of 50^3.
-SourceTree::Detail detail_for(double tolerance) {
-  constexpr int kLeast = 16;
-  const double digits = -std::log10(tolerance);
-  return {64, std::clamp(static_cast<int>(std::lround(14 + 0.8 * digits)), kLeast, kMultipoleOrder)};
-}
-
-}  // namespace
 
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,
                    SimdLevel level)
@@ -38,7 +33,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
   SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
-  tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level, detail_for(tolerance));
+  tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level, kDetail);
   set_costs(bounding_box(mesh), tolerance);
 }
 

@@ -46,10 +46,20 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSource
 
 double FarField::doubt(double tolerance, double sources) { return tolerance + doubt_of_factors(3 * sources); }
 
+namespace {
+
+// In units of an exterior edge.
+struct Costs {
+  double triangle, expansion;
+};
+
+}  // namespace
+
 void FarField::set_costs(const Box& box, double tolerance) {
-  constexpr double kTriangle = 2.5;
-  const double digits = std::max(2.0, -std::log10(tolerance));  // with which degrees grow
-  const double expansion = 2.0 + 0.7 * digits, expansion_on_lattice = 3.0 + 2.0 * digits;
+  const double digits = std::max(2.0, -std::log10(tolerance));  // with which degrees grow, if nodes allow
+  const bool is_own = own_tree_.has_value();
+  const Costs at_point = is_own ? Costs{1.7, 28.0} : Costs{2.5, 2.0 + 0.7 * digits};
+  const Costs on_lattice = is_own ? Costs{1.8, 50.0} : Costs{2.5, 3.0 + 2.0 * digits};
   SampleTile places;
   places.clear();
   for (std::size_t n = 1; n <= kTile; ++n) {
@@ -64,8 +74,8 @@ void FarField::set_costs(const Box& box, double tolerance) {
   kernel_.sum(*tree_, places, result);
   const double near = static_cast<double>(result.near_terms) / static_cast<double>(kTile);
   const double far = static_cast<double>(result.far_terms) / static_cast<double>(kTile);
-  cost_ = kTriangle * near + expansion * far;
-  cost_on_lattice_ = kTriangle * near + expansion_on_lattice * far;
+  cost_ = at_point.triangle * near + at_point.expansion * far;
+  cost_on_lattice_ = on_lattice.triangle * near + on_lattice.expansion * far;
 }
 
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,

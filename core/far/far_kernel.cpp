@@ -58,10 +58,13 @@ constexpr std::array<double, kMultipoleOrder + 1> kDegrees = [] {
 struct OrderSum {
   Lanes re = hn::Zero(d), im = hn::Zero(d), before = hn::Zero(d), b = hn::Set(d, 1.0);
   const double* coefficient;
+  std::size_t to_next;  // degree's coefficient
   const double* step;
 
-  HWY_INLINE OrderSum(const SourceNode& node, const double* coefficients, int m)
-      : coefficient(coefficients + 2 * multipole_index(m, m, node.order)), step(&kSteps[multipole_index(m, m)]) {}
+  HWY_INLINE OrderSum(const double* coefficients, int m)
+      : coefficient(coefficients + 2 * coefficient_index(m, m)),
+        to_next(2 * static_cast<std::size_t>(m + 1)),
+        step(&kSteps[multipole_index(m, m)]) {}
 
   // The term of degree n, where the lane's own degree is not less.
   HWY_INLINE void add(int n, Lanes degrees, Lanes wz, Lanes inverse) {
@@ -77,7 +80,8 @@ struct OrderSum {
     const Lanes next = hn::Sub(hn::Mul(wz, b), hn::Mul(hn::Set(d, *step), hn::Mul(inverse, before)));
     before = b;
     b = next;
-    coefficient += 2;
+    coefficient += to_next;
+    to_next += 2;
     ++step;
   }
 };
@@ -90,13 +94,12 @@ struct Degrees {
 
 // The sum over m, from the highest order down: each time what is there times (x + iy) / r^2, and the order's sum.
 struct Expansion {
-  const SourceNode& node;
   const double* coefficients;
   const Degrees& degrees;
   Lanes wx, wy, wz, inverse;
   Lanes re, im;
 
-  [[nodiscard]] HWY_INLINE OrderSum order(int m) const { return {node, coefficients, m}; }
+  [[nodiscard]] HWY_INLINE OrderSum order(int m) const { return {coefficients, m}; }
 
   // Orders that follow one another, from the highest down to m. Their sums are made together, so that the processor has
   // more to do than to wait for a recurrence.
@@ -140,8 +143,7 @@ HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, c
   const auto visible = hn::Lt(square, hn::Set(d, kFarthest));
   const Lanes inverse = hn::IfThenElseZero(visible, hn::Div(hn::Set(d, 1.0), square));
   const auto inverted = [&](Lanes v) { return hn::IfThenElseZero(visible, hn::Mul(v, inverse)); };
-  Expansion sum{node,          coefficients, degrees,     inverted(s.x), inverted(s.y),
-                inverted(s.z), inverse,      hn::Zero(d), hn::Zero(d)};
+  Expansion sum{coefficients, degrees, inverted(s.x), inverted(s.y), inverted(s.z), inverse, hn::Zero(d), hn::Zero(d)};
   // As many together as there are registers for. What they leave over is of the highest orders, the shortest ones.
   constexpr int kTogether = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
   int m = degrees.most;
@@ -213,20 +215,22 @@ struct Walk {
     return hn::Ge(hn::Set(d, static_cast<double>(k)), hn::Load(d, &until[i]));
   }
 
-  // Four in five nodes that are looked at are taken, and of a large tree they are in no cache: memory is asked for them
-  // before it is known whether they are far enough.
-  HWY_INLINE void fetch(const SourceNode& node, const double* coefficients) const {
+  // Those of degrees [first, last] of an expansion: of a large tree they are in no cache.
+  static HWY_INLINE void fetch(const double* coefficients, int first, int last) {
     constexpr std::size_t kLine = 8;  // numbers
-    const std::size_t count = 2 * multipole_index(node.order, node.order, node.order) + 2;
-    for (std::size_t n = 0; n < count; n += kLine) hwy::Prefetch(coefficients + n);
-    hwy::Prefetch(&node + 1);
+    const std::size_t end = 2 * coefficient_index(last + 1, 0);
+    for (std::size_t n = 2 * coefficient_index(first, 0); n < end; n += kLine) hwy::Prefetch(coefficients + n);
   }
 
   // Takes node k where it is far enough; whether it is too near for any sample.
   HWY_INLINE bool take(std::size_t k) {
     const SourceNode& node = tree.nodes()[k];
     const double* const coefficients = tree.coefficients() + node.first_coefficient;
-    fetch(node, coefficients);
+    // Four in five nodes that are looked at are taken: memory is asked for them before that is known.
+    constexpr int kOften = 8;  // degree
+    const int often = std::min(node.order, kOften);
+    fetch(coefficients, 0, often);
+    hwy::Prefetch(&node + 1);
     const Lanes least = hn::Set(d, node.square_of_distance[static_cast<std::size_t>(node.order)]);
     const Lanes next = hn::Set(d, static_cast<double>(node.next));
     FarSamples far;
@@ -242,7 +246,9 @@ struct Walk {
     }
     for (std::size_t n = 0; n < far.count; n += hn::Lanes(d)) {
       const LanesOfPoints r = seen_from(node.centre, far.points(samples, n));
-      far.add_to(result.far, n, multipole(node, coefficients, degrees_at(node, square_of(r)), r));
+      const Degrees degrees = degrees_at(node, square_of(r));
+      if (n == 0) fetch(coefficients, often + 1, degrees.most);
+      far.add_to(result.far, n, multipole(node, coefficients, degrees, r));
     }
     result.far_terms += far.count;
     return near;

@@ -314,7 +314,7 @@ void set_coefficients(const Multipole& multipole, int order, std::span<double> c
   for (int m = 0; m <= order; ++m) {
     for (int n = std::max(m, 1); n <= order; ++n) {
       const double factor = tables().double_factorial[index(n)] * (m == 0 ? 1 : 2) * (m % 2 == 0 ? 1 : -1);
-      const std::size_t from = multipole_index(n, m), to = multipole_index(n, m, order);
+      const std::size_t from = multipole_index(n, m), to = coefficient_index(n, m);
       coefficients[2 * to] = factor * multipole.re[from];
       coefficients[2 * to + 1] = factor * multipole.im[from];
     }

@@ -61,8 +61,15 @@ struct MultipoleBounds {
 // is 1 or more.
 [[nodiscard]] double beyond_multipoles(double area, double radius, int order, double rho);
 
+// Where the coefficient of (n, m) is among those of an evaluation: degree by degree, so that what a low degree needs
+// comes first.
+[[nodiscard]] constexpr std::size_t coefficient_index(int n, int m) {
+  const int place = n * (n + 1) / 2 + m;
+  return static_cast<std::size_t>(place);
+}
+
 // The coefficients of the terms b_n^m in the evaluation, for n <= order, which is at most the multipole's, in the order
-// of multipole_index(n, m, order): re, im, re, im ...
+// of coefficient_index(n, m): re, im, re, im ...
 //   w = Re of the sum over m of ((x + iy) / r^2)^m times the sum over n of coefficient b_n^m, divided by |r|,
 //   b_m^m = 1, b_(n+1)^m = z / r^2 b_n^m - multipole_step(n, m) / r^2 b_(n-1)^m.
 void set_coefficients(const Multipole& multipole, int order, std::span<double> coefficients);

@@ -27,7 +27,7 @@ Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c - t.a)) / 2; }
 
 // Of the coefficients up to this degree.
-std::size_t numbers_of(int order) { return 2 * (multipole_index(order, order, order) + 1); }
+std::size_t numbers_of(int order) { return 2 * (coefficient_index(order, order) + 1); }
 
 // The highest degree, up to `most`, that is not dearer than the triangles one by one, per sample: a triangle takes
 // about as long as 20 terms.

@@ -13,6 +13,7 @@
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/files/file_identity.h"
 
 namespace raycone {
 namespace {
@@ -86,7 +87,7 @@ void parse_points_source(const Values& values, PointsCommand& command) {
   }
   if (!values.given("POINTS")) throw UsageError("POINTS is required, or --sample" + help_hint("points"));
   if (command.points.empty()) throw UsageError("POINTS: expected a file, not an empty name");
-  if (command.mesh.path == "-" && command.points == "-") {
+  if (is_standard_input(command.mesh.path) && is_standard_input(command.points)) {
     throw UsageError("MESH and POINTS cannot both be standard input");
   }
 }

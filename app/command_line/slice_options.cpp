@@ -179,6 +179,9 @@ Command parse_slice(const Values& values) {
   command.framed = !values.given("--no-legend");
   command.run.options = given_options(values, option_names(slice_spec()));
   if (values.given("--values")) command.values = values.text("--values");
+  if (command.values && !has_extension(*command.values, "npy")) {
+    throw UsageError("--values " + *command.values + ": expected a name that ends with .npy");
+  }
   if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
   if (command.values && command.values == command.output.report) {
     throw UsageError("--values " + *command.values + ": is the report too");

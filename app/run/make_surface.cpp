@@ -120,7 +120,9 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
   std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh, options_for(for_sides, edges));
-  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done);
+  Tally tally;
+  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done, &tally);
+  Terms terms = evaluator->terms();
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
   check_inside(name, inside, options.rule);
   std::optional<PointEvaluators> at_points;
@@ -136,7 +138,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
     check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
     return closed_surface(mesh, evaluators, inside, options);
   });
-  MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options)};
+  MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
   if (options.at_stage) options.at_stage("measuring");
   const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.single_precision);
   DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
@@ -150,6 +152,8 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
     thin = thin_parts(mesh, {evaluators.rough, options.rule}, samples);
   }
   if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
+  if (at_points) terms += at_points->fine.terms(), terms += at_points->rough.terms();
+  made.terms = terms;
   return made;
 }
 

@@ -10,6 +10,7 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
+#include "core/evaluation/winding_number.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/surface/surface.h"
 
@@ -19,6 +20,8 @@ struct MadeSurface {
   SurfaceMesh surface;
   SurfaceReport report;
   std::vector<Warning> warnings;  // `not-merged`, `not-simplified`, `thin-parts`: those that apply
+  Tally tally;                    // of the nodes of the lattice
+  Terms terms;                    // that were summed for them and for the surface
 };
 
 // The surface between the inside and the outside nodes of `lattice`, by winding numbers of `mesh`; it has been checked.

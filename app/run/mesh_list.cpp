@@ -5,6 +5,7 @@
 
 #include "app/process/usage_error.h"
 #include "io/files/file_error.h"
+#include "io/files/file_identity.h"
 #include "io/files/read_file.h"
 
 namespace raycone {
@@ -41,8 +42,10 @@ MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& point
   MeshOptions expanded = mesh;
   std::vector<std::string> operands{mesh.path}, paths;
   operands.insert(operands.end(), mesh.further.begin(), mesh.further.end());
-  const auto is_standard_input = [](const std::string& operand) { return operand == "-" || operand == "@-"; };
-  if (std::ranges::count_if(operands, is_standard_input) + (points == "-" ? 1 : 0) > 1) {
+  const auto is_read = [](const std::string& operand) {
+    return is_standard_input(operand.starts_with('@') ? operand.substr(1) : operand);
+  };
+  if (std::ranges::count_if(operands, is_read) + (is_standard_input(points) ? 1 : 0) > 1) {
     throw UsageError("standard input cannot be two of the inputs");
   }
   for (const std::string& operand : operands) {

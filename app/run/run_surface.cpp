@@ -64,6 +64,8 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
     return make_surface(report.mesh, mesh, edges, lattice, options, limits.memory(), done);
   });
   report.surface = made.report;
+  report.tally = made.tally;
+  report.terms = made.terms;
   for (const Warning& warning : made.warnings) run.warn(warning);
   for (std::int32_t& source : made.surface.sources) {
     if (source != kHole) source = static_cast<std::int32_t>(run.place_of(static_cast<std::uint32_t>(source)));

@@ -164,6 +164,17 @@ std::vector<Vec3> cut(const Box& box, const Vec3& origin, const Vec3& normal) {
   return points;
 }
 
+// A point of the plane that is not far from the box, in which pixels have their digits: `origin` unless that is far.
+Vec3 near_point(const Box& box, const Vec3& origin, const Vec3& normal) {
+  const Vec3 sides = box.upper - box.lower, middle = box.lower + 0.5 * sides;
+  const double longest = longest_side(box);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double farthest = sides[axis] / 2 + longest;
+    if (!(std::abs(origin[axis] - middle[axis]) <= farthest)) return middle - dot(normal, middle - origin) * normal;
+  }
+  return origin;
+}
+
 Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
   Slice slice;
   PlaneView& view = slice.view;
@@ -172,8 +183,9 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   view.origin = origin;
   const std::vector<Vec3> outline = cut(padded, origin, view.normal);
   if (outline.empty()) throw UsageError("--origin, --normal: the plane misses the box, see --bounds and --padding");
-  const auto along_right = [&](const Vec3& p) { return dot(p - origin, view.right); };
-  const auto along_up = [&](const Vec3& p) { return dot(p - origin, view.up); };
+  const Vec3 near = near_point(padded, origin, view.normal);
+  const auto along_right = [&](const Vec3& p) { return dot(p - near, view.right); };
+  const auto along_up = [&](const Vec3& p) { return dot(p - near, view.up); };
   const auto [left, right] = std::ranges::minmax(outline, {}, along_right);
   const auto [bottom, top] = std::ranges::minmax(outline, {}, along_up);
   const double width = along_right(right) - along_right(left);
@@ -194,7 +206,7 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   add_pixels(view.width, padding);
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
-  view.corner = origin + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
+  view.corner = near + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
   slice.plane = "normal " + listed(view.normal, six_digits) + " through " + listed(origin, six_digits);
   slice.short_plane = "normal " + listed(view.normal, three_digits) + " at " + listed(origin, three_digits);
   return slice;

@@ -99,18 +99,19 @@ bool NodeSet::reaches_border() const {
 }
 
 NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
-                     std::atomic<std::uint64_t>* done) {
-  return nodes_inside_of(whole(lattice), evaluator, rule, lattice, done);
+                     std::atomic<std::uint64_t>* done, Tally* tally) {
+  return nodes_inside_of(whole(lattice), evaluator, rule, lattice, done, tally);
 }
 
 NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator& evaluator, const Rule& rule,
-                        const Lattice& lattice, std::atomic<std::uint64_t>* done) {
+                        const Lattice& lattice, std::atomic<std::uint64_t>* done, Tally* tally) {
   NodeSet nodes(lattice);
   std::vector<std::uint8_t> sides;
   for (std::int64_t layer = 0; layer < block.counts[2];) {
     const LatticeBlock slab = slab_of(block, layer);
     sides.resize(static_cast<std::size_t>(slab.size()));
-    evaluator.evaluate_sides(rule, lattice, slab, sides, done);
+    const Tally of_slab = evaluator.evaluate_sides(rule, lattice, slab, sides, done);
+    if (tally) *tally += of_slab;
     const std::int64_t first_j = slab.first[1] - lattice.index_min[1], first_k = slab.first[2] - lattice.index_min[2];
     const auto rows = static_cast<std::size_t>(slab.counts[1] * slab.counts[2]);
     parallel_for(rows, 64, [&](std::size_t begin, std::size_t end) {

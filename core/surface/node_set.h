@@ -72,14 +72,15 @@ class NodeSet {
   std::vector<std::uint64_t> words_;
 };
 
-// The nodes where `rule` holds. Exact. `done`, where given, grows by one per node. The same for any number of threads.
+// The nodes where `rule` holds. Exact. `done`, where given, grows by one per node, and `tally` by what
+// evaluate_sides() tells. The same for any number of threads.
 [[nodiscard]] NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
-                                   std::atomic<std::uint64_t>* done = nullptr);
+                                   std::atomic<std::uint64_t>* done = nullptr, Tally* tally = nullptr);
 
 // The same of some rows alone: none are found elsewhere. Precondition: rows of `block` are whole.
 [[nodiscard]] NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator& evaluator,
                                       const Rule& rule, const Lattice& lattice,
-                                      std::atomic<std::uint64_t>* done = nullptr);
+                                      std::atomic<std::uint64_t>* done = nullptr, Tally* tally = nullptr);
 
 // What nodes_inside() takes at most, in bytes.
 [[nodiscard]] double node_set_bytes(const Lattice& lattice);

@@ -67,6 +67,10 @@ std::optional<int> descriptor_number(const std::string& path) {
   return std::nullopt;
 }
 
+bool is_standard_input(const std::string& path) {
+  return path == "-" || descriptor_number(follow_links(path)) == STDIN_FILENO;
+}
+
 std::string directory_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? "." : path.substr(0, std::max<std::size_t>(slash, 1));

@@ -27,6 +27,9 @@ struct FileIdentity {
 // `path` with symbolic links in its last component followed, also a dangling one, as far as a descriptor's name.
 [[nodiscard]] std::string follow_links(std::string path);
 
+// "-", or a name of descriptor 0: what can be read once.
+[[nodiscard]] bool is_standard_input(const std::string& path);
+
 // The number N of /dev/fd/N and /proc/self/fd/N: descriptors that the caller opened for us.
 [[nodiscard]] std::optional<int> descriptor_number(const std::string& path);
 

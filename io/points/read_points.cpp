@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/npy_head.h"
 #include "io/files/unpack.h"
@@ -42,6 +43,14 @@ bool begins_with(InputBuffer& input, std::string_view signature) {
   return input.pending().starts_with(signature);
 }
 
+// A file of no bytes is text of no points, but no binary file: whoever was to write that one has failed.
+void refuse_empty(const std::string& path, const InputBuffer& input) {
+  if (!input.pending().empty()) return;
+  for (const std::string_view extension : {".npy", ".npz", ".ply"}) {
+    if (ends_with_word(path, extension)) throw InputError(path + ": is empty, expected points");
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<PointReader> read_ply_points(std::unique_ptr<InputBuffer> input) {
@@ -69,6 +78,7 @@ std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPoin
       return read_npz_points(path);
     }
     if (begins_with(*input, "ply\n") || begins_with(*input, "ply\r")) return read_ply_points(std::move(input));
+    refuse_empty(path, *input);
   }
   return read_text_points(std::move(input), options);
 }

@@ -179,7 +179,11 @@ TEST_F(CommandLine, ContradictionsAreUsageErrors) {
   expect_error(lattice({"--like", "a.vdb", "--bounds", "0,0,0,1,1,1"}), 1, "cannot be combined");
   expect_error(lattice({"--like", "a.vdb", "--padding", "1"}), 1, "cannot be combined");
   expect_error(lattice({"--like", "a.vdb", "--centers"}), 1, "cannot be combined");
-  expect_error(run_raycone({"points", "-", "-"}), 1, "cannot both be standard input");
+  for (const char* const mesh : {"-", "/dev/stdin", "/dev/fd/0"}) {
+    for (const char* const points : {"-", "/dev/stdin", "/proc/self/fd/0"}) {
+      expect_error(run_raycone({"points", mesh, points}), 1, "cannot both be standard input");
+    }
+  }
   expect_error(lattice({"--report", csv_}), 1, "is the output too");
 }
 

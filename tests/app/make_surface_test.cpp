@@ -105,6 +105,22 @@ TEST(MakeSurface, TellsThatPiecesAreLost) {
   EXPECT_TRUE(warnings(2.4).empty());
 }
 
+TEST(MakeSurface, TellsWhatItsNodesTook) {
+  TriangleMesh open = box_mesh({0, 0, 0}, {1, 1, 1});
+  open.triangles.pop_back();
+  const Lattice lattice{{-0.5, -0.5, -0.5}, {0.25, 0.25, 0.25}, {0, 0, 0}, {9, 9, 9}};
+  const MadeSurface made = make_surface("m", open, exterior_edges(open), lattice, {}, kAllMemory);
+  const WindingNumberEvaluator evaluator(open);
+  std::vector<std::uint8_t> sides(static_cast<std::size_t>(whole(lattice).size()));
+  const Tally tally = evaluator.evaluate_sides({}, lattice, whole(lattice), sides);
+  EXPECT_GT(tally.degenerate, 0U);
+  EXPECT_GT(tally.on_surface, 0U);
+  EXPECT_EQ(made.tally.degenerate, tally.degenerate);
+  EXPECT_EQ(made.tally.on_surface, tally.on_surface);
+  EXPECT_GE(made.terms.near, evaluator.terms().near);
+  EXPECT_GT(evaluator.terms().near, 0U);
+}
+
 // A fin on a box, 1.2 voxels high: all of it is nearer to the contour than a cell's diagonal.
 TEST(MakeSurface, TellsThatWallsAreLostNextToTheSurface) {
   const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {8, 8, 9}};

@@ -89,6 +89,17 @@ TEST_F(PointsCommand, NoPointsAreNoError) {
   EXPECT_EQ(result.out, "x,y,z,w\n");
 }
 
+// Text of no bytes is no points; of a binary file, its writer has left nothing.
+TEST_F(PointsCommand, EmptyBinaryFilesAreInputErrors) {
+  for (const char* const name : {"empty.npy", "empty.NPZ", "empty.ply"}) {
+    const std::string points = dir_ / name;
+    write_text(points, "");
+    const CommandResult result = run_raycone({"points", mesh_, points});
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.err.find("is empty, expected points"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(PointsCommand, MissingPointsFailBeforeTheMeshIsRead) {
   const std::string absent = dir_ / "absent.csv";
   const CommandResult result = run_raycone({"points", dir_ / "absent.obj", absent});

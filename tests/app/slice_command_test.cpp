@@ -177,6 +177,20 @@ TEST_F(Slice, ShowsLabelsOfParts) {
   EXPECT_EQ(run_raycone({"slice", cube_, other, "-o", picture_}).status, 1);
 }
 
+// A plane is the same one through any of its points.
+TEST_F(Slice, IsTheSameWhereItsOriginIsFarAway) {
+  const auto at = [&](const std::string& origin) {
+    const CommandResult result = slice(
+        {"--normal", "0,0,1", "--origin", origin, "--field", "sdf", "--size", "8", "--values", values_, "--strict"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return values(8, 8);
+  };
+  const std::vector<double> expected = at("0,0,0.25");
+  EXPECT_EQ(at("1e14,0,0.25"), expected);
+  EXPECT_EQ(at("-1e16,1e17,0.25"), expected);
+  EXPECT_NE(at("1e14,0,0.0625"), expected);  // another plane
+}
+
 TEST_F(Slice, HasAxesAndLegendWithinItsSizeAndTheSamplesBesideThem) {
   const std::vector<std::string> common{"--bounds", "0,0,0,2,1,1", "--size", "400", "--values", values_};
   ASSERT_EQ(slice(common).status, 0);
@@ -217,7 +231,8 @@ TEST_F(Slice, RefusesWhatItCannotDo) {
                                              {"--priority"},
                                              {"--field", "inside,sdf"},
                                              {"--rule", "odd"},
-                                             {"--values", picture_}}) {
+                                             {"--values", picture_},
+                                             {"--values", dir_ / "values.csv"}}) {
     const CommandResult result = slice(wrong);
     EXPECT_EQ(result.status, 1) << wrong.front() << ' ' << wrong.back();
     EXPECT_NE(result.err.find(wrong.front()), std::string::npos) << result.err;

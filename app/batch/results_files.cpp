@@ -51,12 +51,6 @@ std::string suffix_of(const std::optional<Shard>& shard) {
   return shard ? "-" + std::to_string(shard->index) + "-of-" + std::to_string(shard->count) : "";
 }
 
-// Whether rows are kept in a file of this name.
-bool holds_rows(const std::string& name) {
-  static const std::regex pattern("results(-[0-9]{1,19}-of-[0-9]{1,19})?\\.csv");
-  return std::regex_match(name, pattern);
-}
-
 // Whose rows those are.
 std::optional<Shard> shard_of(const std::string& name) {
   static const std::regex pattern("results-([0-9]+)-of-([0-9]+)\\.csv");
@@ -66,6 +60,11 @@ std::optional<Shard> shard_of(const std::string& name) {
 }
 
 }  // namespace
+
+bool holds_rows(const std::string& name) {
+  static const std::regex pattern("results(-[0-9]{1,19}-of-[0-9]{1,19})?\\.csv");
+  return std::regex_match(name, pattern);
+}
 
 std::vector<std::string> names_in(const std::string& directory) {
   std::vector<std::string> names;
@@ -272,6 +271,15 @@ BatchRecords read_all_results(const std::string& directory) {
     record.origin->finished = start->second;
   }
   return all;
+}
+
+std::size_t count_unreadable_rows(const std::string& directory) {
+  std::size_t count = 0;
+  for (const ResultsFiles& files : all_results_files(directory)) {
+    const std::vector<CsvRecord> rows = files.rows_.read();
+    count += static_cast<std::size_t>(std::ranges::count_if(rows, [](const CsvRecord& row) { return !row_from(row); }));
+  }
+  return count;
 }
 
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes) {

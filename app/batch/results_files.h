@@ -6,6 +6,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -69,6 +70,7 @@ class ResultsFiles {
     Starts starts;
   };
   friend BatchRecords read_all_results(const std::string& directory);
+  friend std::size_t count_unreadable_rows(const std::string& directory);
   [[nodiscard]] Contents contents() const;
   void write(const Contents& contents) const;
 
@@ -81,6 +83,9 @@ class ResultsFiles {
 // one whose origin is lost may be from any time until its file changed last. Throws InputError.
 [[nodiscard]] BatchRecords read_all_results(const std::string& directory);
 
+// Rows there that are damaged: nothing is known of their meshes. Throws InputError.
+[[nodiscard]] std::size_t count_unreadable_rows(const std::string& directory);
+
 // Removes from the whole batch and all its shards the rows of meshes that are gone. Not while a shard runs: a row that
 // it adds at this moment would be lost, and made again. Throws InputError, OutputError.
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes);
@@ -88,7 +93,8 @@ void remove_from_all_results(const std::string& directory, const std::set<std::s
 // Of the files in a directory; none where it is not there, or a file. Throws InputError where it cannot be read.
 [[nodiscard]] std::vector<std::string> names_in(const std::string& directory);
 
-// Whether a batch keeps its results in files of this name.
+// Whether a batch keeps its results in files of this name, or its rows.
 [[nodiscard]] bool is_results_file(const std::string& name);
+[[nodiscard]] bool holds_rows(const std::string& name);
 
 }  // namespace raycone

@@ -1,6 +1,7 @@
 #include "app/command_line/slice_options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "app/command_line/lattice_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/fields/field_writer.h"
 #include "io/files/ascii.h"
 
 namespace raycone {
@@ -127,6 +129,14 @@ OptionGroup mesh_group_with_both_ups() {
   return group;
 }
 
+void check_values_name(const std::string& name) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  if (extension.empty()) return;
+  const std::optional<FieldFormat> format = field_format_from_name(extension.substr(1));
+  if (!format || *format == FieldFormat::kNpy) return;
+  throw UsageError("--values " + name + ": its extension names another format, expected npy");
+}
+
 }  // namespace
 
 CommandSpec slice_spec() {
@@ -179,9 +189,7 @@ Command parse_slice(const Values& values) {
   command.framed = !values.given("--no-legend");
   command.run.options = given_options(values, option_names(slice_spec()));
   if (values.given("--values")) command.values = values.text("--values");
-  if (command.values && !has_extension(*command.values, "npy")) {
-    throw UsageError("--values " + *command.values + ": expected a name that ends with .npy");
-  }
+  if (command.values) check_values_name(*command.values);
   if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
   if (command.values && command.values == command.output.report) {
     throw UsageError("--values " + *command.values + ": is the report too");

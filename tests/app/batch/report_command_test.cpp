@@ -51,6 +51,25 @@ TEST_F(Report, OfABatchWithoutMeshesIsEmpty) {
   EXPECT_TRUE(std::filesystem::exists(out_ + "/report.html"));
 }
 
+// Its meshes are on no page: that is said, and only that.
+TEST_F(Report, TellsOfRowsThatItCannotRead) {
+  put("a.obj");
+  put("b.obj");
+  (void)run({"--quiet"});
+  const std::string results = out_ + "/results.csv";
+  const std::string whole = read_text(results);
+  const auto report = [&] { return run_raycone({"report", out_}); };
+  EXPECT_EQ(report().err.find("warning"), std::string::npos);
+  std::string damaged = whole;
+  damaged.replace(damaged.find(",ok,0,"), 6, ",ok,x,");
+  write_text(results, damaged + "garbage\n");
+  const CommandResult result = report();
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("2 rows cannot be read, left out"), std::string::npos) << result.err;
+  std::filesystem::remove(results);
+  EXPECT_EQ(report().status, 2);  // what rows were made from is no result
+}
+
 TEST_F(Report, OfWhatIsNoBatchIsAnInputError) {
   EXPECT_EQ(run_raycone({"report", dir_ / "absent"}).status, 2);
   EXPECT_EQ(run_raycone({"report", dir_.path().string()}).status, 2);

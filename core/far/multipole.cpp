@@ -184,24 +184,37 @@ DegreeRows rows_of(int order, const At& at) {
   return rows;
 }
 
-// Those that are left out of the moments of degree n, per |a||b - a|, where no edge is longer than `longest`.
-double left_out_of_moments(std::size_t points, int n, double longest, double radius) {
-  const int derivative = 2 * static_cast<int>(points);
-  if (n <= derivative) return 0;
-  return tables().left_out[points][index(n)] * std::pow(longest, derivative) * std::pow(radius, n - derivative - 1);
-}
-
-std::size_t points_for(double longest, double radius, int order, double precision) {
-  const std::size_t exact = static_cast<std::size_t>(order - 1) / 2 + 1;
-  for (std::size_t points = 1; points < exact; ++points) {
-    double largest = 0;
-    for (int n = 1; n <= order; ++n) {
-      largest = std::max(largest, std::ldexp(left_out_of_moments(points, n, longest, radius), -(n + 1)));
-    }
-    if (largest <= precision / kFourPi) return points;
+// What rules of few points leave out of the moments of edges that are not longer than `longest`.
+class LeftOut {
+ public:
+  LeftOut(double longest, double radius) {  // products: std::pow differs between processors
+    squares_[0] = radii_[0] = 1;
+    for (std::size_t i = 1; i < squares_.size(); ++i) squares_[i] = squares_[i - 1] * longest * longest;
+    for (std::size_t i = 1; i < radii_.size(); ++i) radii_[i] = radii_[i - 1] * radius;
   }
-  return exact;
-}
+
+  // Of those of degree n, per |a||b - a|.
+  [[nodiscard]] double of_moments(std::size_t points, int n) const {
+    const int derivative = 2 * static_cast<int>(points);
+    if (n <= derivative) return 0;
+    return kUp * tables().left_out[points][index(n)] * squares_[points] * radii_[index(n - derivative - 1)];
+  }
+
+  // The fewest that leave out no more than `precision` of what any moment may be, seen from two units away.
+  [[nodiscard]] std::size_t points_for(int order, double precision) const {
+    const std::size_t exact = static_cast<std::size_t>(order - 1) / 2 + 1;
+    for (std::size_t points = 1; points < exact; ++points) {
+      double largest = 0;
+      for (int n = 1; n <= order; ++n) largest = std::max(largest, std::ldexp(of_moments(points, n), -(n + 1)));
+      if (largest <= precision / kFourPi) return points;
+    }
+    return exact;
+  }
+
+ private:
+  std::array<double, GaussRule::kMost + 1> squares_;  // powers of that of the length
+  std::array<double, kP + 1> radii_;                  // powers
+};
 
 double longest_side_of(std::span<const SolidTriangle> triangles) {
   double longest = 0;
@@ -216,7 +229,8 @@ double longest_side_of(std::span<const SolidTriangle> triangles) {
 Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius,
                        int order, double precision, const MomentKernel& kernel) {
   const double scale = 1 / unit, longest = kUp * scale * longest_side_of(triangles);
-  const std::size_t points = points_for(longest, radius, order, precision);
+  const LeftOut left_out(longest, radius);
+  const std::size_t points = left_out.points_for(order, precision);
   EdgeSums sums(order, gauss_rule(points), kernel);
   double reach = 0;  // the sum of |a||b - a|
   for (const SolidTriangle& t : triangles) {
@@ -241,8 +255,7 @@ Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& cen
     const auto i = index(n);
     const double roundings = 2 * (20.0 * (n - 1) + 45 + 3 * static_cast<double>(triangles.size()));
     all.error[i] =
-        kUp * reach *
-        (roundings * kUnitRoundoff * power * tables().moment[i] + left_out_of_moments(points, n, longest, radius));
+        kUp * reach * (roundings * kUnitRoundoff * power * tables().moment[i] + left_out.of_moments(points, n));
     power *= radius;
   }
   return all;

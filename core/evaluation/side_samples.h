@@ -35,8 +35,8 @@ class SideSamples {
  public:
   using Index = std::array<std::size_t, 3>;  // along each axis
 
-  // `crossings` are the finished runs of the mesh, `cap_crossings` those of mesh.caps(), or of a soup its own, both of
-  // `rows`.
+  // `crossings` are the finished runs of the mesh, `cap_crossings` those of mesh.caps(), both of `rows`, and both
+  // without crossings where values depend on none.
   SideSamples(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides)
       : mesh_(mesh),

@@ -73,13 +73,10 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
     set_sides_of_runs(rows, rule, crossings, sides, done);
     return tally;
   }
-  if (!mesh.counts_crossings()) {  // the triangles of a soup are its caps
-    set_sides(mesh, rows, rule, crossings, crossings, sides, done);
-    return tally;
-  }
   LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.caps().mesh, rows, of_caps);
-  set_sides(mesh, rows, rule, crossings, of_caps, sides, done);
+  // The triangles of a soup are its caps: nothing is left between them, and it has no others.
+  set_sides(mesh, rows, rule, mesh.counts_crossings() ? crossings : of_caps, of_caps, sides, done);
   return tally;
 }
 

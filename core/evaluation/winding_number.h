@@ -62,7 +62,8 @@ struct Accuracy {
   double tolerance = 0.0;
   // About how many samples the evaluator is for: preparing a far field must pay.
   double samples = 1e6;
-  // Whether values only serve to tell sides of rules, which are exact: engines may then change as samples go on.
+  // Whether values only serve to tell sides of rules, which are exact: engines may then change as samples go on, and
+  // with them, within the tolerance, a value.
   bool sides_only = false;
   // About how many points in the mesh's box evaluate() for points is for, spread over it: where they are many, space is
   // divided into blocks for them. 0: nobody knows, or they are few.

@@ -8,7 +8,7 @@ namespace raycone {
 
 // The integral of a polynomial of degree 2 `points` - 1 at most is the sum of `weight` times its values at `at`.
 struct GaussRule {
-  static constexpr std::size_t kMost = 12;  // points
+  static constexpr std::size_t kMost = 11;  // points
   std::size_t points;
   std::array<double, kMost> at, weight;
 };

@@ -30,6 +30,7 @@ struct DegreeRows {
   static constexpr int kMiddle = 32;  // whole vectors of zeros around each row
   static constexpr std::size_t kRow = 64;
   alignas(64) std::array<std::array<double, kRow>, kMomentOrder + 2> re{}, im{};
+  static_assert(kMiddle > kMomentOrder && kMiddle + kMomentOrder + 1 + kMomentLanes <= kRow);
 };
 
 // Operations come in one order, without fused multiply-add: results are the same for every SIMD level. Thread-safe.

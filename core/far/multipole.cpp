@@ -18,6 +18,7 @@ constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
 using Complex = std::complex<double>;
 constexpr int kP = kMultipoleOrder;
 static_assert(kMomentOrder == kP - 1);
+static_assert(GaussRule::kMost == (kP + 1) / 2);
 constexpr double kUnitRoundoff = 0x1p-53;
 constexpr double kUp = 1 + 1e-12;  // more than what rounds in a sum of positive numbers here
 constexpr double kFourPi = 4 * std::numbers::pi;

@@ -112,7 +112,7 @@ SourceTree::SourceTree(std::vector<SolidTriangle> triangles, double tolerance, S
 }
 
 void SourceTree::build() {
-  nodes_.reserve(triangles_.size() / 2 + 1);
+  nodes_.reserve(8 * triangles_.size() / detail_.leaf + 1);
   std::vector<PlacedTriangle> placed;
   placed.reserve(triangles_.size());
   for (std::uint32_t i = 0; i < triangles_.size(); ++i) placed.push_back({box_of(triangles_[i]), i});

@@ -78,7 +78,7 @@ class EdgeVertices {
   };
 
   NumberSet vertices_;
-  std::vector<std::uint32_t> ranks_;  // of these, ascending
+  std::vector<std::uint32_t> ranks_;  // of each, by its place
 };
 
 // Orders the edges of one |multiplicity| into chains, walking from the lexicographically smallest vertex with an unused

@@ -114,6 +114,13 @@ std::optional<double> memory_left_by(const fs::path& group) {
   return std::nullopt;
 }
 
+// By which the heap grows, beyond what is asked of it: the more, the more of it may come in huge pages (memory.cpp). A
+// small part of what may be used; at least what is the C library's own choice.
+int heap_step(std::uint64_t memory) {
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 17, kMost = std::uint64_t{1} << 25;
+  return static_cast<int>(std::clamp(memory / 64, kLeast, kMost));
+}
+
 std::optional<double> address_space_left() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
@@ -168,11 +175,14 @@ std::uint64_t available_memory() {
 // Resident are files (code), stacks, and of what is mapped privately and can be written (RLIMIT_DATA counts that) the
 // part that has been touched.
 void cap_memory(std::uint64_t bytes, double untouched) {
+  const int step = heap_step(bytes);
+  mallopt(M_TOP_PAD, step);
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
   static const rlim_t at_start = limit.rlim_cur;
   const double mapped = proc_bytes("/proc/self/status", "VmData").value_or(0.0);
-  const double left = std::max(static_cast<double>(bytes) - memory_in_use(), 0.0);
+  const double spare = std::min<double>(static_cast<double>(mallinfo2().keepcost), step);  // at the end of the heap
+  const double left = std::max(static_cast<double>(bytes) - memory_in_use() - spare, 0.0);
   const double wanted = std::min(mapped + untouched + left, 0x1p62);
   limit.rlim_cur = std::min(static_cast<rlim_t>(wanted), std::min(at_start, limit.rlim_max));
   setrlimit(RLIMIT_DATA, &limit);

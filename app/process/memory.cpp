@@ -1,10 +1,13 @@
 // Memory without its hidden costs: touching a new page takes a microsecond or two, and with pages of 4 kB that was half
-// of the time that reading, welding and edge tables took. Large blocks therefore come in huge pages, which many systems
-// give only to who asks for them (Linux, admin-guide/mm/transhuge, "madvise"), and smaller ones are kept when they are
-// freed, for the next step to use.
+// of the time that reading, welding and edge tables took. The heap and large blocks therefore come in huge pages, which
+// many systems give only to who asks for them (Linux, admin-guide/mm/transhuge, "madvise"), and smaller blocks are kept
+// when they are freed, for the next step to use.
 #include <malloc.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -13,29 +16,50 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 // Smaller blocks would waste too much of their last page.
 constexpr std::size_t kLargeBlock = 4 * kHugePage;
+constexpr std::size_t kSmallBlock = std::size_t{1} << 16;
 
 constexpr int kKept = 1 << 26;
 [[maybe_unused]] const int done_at_start =
     mallopt(M_MMAP_THRESHOLD, static_cast<int>(kLargeBlock)) + mallopt(M_TRIM_THRESHOLD, kKept);
 
-// Nothing where there is no memory left.
+std::atomic<std::uintptr_t> heap_end = 0;  // when it was looked at last
+
+// Asks for huge pages where the heap has grown. It grows by more than one block at a time (cap_memory() in limits.cpp),
+// so that most of what is new has not been touched. `block`: a new one. Blocks of other threads may have heaps of their
+// own, which stay as they are. Failures cost time only.
+void follow_heap(std::uintptr_t block) {
+  const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  if (end == heap_end.load(std::memory_order_relaxed)) return;
+  const std::uintptr_t known = heap_end.exchange(end, std::memory_order_relaxed);
+  const std::uintptr_t grown = known > 0 ? known : block;
+  const std::uintptr_t begin = grown / kHugePage * kHugePage;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+// Null where there is no memory left.
 void* allocate_large(std::size_t size) {
   const std::size_t whole_pages = (size + kHugePage - 1) / kHugePage * kHugePage;
   if (whole_pages < size) return nullptr;
   void* const block = std::aligned_alloc(kHugePage, whole_pages);
-  if (block) madvise(block, size / kHugePage * kHugePage, MADV_HUGEPAGE);  // a failure costs time only
+  if (block) madvise(block, whole_pages, MADV_HUGEPAGE);
   return block;
 }
 
 void* allocate(std::size_t size) {
-  return size < kLargeBlock ? std::malloc(size > 0 ? size : 1) : allocate_large(size);
+  if (size >= kLargeBlock) return allocate_large(size);
+  void* const block = std::malloc(size > 0 ? size : 1);
+  if (size >= kSmallBlock) follow_heap(reinterpret_cast<std::uintptr_t>(block));
+  return block;
 }
 
 // `alignment`: extended, as the columns of kernels have it.
 void* allocate(std::size_t size, std::size_t alignment) {
   if (size >= kLargeBlock && alignment <= kHugePage) return allocate_large(size);
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  return whole < size ? nullptr : std::aligned_alloc(alignment, whole > 0 ? whole : alignment);
+  if (whole < size) return nullptr;
+  void* const block = std::aligned_alloc(alignment, whole > 0 ? whole : alignment);
+  if (size >= kSmallBlock) follow_heap(reinterpret_cast<std::uintptr_t>(block));
+  return block;
 }
 
 }  // namespace

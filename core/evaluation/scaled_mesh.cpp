@@ -87,7 +87,6 @@ const Blocks& ScaledMesh::blocks() const {
     const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
     blocks_.reset(new Blocks{!faces.has_repeated_faces,
                              LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)});
-    blocks_are_known_.store(true, std::memory_order_release);
   });
   return *blocks_;
 }
@@ -141,9 +140,7 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   if (!forced && !may_pay) return nullptr;
   std::unique_ptr<const FarField> far;
   const FarSources sources = counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
-  const bool shares_tree = options_.accuracy.sides_only && has_blocks() &&
-                           (counts_crossings() || blocks_are_known_.load(std::memory_order_acquire));
-  if (shares_tree) {  // rough sums need it, too
+  if (options_.accuracy.sides_only && has_rough_sums()) {  // they need the tree, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
     far = std::make_unique<const FarField>(mesh_, boundary_, sources, caps().mesh, sums.tree(), sums.tree_tolerance(),

@@ -118,6 +118,13 @@ class ScaledMesh {
            LatticeBlocks::doubt(tolerance(), most_sources()) <= Boundary::kMostDoubt;
   }
 
+  // Whether sides of rules are told by rough sums over the tree of blocks(), if these are sound. Few samples of a soup
+  // are sooner told by its own far field.
+  [[nodiscard]] bool has_rough_sums() const {
+    constexpr double kFewSamples = 0x1p16;
+    return has_blocks() && (counts_crossings() || options_.accuracy.samples > kFewSamples);
+  }
+
   // No value from blocks() is off by more.
   [[nodiscard]] double doubt_of_blocks() const;
 
@@ -173,7 +180,7 @@ class ScaledMesh {
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
-  mutable std::atomic<bool> far_is_known_ = false, blocks_are_known_ = false;
+  mutable std::atomic<bool> far_is_known_ = false;
   mutable std::once_flag rays_built_, grid_built_, caps_built_, change_bound_built_, far_built_, blocks_built_,
       points_built_;
   mutable std::array<std::once_flag, 2> slab_orders_built_;

@@ -51,11 +51,9 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
 // Whether set_sides() does not pay, or may not be called.
 bool takes_values(const ScaledMesh& mesh, const LatticeBlock& block) {
   constexpr double kWorthCaps = 0x1p20;  // edges at samples take about as long as caps and their tree
-  constexpr double kWorthTree = 0x1p16;  // samples: with fewer, the far field of a soup takes less time
   if (!mesh.is_in_scale()) return true;
-  const double samples = static_cast<double>(block.size());
-  if (!mesh.counts_crossings()) return samples <= kWorthTree || !mesh.has_blocks() || !mesh.blocks().are_sound;
-  return samples * static_cast<double>(mesh.boundary().exterior_edges()) <= kWorthCaps;
+  if (!mesh.counts_crossings()) return !mesh.has_rough_sums() || !mesh.blocks().are_sound;
+  return static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges()) <= kWorthCaps;
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.

@@ -107,7 +107,11 @@ BatchRecord record_of(ResultRow row, std::int64_t written_by, const std::map<std
 
 std::string CsvLog::text() const {
   std::error_code error;
-  return fs::exists(path_, error) || error ? read_file(path_) : "";
+  const fs::file_status status = fs::status(path_, error);
+  if (status.type() == fs::file_type::not_found) return "";
+  // A pipe would keep us waiting.
+  if (fs::is_other(status)) throw InputError(path_ + ": is a pipe or device, expected a file");
+  return read_file(path_);
 }
 
 std::vector<CsvRecord> CsvLog::read() const {

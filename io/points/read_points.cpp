@@ -46,8 +46,10 @@ bool begins_with(InputBuffer& input, std::string_view signature) {
 // A file of no bytes is text of no points, but no binary file: whoever was to write that one has failed.
 void refuse_empty(const std::string& path, const InputBuffer& input) {
   if (!input.pending().empty()) return;
-  for (const std::string_view extension : {".npy", ".npz", ".ply"}) {
-    if (ends_with_word(path, extension)) throw InputError(path + ": is empty, expected points");
+  for (const std::string extension : {".npy", ".npz", ".ply"}) {
+    for (const std::string compressed : {"", ".gz", ".zst"}) {
+      if (ends_with_word(path, extension + compressed)) throw InputError(path + ": is empty, expected points");
+    }
   }
 }
 

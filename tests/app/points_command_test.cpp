@@ -91,7 +91,7 @@ TEST_F(PointsCommand, NoPointsAreNoError) {
 
 // Text of no bytes is no points; of a binary file, its writer has left nothing.
 TEST_F(PointsCommand, EmptyBinaryFilesAreInputErrors) {
-  for (const char* const name : {"empty.npy", "empty.NPZ", "empty.ply"}) {
+  for (const char* const name : {"empty.npy", "empty.NPZ", "empty.ply", "empty.npy.gz", "empty.ply.zst"}) {
     const std::string points = dir_ / name;
     write_text(points, "");
     const CommandResult result = run_raycone({"points", mesh_, points});

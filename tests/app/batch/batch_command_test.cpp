@@ -334,6 +334,16 @@ TEST_F(Batch, SaysInOneLineWhatATableOfOthersIsNot) {
   EXPECT_EQ(result.err.find('?'), std::string::npos) << result.err;
 }
 
+TEST_F(Batch, DoesNotWaitForAPipeInPlaceOfItsTable) {
+  put("a.obj");
+  fs::create_directories(out_);
+  ASSERT_EQ(mkfifo((out_ + "/results.csv").c_str(), 0600), 0);
+  const CommandResult result = run();
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.err, "raycone: " + out_ + "/results.csv: is a pipe or device, expected a file\n");
+  EXPECT_EQ(run_raycone({"report", out_}).status, 2);
+}
+
 TEST_F(Batch, WarnsOncePerMeshAndObeysStrict) {
   const std::string mesh = put("a.obj", std::string(kTriangle) + "f 1 2\n");
   const CommandResult result = run();

@@ -267,18 +267,6 @@ Caps make_caps(const Boundary& boundary, double width) {
   return caps;
 }
 
-TriangleMesh all_caps(const Boundary& boundary) {
-  EdgeGraph graph(boundary.directed_edges());
-  TriangleMesh caps;
-  caps.vertices = graph.vertices();
-  const LoopFiller filler(caps.vertices);
-  graph.for_each_loop([&](const Loop& loop) {
-    const std::vector<Triangle> triangles = filler.fill(loop).triangles;
-    caps.triangles.insert(caps.triangles.end(), triangles.begin(), triangles.end());
-  });
-  return caps;
-}
-
 TriangleMesh caps_and_strips(const Boundary& boundary) {
   EdgeGraph graph(boundary.directed_edges());
   FilledLoops filled{LoopFiller(graph.vertices())};

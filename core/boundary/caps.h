@@ -21,11 +21,8 @@ struct Caps {
 // the sum of multiplicities, times its logarithm.
 [[nodiscard]] Caps make_caps(const Boundary& boundary, double width);
 
-// The caps alone.
-[[nodiscard]] TriangleMesh all_caps(const Boundary& boundary);
-
-// The same, but that two loops that run next to each other, as those of a wall whose rim is missing, are joined by a
-// strip, if that has half of the area of their caps or less.
+// The caps alone, but that two loops that run next to each other, as those of a wall whose rim is missing, are joined
+// by a strip, if that has half of the area of their caps or less.
 [[nodiscard]] TriangleMesh caps_and_strips(const Boundary& boundary);
 
 }  // namespace raycone

@@ -139,12 +139,12 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   const bool may_pay = options_.summation == Summation::kCheapest && boundary_.exterior_edges() >= kTooFew;
   if (!forced && !may_pay) return nullptr;
   std::unique_ptr<const FarField> far;
-  const FarSources sources = counts_crossings() ? FarSources::kCaps : FarSources::kTriangles;
+  const TriangleMesh* const sources = counts_crossings() ? &caps().mesh : nullptr;
   if (options_.accuracy.sides_only && has_rough_sums()) {  // they need the tree, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
-    far = std::make_unique<const FarField>(mesh_, boundary_, sources, caps().mesh, sums.tree(), sums.tree_tolerance(),
-                                           options_.level);
+    far =
+        std::make_unique<const FarField>(mesh_, boundary_, sources, sums.tree(), sums.tree_tolerance(), options_.level);
   } else {
     far = std::make_unique<const FarField>(mesh_, boundary_, sources, kFarShare * tolerance(), options_.level);
   }
@@ -234,7 +234,7 @@ void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> c
   if (of_closed.empty() || !far->counts_crossings()) {
     far->winding_numbers(samples, crossings, values);
   } else {
-    far->winding_numbers_of_closed(samples, of_closed, values);  // its caps are the same, perhaps in another order
+    far->winding_numbers_of_closed(samples, of_closed, values);
   }
   if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, far->doubt());
 }

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/boundary/caps.h"
 #include "core/boundary/solid_angles.h"
 #include "core/data/even_places.h"
 
@@ -32,23 +31,26 @@ bool far_field_may_pay(double samples, double sources, double direct) {
   return kPreparation < small_part * samples * direct;
 }
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance,
+FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
                    SimdLevel level)
-    : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)) {
-  if (sources == FarSources::kCaps) {
-    caps_ = all_caps(boundary);
-    cap_crossings_ = CapCrossings(caps_);
-  }
-  SolidFaces faces = solid_faces(sources == FarSources::kCaps ? caps_ : mesh);
+    : boundary_(boundary),
+      kernel_(far_kernel(level)),
+      has_caps_(caps != nullptr),
+      cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()) {
+  SolidFaces faces = solid_faces(caps ? *caps : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
   tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level, kDetail);
   set_costs(bounding_box(mesh), tolerance);
 }
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, const TriangleMesh& caps,
-                   const SourceTree& tree, double tolerance, SimdLevel level)
-    : boundary_(boundary), sources_(sources), kernel_(far_kernel(level)), cap_crossings_(caps), tree_(&tree) {
+FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, const SourceTree& tree,
+                   double tolerance, SimdLevel level)
+    : boundary_(boundary),
+      kernel_(far_kernel(level)),
+      has_caps_(caps != nullptr),
+      cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()),
+      tree_(&tree) {
   doubt_ = std::min(doubt(tolerance, static_cast<double>(tree.triangles().size())), Boundary::kMostDoubt);
   set_costs(bounding_box(mesh), tolerance);
 }
@@ -81,7 +83,7 @@ void FarField::set_costs(const Box& box, double tolerance) {
 void FarField::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                                std::span<double> w) const {
   std::array<std::int64_t, kTile> whole{};
-  if (sources_ == FarSources::kCaps) {
+  if (has_caps_) {
     const std::array<std::int64_t, kTile> of_caps = cap_crossings_.of(samples);
     for (std::size_t i = 0; i < samples.count; ++i) whole[i] = crossings[i] - of_caps[i];
   }

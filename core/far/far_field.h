@@ -19,8 +19,6 @@
 
 namespace raycone {
 
-enum class FarSources { kTriangles, kCaps };
-
 // Whether preparing a far field takes no more than a small part of what direct sums at so many samples take: then its
 // cost() can be looked at. `direct`: what a source takes there, in units of an exterior edge. The part is larger where
 // there are many sources, as a far field saves more of them.
@@ -29,17 +27,19 @@ enum class FarSources { kTriangles, kCaps };
 class FarField final : public BoundaryTerm {
  public:
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
-  // rounds included. `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
-  FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, double tolerance, SimdLevel level);
-  // The same where there is a tree of the sources, made with this tolerance. It must outlive this, too, as must `caps`,
-  // which are empty for a soup. Precondition: no source is repeated.
-  FarField(const TriangleMesh& mesh, const Boundary& boundary, FarSources sources, const TriangleMesh& caps,
-           const SourceTree& tree, double tolerance, SimdLevel level);
+  // rounds included. `boundary`: of the mesh; `caps`: of the boundary, null where the triangles of the mesh are the
+  // sources. Both must outlive this. Needs DefaultFloatingPoint.
+  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
+           SimdLevel level);
+  // The same where there is a tree of the sources, made with this tolerance. It must outlive this, too. Precondition:
+  // no source is repeated.
+  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, const SourceTree& tree,
+           double tolerance, SimdLevel level);
 
   // Whether a face or a cap is there so often that its error, multiplied, would show: then do not use this.
   [[nodiscard]] bool has_repeated_faces() const { return faces_repeat_; }
 
-  [[nodiscard]] bool counts_crossings() const override { return sources_ == FarSources::kCaps; }
+  [[nodiscard]] bool counts_crossings() const override { return has_caps_; }
   void winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings,
                        std::span<double> w) const override;
   // The same, `whole` being the crossings of the mesh less those of the caps; of sources that are caps.
@@ -66,9 +66,8 @@ class FarField final : public BoundaryTerm {
   void set_costs(const Box& box, double tolerance);
 
   const Boundary& boundary_;
-  FarSources sources_;
   FarKernel kernel_;
-  TriangleMesh caps_;  // none of a soup
+  bool has_caps_;
   CapCrossings cap_crossings_;
   std::optional<SourceTree> own_tree_;
   const SourceTree* tree_;

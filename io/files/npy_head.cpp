@@ -43,7 +43,8 @@ class HeadParser {
 
   [[nodiscard]] std::string parse_type() const {
     const std::string_view value = value_of(dictionary_, "descr");
-    const std::size_t end = value.empty() ? std::string_view::npos : value.find(value.front(), 1);
+    if (value.empty()) fail("header without a type (descr), expected one");
+    const std::size_t end = value.find(value.front(), 1);
     if (end == std::string_view::npos || (value.front() != '\'' && value.front() != '"')) {
       fail("file of structured values, expected numbers");
     }

@@ -130,7 +130,7 @@ TextScanner::TextScanner(const NamedBytes& source)
       end_(source.bytes.data() + source.bytes.size()),
       position_(begin_) {
   if (is_utf16(source.bytes)) fail("the text is UTF-16, expected UTF-8 or ASCII");
-  if (source.bytes.starts_with("\xEF\xBB\xBF")) position_ += 3;
+  skip_byte_order_mark();
   const std::size_t first_end = source.bytes.find_first_of("\r\n");
   if (first_end != std::string_view::npos && source.bytes.substr(first_end, 2) != "\r\n")
     line_end_ = source.bytes[first_end];

@@ -22,6 +22,8 @@ namespace raycone {
 
 [[nodiscard]] inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8
+
 // Whether a byte order mark announces UTF-16.
 [[nodiscard]] inline bool is_utf16(std::string_view bytes) {
   return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
@@ -60,6 +62,10 @@ class TextScanner {
   // Moves to the next token or line end. A backslash at the end of a line joins the next one to it.
   void skip_blanks() {
     while (!at_end() && !is_line_end(*position_) && (is_space(*position_) || skip_continuation())) ++position_;
+  }
+  // Moves past a byte order mark, which begins each of several files that have been joined.
+  void skip_byte_order_mark() {
+    if (peek() == '\xEF' && rest().starts_with(kByteOrderMark)) position_ += kByteOrderMark.size();
   }
   // Moves to the next token, in whichever line.
   void skip_whitespace() {

@@ -254,6 +254,11 @@ std::vector<Element> GltfData::read(std::size_t index, std::size_t components,
   spend(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t target = targets.index(i);
+    if (i > 0 && target <= targets.index(i - 1)) {
+      fail("accessor", index,
+           "has sparse index " + std::to_string(target) + " behind " + std::to_string(targets.index(i - 1)) +
+               ", expected ascending ones");
+    }
     if (target >= result.size()) {
       fail("accessor", index,
            "has sparse index " + std::to_string(target) + ", but only " + counted(result.size(), "element"));

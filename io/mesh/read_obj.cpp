@@ -20,6 +20,7 @@ class ObjReader {
   ParsedMesh read() {
     groups_.continue_group(kDefaultGroup, 0);
     while (!text_.at_end()) {
+      text_.skip_byte_order_mark();
       text_.skip_blanks();
       read_statement();
     }
@@ -43,8 +44,8 @@ class ObjReader {
     const std::string_view keyword = text_.peek_word();
     if (keyword == "v") {
       read_vertex();
-    } else if (keyword == "f") {
-      read_face();
+    } else if (keyword == "f" || keyword == "fo") {  // the latter is the name that faces had before version 3
+      read_face(keyword.size());
     } else if (keyword == "g") {
       group_ = read_name();
       continue_group();
@@ -94,8 +95,8 @@ class ObjReader {
     builder_.add_vertex(vertex, offset);
   }
 
-  void read_face() {
-    text_.advance(1);
+  void read_face(std::size_t keyword) {
+    text_.advance(keyword);
     builder_.begin_polygon();
     for (text_.skip_blanks(); !text_.at_line_end(); text_.skip_blanks()) builder_.add_corner(read_corner());
     builder_.end_polygon();

@@ -16,12 +16,13 @@ class OffReader {
 
   ParsedMesh read() {
     read_keyword();
+    const std::size_t counts = text_.offset();
     const std::uint64_t vertices = read_count("vertex");
     const std::uint64_t faces = read_count("face");
     // The number of edges, often wrong and sometimes absent, tells nothing.
     text_.skip_line();
-    check_announced("vertex", vertices, kShortestVertex);
-    check_announced("face", faces, kShortestFace);
+    check_announced(counts, "vertex", vertices, kShortestVertex);
+    check_announced(counts, "face", faces, kShortestFace);
     builder_.reserve_vertices(vertices);
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
     for (std::uint64_t i = 0; i < faces; ++i) read_face(i, faces);
@@ -62,9 +63,9 @@ class OffReader {
   }
 
   // Before anything is allocated for them.
-  void check_announced(const char* what, std::uint64_t count, std::size_t shortest) const {
+  void check_announced(std::size_t offset, const char* what, std::uint64_t count, std::size_t shortest) const {
     if (count <= (text_.remaining() + 1) / shortest) return;
-    text_.fail(counted(count, what) + " announced, but only " + remaining_bytes(text_.remaining()));
+    text_.fail_at(offset, counted(count, what) + " announced, but only " + remaining_bytes(text_.remaining()));
   }
 
   void next_row(const char* what, std::uint64_t index, std::uint64_t count) {

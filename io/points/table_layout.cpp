@@ -128,6 +128,27 @@ std::vector<std::string_view> fields_of(std::string_view line, char delimiter) {
   return all;
 }
 
+namespace {
+
+// x, y and z in any case, with or without a unit: "X", "y [mm]", "z(m)". Nothing where two columns have one of them.
+std::optional<Columns> columns_with_units(const std::vector<std::string_view>& names) {
+  Columns columns{};
+  std::array<int, 3> found{};
+  for (std::size_t column = 0; column < names.size(); ++column) {
+    std::string_view name = names[column];
+    const std::size_t unit = name.find_first_of("[(");
+    if (unit != std::string_view::npos && (name.ends_with(']') || name.ends_with(')'))) name = name.substr(0, unit);
+    while (name.ends_with(' ')) name.remove_suffix(1);
+    const std::size_t axis = name.size() == 1 ? std::string_view("xyz").find(lower_case(name.front())) : 3;
+    if (axis >= 3) continue;
+    columns[axis] = column;
+    ++found[axis];
+  }
+  return found == std::array{1, 1, 1} ? std::optional(columns) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<Columns> named_columns(const std::vector<std::string_view>& names) {
   static constexpr std::array<std::array<std::string_view, 3>, 4> kNames{
       {{"x", "y", "z"}, {"X", "Y", "Z"}, {"Points:0", "Points:1", "Points:2"}, {"Points_0", "Points_1", "Points_2"}}};
@@ -141,7 +162,7 @@ std::optional<Columns> named_columns(const std::vector<std::string_view>& names)
     }
     if (found == 3) return columns;
   }
-  return std::nullopt;
+  return columns_with_units(names);
 }
 
 bool is_header(std::string_view line, const std::optional<Columns>& given) {

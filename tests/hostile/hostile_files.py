@@ -456,7 +456,7 @@ add("magic_only.npy", b"\x93NUMPY", 2, "byte 6: the file ends within the NPY hea
 add("version_9.npy", npy(npy_header("(2, 3)"), DOUBLES, version=(9, 0)), 2, "NPY version 9, expected 1 to 3")
 add("header_cut.npy", npy(npy_header("(2, 3)"), DOUBLES)[:40], 2, "byte 40: the file ends within the NPY header")
 add("header_too_long.npy", npy(npy_header("(2, 3)"), DOUBLES, version=(2, 0), length=4000000000), 2, "NPY header of 4000000000 bytes, expected at most 65536")
-add("not_a_dictionary.npy", npy("[1, 2, 3]", DOUBLES), 2, "NPY file of structured values, expected numbers")
+add("not_a_dictionary.npy", npy("[1, 2, 3]", DOUBLES), 2, "NPY header without a type (descr), expected one")
 add("no_shape.npy", npy("{'descr': '<f8', 'fortran_order': False, }", DOUBLES), 2, "NPY header without a shape, expected (n, 3)")
 add("one_dimension.npy", npy(npy_header("(6,)"), DOUBLES), 2, "NPY shape (6,), expected (n, 3 or more)")
 add("two_columns.npy", npy(npy_header("(3, 2)"), DOUBLES), 2, "NPY shape (3, 2), expected (n, 3 or more)")

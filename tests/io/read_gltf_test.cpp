@@ -195,6 +195,21 @@ TEST(ReadGltf, SparseElementsReplaceThoseOfTheView) {
   EXPECT_EQ(mesh.vertices[3], (Vec3{0, 1, 0}));
 }
 
+TEST(ReadGltf, SparseElementsAreInAscendingOrder) {
+  for (const std::uint16_t second : std::array<std::uint16_t, 2>{2, 1}) {
+    Asset asset;
+    asset.binary = square_data() + bytes_of<std::uint16_t>({2, second}) + bytes_of<float>({5, 6, 7, 8, 9, 10});
+    asset.buffers = R"([{"byteLength":88}])";
+    asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},)"
+                  R"({"buffer":0,"byteOffset":60,"byteLength":4},{"buffer":0,"byteOffset":64,"byteLength":24}])";
+    asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":2,)"
+                      R"("indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
+                      R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+    EXPECT_EQ(error_of(asset),
+              "a.glb: accessor 0 has sparse index " + std::to_string(second) + " behind 2, expected ascending ones");
+  }
+}
+
 TEST(ReadGltf, SparseElementsWithoutAViewReplaceZeros) {
   Asset asset;  // indices 0 0 0 0 0 0, but for the three in the middle
   asset.binary = square_data() + bytes_of<std::uint8_t>({1, 2, 3, 0}) + bytes_of<std::uint16_t>({1, 2, 3});

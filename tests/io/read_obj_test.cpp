@@ -104,6 +104,13 @@ TEST(ReadObj, LinesMayEndInAnyWay) {
   EXPECT_EQ(triangles("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r"), kOneTriangle);
 }
 
+TEST(ReadObj, ByteOrderMarksOfJoinedFilesAreSkipped) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(triangles("v 0 0 0\nv 1 0 0\n" + mark + "v 0 1 0\n" + mark + "# c\n" + mark + "f 1 2 3"), kOneTriangle);
+}
+
+TEST(ReadObj, FacesMayHaveTheirFormerName) { EXPECT_EQ(triangles(with_triangle("fo 1/1 2/2 3/3")), kOneTriangle); }
+
 TEST(ReadObj, ByteOrderMarkIsSkipped) { EXPECT_EQ(triangles("\xEF\xBB\xBF" + with_triangle("f 1 2 3")), kOneTriangle); }
 
 TEST(ReadObj, Utf16IsRefused) {

@@ -87,9 +87,9 @@ TEST(ReadOff, BadHeadersAreNamed) {
 
 TEST(ReadOff, CountsThatTheFileCannotHoldAreRefusedBeforeAllocating) {
   EXPECT_EQ(error_of("OFF\n1000000000000 1 0\n" + kVertices),
-            "f:3: 1000000000000 vertices announced, but only 18 bytes follow");
+            "f:2: 1000000000000 vertices announced, but only 18 bytes follow");
   EXPECT_EQ(error_of("OFF\n3 99999999999999999999 0\n" + kVertices),
-            "f:3: 9223372036854775807 faces announced, but only 18 bytes follow");
+            "f:2: 9223372036854775807 faces announced, but only 18 bytes follow");
 }
 
 TEST(ReadOff, MissingRowsAreCounted) {

@@ -160,6 +160,9 @@ TEST_F(ReadPoints, HeaderThatNamesColumnsHasAsManyAsTheRows) {
 TEST_F(ReadPoints, ColumnOfRowNumbersIsNotX) {
   EXPECT_EQ(error_of(",px,py,pz\n0,10.5,-4,1.25\n"),
             "pts:2: the first column has no name, expected columns x, y and z, or --columns");
+  EXPECT_EQ(read("id,X,Y,z\n0,1,2,3\n1,-4,.5,6e-3\n"), kTwo);
+  EXPECT_EQ(read("id;z [mm];x(m) ;y [mm]\n0;3;1;2\n1;6e-3;-4;.5\n"), kTwo);
+  EXPECT_EQ(read("a,b,c,x,X [m],Y,Z\n1,2,3,0,0,0,0\n-4,.5,6e-3,0,0,0,0\n"), kTwo) << "which x?";
   EXPECT_EQ(read("\"Point ID\",\"s\",\"Points_0\",\"Points_1\",\"Points_2\"\n0,3,1,2,3\n1,3,-4,.5,6e-3\n"), kTwo);
 }
 

@@ -78,15 +78,21 @@ void take(const FieldValues& from, std::span<double> to) {
   }
 }
 
-// Hands the centres of the pixels on, batch by batch, row by row from the top.
+// Hands the centres of the pixels on, batch by batch: the samples of a lattice in its order, else row by row from the
+// top.
 template <typename Visit>
-void for_pixels(const PlaneView& view, const Visit& visit) {
+void for_pixels(const Slice& slice, const Visit& visit) {
+  const PlaneView& view = slice.view;
+  const auto centre = [&](std::int64_t n) {
+    return slice.lattice ? slice.lattice->position(whole(*slice.lattice).index_of(static_cast<std::size_t>(n)))
+                         : view.centre(n % view.width, n / view.width);
+  };
   std::vector<Vec3> points;
   const std::int64_t pixels = view.width * view.height;
   for (std::int64_t first = 0; first < pixels; first += kPixelBatch) {
     const std::int64_t end = std::min(first + kPixelBatch, pixels);
     points.clear();
-    for (std::int64_t n = first; n < end; ++n) points.push_back(view.centre(n % view.width, n / view.width));
+    for (std::int64_t n = first; n < end; ++n) points.push_back(centre(n));
     visit(static_cast<std::size_t>(first), points);
   }
 }
@@ -99,13 +105,13 @@ void evaluate_field(TriangleMesh mesh, const Slice& slice, const FieldOptions& f
   if (is_on_lattice(slice, field)) {
     fields.evaluate(*slice.lattice, whole(*slice.lattice), done);
     take(fields.values().front(), values);
-    turn_rows_over(values, slice.view.width, slice.view.height);
   } else {
-    for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
+    for_pixels(slice, [&](std::size_t first, std::span<const Vec3> points) {
       fields.evaluate(points, done);
       take(fields.values().front(), values.subspan(first, points.size()));
     });
   }
+  if (slice.lattice) turn_rows_over(values, slice.view.width, slice.view.height);
   fields.finish(std::numeric_limits<double>::infinity());
 }
 
@@ -120,7 +126,7 @@ void evaluate_labels(LabelledParts& parts, const Slice& slice, const FieldOption
   PointLabels evaluator(parts, field, static_cast<double>(values.size()), run);
   std::atomic<std::uint64_t>* const done = run.start_progress(values.size());
   timed(run.report.seconds.evaluate, [&] {
-    for_pixels(slice.view, [&](std::size_t first, std::span<const Vec3> points) {
+    for_pixels(slice, [&](std::size_t first, std::span<const Vec3> points) {
       evaluator.evaluate(points, std::span(labels).subspan(first, points.size()));
       if (done) *done += points.size();
     });

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -128,6 +129,44 @@ TEST_F(Slice, AlongAnObliquePlaneReportsItsLattice) {
     }
   }
   EXPECT_TRUE(some_inside);
+}
+
+// Far from the origin another formula for the places of pixels is off by a part of them.
+TEST_F(Slice, HasDistancesAtTheSamplesOfItsLattice) {
+  constexpr std::size_t kRows = 60;
+  const std::string report = dir_ / "report.json", points = dir_ / "points.csv";
+  std::string far;
+  for (const int n : {0, 1, 2, 3, 4, 5, 6, 7}) {
+    far += "v " + std::to_string(1000000000 + (n & 1)) + " " + std::to_string(1000000000 + (n >> 1 & 1)) + " " +
+           std::to_string(1000000000 + (n >> 2)) + "\n";
+  }
+  write_text(cube_, far + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  for (const std::string axis : {"x", "y", "z"}) {
+    ASSERT_EQ(slice({"--axis", axis, "--size", "60", "--field", "sdf", "--values", values_, "--report", report}).status,
+              0);
+    const nlohmann::json lattice = nlohmann::json::parse(read_text(report))["lattice"];
+    const std::size_t across = axis == "x" ? 1 : 0, up = axis == "z" ? 1 : 2;
+    const std::vector<double> distances = values(kRows, kRows);
+    std::ostringstream rows;
+    rows.precision(17);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      for (std::size_t column = 0; column < kRows; ++column) {
+        std::array<double, 3> q{lattice["origin"][0], lattice["origin"][1], lattice["origin"][2]};
+        q[across] += static_cast<double>(column) * lattice["spacing"][across].get<double>();
+        q[up] += static_cast<double>(kRows - 1 - row) * lattice["spacing"][up].get<double>();
+        rows << q[0] << ',' << q[1] << ',' << q[2] << '\n';
+      }
+    }
+    write_text(points, rows.str());
+    const CommandResult result = run_raycone({"points", cube_, points, "--field", "sdf"});
+    std::istringstream lines(result.out);
+    std::string line;
+    std::getline(lines, line);
+    for (const double distance : distances) {
+      ASSERT_TRUE(std::getline(lines, line)) << result.err;
+      ASSERT_EQ(std::stod(line.substr(line.rfind(',') + 1)), distance) << axis << ": " << line;
+    }
+  }
 }
 
 TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {

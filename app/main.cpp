@@ -10,6 +10,7 @@
 #include "app/process/stack_limit.h"
 #include "app/run/grid_reader.h"
 #include "app/run_command.h"
+#include "core/exact/integer_memory.h"
 
 namespace raycone {
 namespace {
@@ -28,6 +29,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   using namespace raycone;
   set_up_process();
+  reserve_memory_for_integers();
   if (!ensure_stack()) return static_cast<int>(ExitCode::kLimit);
   try {
     return static_cast<int>(run_words({argv + (argc > 0 ? 1 : 0), argv + argc}));

@@ -52,7 +52,7 @@ done
 
 only_in Embree '[<"]embree' 'core/crossings/ray_caster\.cpp'
 only_in CGAL '[<"]CGAL' 'core/exact/(predicates|projection)\.cpp'
-only_in GMP '[<"]gmp' 'core/exact/exact_integers\.h'
+only_in GMP '[<"]gmp' 'core/exact/(exact_integers\.h|integer_memory\.cpp)'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/machine/threads\.cpp'
 only_in Highway '[<"]hwy' \
   'core/([a-z]+/[a-z_]+(_kernel\.cpp|-inl\.h)|far/shared_corners\.cpp|machine/(simd\.cpp|simd_kernel\.h))'

@@ -114,6 +114,23 @@ std::optional<double> memory_left_by(const fs::path& group) {
   return std::nullopt;
 }
 
+// As whoever started this process set it: cap_memory() sets others.
+rlim_t data_limit_at_start() {
+  static const rlim_t at_start = [] {
+    rlimit limit{};
+    return getrlimit(RLIMIT_DATA, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
+  }();
+  return at_start;
+}
+
+double mapped_data() { return proc_bytes("/proc/self/status", "VmData").value_or(0.0); }
+
+// What may be resident in all where data is limited.
+std::optional<double> memory_within_data_limit() {
+  if (data_limit_at_start() == RLIM_INFINITY) return std::nullopt;
+  return memory_in_use() + std::max(static_cast<double>(data_limit_at_start()) - mapped_data(), 0.0);
+}
+
 // By which the heap grows, beyond what is asked of it: the more, the more of it may come in huge pages (memory.cpp). A
 // small part of what may be used; at least what is the C library's own choice.
 int heap_step(std::uint64_t memory) {
@@ -169,6 +186,7 @@ std::uint64_t available_memory() {
   bytes += proc_bytes("/proc/meminfo", "SwapFree").value_or(0.0);
   bytes = std::min(bytes, static_cast<double>(cgroup_memory().value_or(1ULL << 62)));
   bytes = std::min(kShareOfMachine * bytes, address_space_left().value_or(0x1p62));
+  bytes = std::min(bytes, memory_within_data_limit().value_or(0x1p62));
   return static_cast<std::uint64_t>(bytes);
 }
 
@@ -177,10 +195,10 @@ std::uint64_t available_memory() {
 void cap_memory(std::uint64_t bytes, double untouched) {
   const int step = heap_step(bytes);
   mallopt(M_TOP_PAD, step);
+  const rlim_t at_start = data_limit_at_start();
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
-  static const rlim_t at_start = limit.rlim_cur;
-  const double mapped = proc_bytes("/proc/self/status", "VmData").value_or(0.0);
+  const double mapped = mapped_data();
   const double spare = std::min<double>(static_cast<double>(mallinfo2().keepcost), step);  // at the end of the heap
   const double left = std::max(static_cast<double>(bytes) - memory_in_use() - spare, 0.0);
   const double wanted = std::min(mapped + untouched + left, 0x1p62);

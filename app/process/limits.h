@@ -15,7 +15,8 @@ namespace raycone {
 // Largest number of threads that may be asked for.
 inline constexpr int kMaxThreads = 4096;
 
-// Bytes that `ulimit -v` leaves to this process, or seven eighths of those that the machine and the cgroup do.
+// Bytes that `ulimit -v` and `ulimit -d` leave to this process, or seven eighths of those that the machine and the
+// cgroup do.
 [[nodiscard]] std::uint64_t available_memory();
 
 // Makes allocations fail with std::bad_alloc before more than `bytes` are resident in this process, code and libraries

@@ -1,14 +1,20 @@
 // Reading and writing of OpenVDB files, by the module that is loaded when the first one is asked for.
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <pthread.h>
+#include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
+#include <thread>
 
 #include "io/fields/format_writers.h"
 #include "io/files/file_error.h"
@@ -52,6 +58,30 @@ void require_threads(const std::string& name) {
     throw UnavailableError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
 }
 
+// While this lives, no other process of this user loads the module, where a user may have few threads: the trial of one
+// would take those that the other one has found free. Processes that wait for long go on without.
+class LoadingTurn {
+ public:
+  LoadingTurn() {
+    constexpr rlim_t kFewThreads = 1024;
+    constexpr int kTries = 1000;
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur >= kFewThreads) return;
+    descriptor_ = open(module_path().c_str(), O_RDONLY | O_CLOEXEC);
+    for (int n = 0; descriptor_ >= 0 && n < kTries && flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  ~LoadingTurn() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  LoadingTurn(const LoadingTurn&) = delete;
+  LoadingTurn& operator=(const LoadingTurn&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
 // Where threads or memory are short, the libraries that OpenVDB brings abort or wait for ever while they are loaded,
 // and the dynamic linker does not tell this from a library that is damaged: refuse before. TBB may still fail to start
 // a thread, in a way that can be caught.
@@ -68,6 +98,7 @@ void require_what_loading_takes(const std::string& name) {
 // loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
+  const LoadingTurn turn;
   require_what_loading_takes(name);
   // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
   void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);

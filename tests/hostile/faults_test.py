@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from runs import CLOSED, OPEN, RAYCONE, all_runs, contents, fail, is_sanitized, limit, report
+from runs import CLOSED, MESHES, OPEN, RAYCONE, Run, all_runs, contents, fail, is_sanitized, limit, report
 
 LONG = "--long" in sys.argv
 
@@ -120,6 +120,32 @@ def sweep_batch_memory(step):
             return fail("batch: no memory is enough", process.returncode, process.stderr)
 
 
+# Processes that load OpenVDB at once take threads from each other. Root has as many as it likes, so another user runs this.
+def batch_with_few_threads(count):
+    def few_threads(threads=12):
+        os.setsid()
+        os.setgroups([])
+        os.setgid(65534)
+        os.setuid(65534)
+        resource.setrlimit(resource.RLIMIT_NPROC, (threads, threads))
+
+    os.chmod(".", 0o777)
+    try:
+        subprocess.run([RAYCONE, "--version"], capture_output=True, check=True, preexec_fn=few_threads)
+    except (OSError, subprocess.SubprocessError):
+        return print("batches with few threads need root, and a build that others may read")
+    for i in range(count):
+        arguments = [RAYCONE, "batch", MESHES, "--resolution", "6", "--jobs", "4", "--quiet", "--out-dir", "few%d" % i]
+        process = subprocess.Popen(arguments, stderr=subprocess.PIPE, preexec_fn=lambda: few_threads(11 + i % 2))
+        try:
+            message = process.communicate(timeout=60)[1]
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            return fail("batch with few threads hangs", None, b"")
+        if process.returncode not in (0, 4, 5) or not all(line.startswith(b"raycone: ") for line in message.splitlines()):
+            fail("batch with few threads", process.returncode, message)
+
+
 # Meshes that never end are read until the limit, and no further.
 def read_endless_meshes():
     for what in (
@@ -131,6 +157,14 @@ def read_endless_meshes():
         message = process.stderr
         if process.returncode != 4 or message.count(b"\n") != 1 or b"memory" not in message or b"the limit is " not in message:
             fail(what, process.returncode, process.stderr)
+
+
+# What data may take is known from the start.
+def refuse_what_data_cannot_hold():
+    what = "ulimit -d 200000; exec %s slice %s -o big.png --size 20000" % (RAYCONE, OPEN)
+    process = subprocess.run(["sh", "-c", what], capture_output=True, timeout=300)
+    if process.returncode != 4 or b"needs about 10 GB of memory, but the limit is 2" not in process.stderr:
+        fail(what, process.returncode, process.stderr)
 
 
 if "--memory" in sys.argv and is_sanitized():
@@ -146,8 +180,12 @@ with tempfile.TemporaryDirectory() as directory:
             sweep_disk(run, 60 if LONG else 6)
             sweep_signals(run, 300 if LONG else 15)
     if "--memory" in sys.argv:
+        surface = Run("surface to PLY", "surface", CLOSED, "--resolution", "30", output="out.ply")  # much of it in GMP
+        sweep_memory(surface, resource.RLIMIT_DATA, "data", 10 << 20, (100 if LONG else 400) << 10)
         sweep_batch_memory((1 if LONG else 20) << 20)
+        batch_with_few_threads(100 if LONG else 10)
         read_endless_meshes()
+        refuse_what_data_cannot_hold()
     else:
         sweep_shrinking(200 if LONG else 10)
     os.chdir("/")

@@ -198,8 +198,9 @@ class BatchRun {
   int run(const SupervisorOptions& limits) {
     const HeldSignals signals;
     BatchMarker marker(command_.directory, options_.version + '\n' + options_.options);
+    remove_debris();
     remove_gone();
-    prepare_directory();
+    forget_rows();
     const int signal = timed(outcome_.seconds, [&] {
       return supervise(
           jobs(), limits, signals,
@@ -233,14 +234,21 @@ class BatchRun {
     outcome_.pruned = names.size();
   }
 
-  // Rows that are about to be made again are forgotten, and what killed runs left is removed.
-  void prepare_directory() {
+  // What killed runs left where outputs are, or will be.
+  void remove_debris() const {
     std::set<std::string> directories{command_.directory};
+    for (const auto& [name, record] : read_all_results(command_.directory)) {
+      if (!record.row.output.empty()) directories.insert(directory_of(command_.directory + '/' + record.row.output));
+    }
+    for (const PlannedMesh& planned : plan_.todo) directories.merge(directories_of(planned.mesh));
+    std::ranges::for_each(directories, remove_abandoned_files);
+  }
+
+  // Those that are about to be made again.
+  void forget_rows() {
     for (const PlannedMesh& planned : plan_.todo) {
       starts_.emplace(planned.mesh.name, time_after(planned.earlier));
-      directories.merge(directories_of(planned.mesh));
     }
-    for (const std::string& directory : directories) remove_abandoned_files(directory);
     for (const auto& [name, record] : results_.read()) {
       const bool is_of_directory = name.ends_with('/') && !plan_.kept.contains(name);
       if (is_of_directory && was_searched(record)) starts_.emplace(name, time_after(finished(record)));

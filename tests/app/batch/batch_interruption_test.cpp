@@ -278,6 +278,19 @@ TEST_F(BatchInterruption, CleansUpBehindKilledRunsButNotBehindOthers) {
   EXPECT_EQ(temporaries(), 2U) << "of the batch that runs";
 }
 
+// A batch with nothing to do, too, looks wherever its outputs are.
+TEST_F(BatchInterruption, CleansUpInSubdirectoriesWhereAllIsDone) {
+  const std::string mesh = put("sub/a.obj", triangle_soup(2000));
+  ASSERT_EQ(run({"--resolution", "4"}).status, 0);
+  Command killed(raycone_command({"lattice", mesh, "-o", out_ + "/sub/b.csv", "--resolution", "300"}));
+  EXPECT_TRUE(becomes_true([&] { return temporaries() == 1; }));
+  killed.send_signal(SIGKILL);
+  (void)killed.wait();
+  EXPECT_EQ(temporaries(), 1U);
+  EXPECT_EQ(run({"--resolution", "4"}).status, 0);
+  EXPECT_EQ(temporaries(), 0U);
+}
+
 TEST_F(BatchInterruption, ABatchWithOtherOptionsIsRefusedWhileOneRuns) {
   put_long();
   Command running(long_run());

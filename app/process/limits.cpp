@@ -131,11 +131,13 @@ std::optional<double> memory_within_data_limit() {
   return memory_in_use() + std::max(static_cast<double>(data_limit_at_start()) - mapped_data(), 0.0);
 }
 
-// By which the heap grows, beyond what is asked of it: the more, the more of it may come in huge pages (memory.cpp). A
-// small part of what may be used; at least what is the C library's own choice.
+// By which heaps grow, beyond what is asked of them: the more, the more of it may come in huge pages (memory.cpp). A
+// small part of what may be used, since threads have heaps of their own, whose ends count as used; at least what is the
+// C library's own choice.
 int heap_step(std::uint64_t memory) {
   constexpr std::uint64_t kLeast = std::uint64_t{1} << 17, kMost = std::uint64_t{1} << 25;
-  return static_cast<int>(std::clamp(memory / 64, kLeast, kMost));
+  constexpr std::uint64_t kPart = 32;
+  return static_cast<int>(std::clamp(memory / kPart / static_cast<std::uint64_t>(thread_count()), kLeast, kMost));
 }
 
 std::optional<double> address_space_left() {

@@ -22,7 +22,7 @@ inline constexpr int kMaxThreads = 4096;
 // Makes allocations fail with std::bad_alloc before more than `bytes` are resident in this process, code and libraries
 // included. What is mapped at the time of the call and was never touched, such as stacks of threads that run, is taken
 // to stay so; so are `untouched` bytes that are yet to be mapped. Never more than `ulimit -d` allowed at the start. Lets
-// the heap grow in steps, of 32 MB where there is plenty.
+// heaps grow in steps, of 32 MB where there is plenty.
 void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 
 // Largest resident size so far, in bytes.

@@ -58,8 +58,8 @@ void require_threads(const std::string& name) {
     throw UnavailableError(name + ": cannot start the " + std::to_string(kNeeded) + " threads that OpenVDB needs");
 }
 
-// While this lives, no other process of this user loads the module, where a user may have few threads: the trial of one
-// would take those that the other one has found free. Processes that wait for long go on without.
+// Where a user may have few threads, one process after the other loads the module: the trial of one would take the
+// threads that another one has found free. Who has waited for ten seconds goes on all the same.
 class LoadingTurn {
  public:
   LoadingTurn() {

@@ -144,8 +144,8 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
   options.for_each = command.for_each;
   options.threads = command.run.threads ? *command.run.threads : default_threads();
   options.jobs = std::min({command.jobs.value_or(options.threads), options.threads, kMaxJobs});
-  options.memory_limit = command.run.memory_limit ? *command.run.memory_limit
-                                                  : available_memory() / static_cast<std::uint64_t>(options.jobs);
+  options.memory_limit =
+      command.run.memory_limit ? *command.run.memory_limit : available_memory(static_cast<std::uint64_t>(options.jobs));
   options.timeout = command.run.timeout.value_or(kDefaultTimeout);
   return options;
 }
@@ -238,17 +238,16 @@ class BatchRun {
   void remove_debris() const {
     std::set<std::string> directories{command_.directory};
     for (const auto& [name, record] : read_all_results(command_.directory)) {
-      if (!record.row.output.empty()) directories.insert(directory_of(command_.directory + '/' + record.row.output));
+      if (!record.row.output.empty())
+        directories.insert(directory_of(follow_links(command_.directory + '/' + record.row.output)));
     }
     for (const PlannedMesh& planned : plan_.todo) directories.merge(directories_of(planned.mesh));
     std::ranges::for_each(directories, remove_abandoned_files);
   }
 
-  // Those that are about to be made again.
+  // Of meshes that are about to be evaluated again.
   void forget_rows() {
-    for (const PlannedMesh& planned : plan_.todo) {
-      starts_.emplace(planned.mesh.name, time_after(planned.earlier));
-    }
+    for (const PlannedMesh& planned : plan_.todo) starts_.emplace(planned.mesh.name, time_after(planned.earlier));
     for (const auto& [name, record] : results_.read()) {
       const bool is_of_directory = name.ends_with('/') && !plan_.kept.contains(name);
       if (is_of_directory && was_searched(record)) starts_.emplace(name, time_after(finished(record)));

@@ -183,11 +183,11 @@ int default_threads() {
   return static_cast<int>(std::clamp<double>(quota, 1.0, std::min(affinity_cpus(), kMaxThreads)));
 }
 
-std::uint64_t available_memory() {
+std::uint64_t available_memory(std::uint64_t processes) {
   double bytes = proc_bytes("/proc/meminfo", "MemAvailable").value_or(0x1p62);
   bytes += proc_bytes("/proc/meminfo", "SwapFree").value_or(0.0);
   bytes = std::min(bytes, static_cast<double>(cgroup_memory().value_or(1ULL << 62)));
-  bytes = std::min(kShareOfMachine * bytes, address_space_left().value_or(0x1p62));
+  bytes = std::min(kShareOfMachine * bytes / static_cast<double>(processes), address_space_left().value_or(0x1p62));
   bytes = std::min(bytes, memory_within_data_limit().value_or(0x1p62));
   return static_cast<std::uint64_t>(bytes);
 }

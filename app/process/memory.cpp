@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 // Smaller blocks would waste too much of their last page.
 constexpr std::size_t kLargeBlock = 4 * kHugePage;
-constexpr std::size_t kSmallBlock = std::size_t{1} << 16;
+// After blocks of this size the heap is looked at; smaller ones are many.
+constexpr std::size_t kLeastFollowed = std::size_t{1} << 16;
 
 constexpr int kKept = 1 << 26;
 [[maybe_unused]] const int done_at_start =
@@ -29,7 +30,7 @@ std::atomic<std::uintptr_t> heap_end = 0;  // when it was looked at last
 // own, which stay as they are. Failures cost time only.
 void follow_heap(std::uintptr_t block) {
   const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
-  if (end == heap_end.load(std::memory_order_relaxed)) return;
+  if (block == 0 || block >= end || end == heap_end.load(std::memory_order_relaxed)) return;
   const std::uintptr_t known = heap_end.exchange(end, std::memory_order_relaxed);
   const std::uintptr_t grown = known > 0 ? known : block;
   const std::uintptr_t begin = grown / kHugePage * kHugePage;
@@ -45,10 +46,19 @@ void* allocate_large(std::size_t size) {
   return block;
 }
 
+// Where no step of the heap fits into the limit, less may.
+void* allocate_without_step(std::size_t size) {
+  constexpr int kLeastStep = 1 << 17;
+  mallopt(M_TOP_PAD, kLeastStep);
+  return std::malloc(size);
+}
+
 void* allocate(std::size_t size) {
   if (size >= kLargeBlock) return allocate_large(size);
-  void* const block = std::malloc(size > 0 ? size : 1);
-  if (size >= kSmallBlock) follow_heap(reinterpret_cast<std::uintptr_t>(block));
+  const std::size_t some = size > 0 ? size : 1;
+  void* block = std::malloc(some);
+  if (!block) block = allocate_without_step(some);
+  if (size >= kLeastFollowed) follow_heap(reinterpret_cast<std::uintptr_t>(block));
   return block;
 }
 
@@ -58,7 +68,7 @@ void* allocate(std::size_t size, std::size_t alignment) {
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
   if (whole < size) return nullptr;
   void* const block = std::aligned_alloc(alignment, whole > 0 ? whole : alignment);
-  if (size >= kSmallBlock) follow_heap(reinterpret_cast<std::uintptr_t>(block));
+  if (size >= kLeastFollowed) follow_heap(reinterpret_cast<std::uintptr_t>(block));
   return block;
 }
 

@@ -31,8 +31,8 @@ int with_all_workers(int threads) {
 
 RunLimits::RunLimits(const RunOptions& options, const std::string& mesh)
     : threads_(options.threads ? *options.threads : default_threads()),
-      memory_(options.memory_limit ? *options.memory_limit : available_memory()),
-      thread_limit_(with_all_workers(threads_)) {
+      thread_limit_(with_all_workers(threads_)),
+      memory_(options.memory_limit ? *options.memory_limit : available_memory()) {
   if (options.timeout) start_timeout(*options.timeout, mesh);
   share_arenas(memory_);
   prime_threads();  // of more threads than CPUs, the rest

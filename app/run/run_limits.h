@@ -20,8 +20,8 @@ class RunLimits {
 
  private:
   int threads_;
-  std::uint64_t memory_;
   ThreadLimit thread_limit_;
+  std::uint64_t memory_;  // found once the workers' stacks are there
 };
 
 // What the machine lacks is a limit of the run: throws LimitError that names `mesh` and the limit (nullptr: unknown

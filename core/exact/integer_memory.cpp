@@ -1,6 +1,7 @@
 #include "core/exact/integer_memory.h"
 
 #include <gmp.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -9,18 +10,20 @@
 #include <cstring>
 #include <functional>
 #include <mutex>
+#include <string_view>
 
 namespace raycone {
 namespace {
 
-// Numbers of one expression, a few for each thread: what keeps more of them allocates by itself, too.
+// For the numbers of one expression in each thread, some dozens. Who keeps numbers for longer allocates a place for
+// them first, and learns there that memory is short.
 class Reserve {
  public:
   // Aborts where it has no room.
   void* allocate(std::size_t size) {
     const std::lock_guard lock(mutex_);
     const auto slot = std::ranges::find(is_taken_, false);
-    if (size > kSlot || slot == is_taken_.end()) std::abort();
+    if (size > kSlot || slot == is_taken_.end()) fail();
     *slot = true;
     return &slots_[static_cast<std::size_t>(slot - is_taken_.begin()) * kSlot];
   }
@@ -39,7 +42,13 @@ class Reserve {
   }
 
  private:
-  static constexpr std::size_t kSlot = 1024, kSlots = 256;
+  static constexpr std::size_t kSlot = 1024, kSlots = 512;
+
+  [[noreturn]] static void fail() {
+    constexpr std::string_view kMessage = "raycone: no memory is left for integers\n";
+    if (write(STDERR_FILENO, kMessage.data(), kMessage.size()) < 0) std::abort();
+    std::abort();
+  }
 
   std::mutex mutex_;
   std::array<bool, kSlots> is_taken_{};

@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -69,6 +71,7 @@ class LoadingTurn {
     if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur >= kFewThreads) return;
     descriptor_ = open(module_path().c_str(), O_RDONLY | O_CLOEXEC);
     for (int n = 0; descriptor_ >= 0 && n < kTries && flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++n) {
+      if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
@@ -98,12 +101,14 @@ void require_what_loading_takes(const std::string& name) {
 // loaded.
 template <class Error>
 const vdb::Module& vdb_module(const std::string& name) {
+  static std::atomic<const vdb::Module*> loaded = nullptr;
+  if (const vdb::Module* const module = loaded) return *module;
   const LoadingTurn turn;
   require_what_loading_takes(name);
   // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
   void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
-  if (symbol) return *static_cast<const vdb::Module*>(symbol);
+  if (symbol) return *(loaded = static_cast<const vdb::Module*>(symbol));
   throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
 }
 

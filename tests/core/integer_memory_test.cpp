@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 
@@ -36,7 +37,7 @@ bool multiplies_integers() {
   return is_right && mpz_sizeinbase(power.get_mpz_t(), 2) == 3247;
 }
 
-#ifndef __SANITIZE_ADDRESS__  // whose own allocator ends the process
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose own allocators end the process
 
 TEST(IntegerMemory, IsThereWhereTheCLibraryHasNone) {
   const auto run = [] {

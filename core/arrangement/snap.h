@@ -9,8 +9,8 @@ namespace raycone {
 // triangle is as near to the opposite side, a corner of all triangles at that side. Where a neighbour of a corner is as
 // near to the triangle's inside, it is cut in three. Again, until there are none, or a few times. Triangles of two
 // equal corners are gone then, and pairs that are one in either direction. The boundary stays empty. So what rounding
-// may have turned over is flat, and nothing has moved by more than a few distances. Precondition: `distance` is
-// positive. Needs DefaultFloatingPoint.
+// may have turned over is flat, and nothing has moved by more than a few distances. Precondition: `distance`,
+// in the border's units, is positive. Needs DefaultFloatingPoint.
 void snap(RuleBorder& border, double distance);
 
 }  // namespace raycone

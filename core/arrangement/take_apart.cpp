@@ -16,6 +16,7 @@
 #include "core/data/single_precision.h"
 #include "core/data/vec3.h"
 #include "core/exact/predicates.h"
+#include "core/exact/projection.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 
@@ -35,11 +36,16 @@ std::uint32_t apex_of(const TriangleMesh& mesh, const FaceEdge& edge) {
 }
 
 // The faces at an edge, in the order in which a plane that turns around it meets them, the first one first: seen along
-// the edge, from low to high, it turns to the right.
-std::vector<FaceEdge> in_turning_order(const TriangleMesh& mesh, std::span<const FaceEdge> faces) {
+// the edge, from low to high, it turns to the right. Nothing where a face lies on another one.
+std::optional<std::vector<FaceEdge>> in_turning_order(const TriangleMesh& mesh, std::span<const FaceEdge> faces) {
   const Vec3 &low = mesh.vertices[faces[0].low], &high = mesh.vertices[faces[0].high];
   const auto apex = [&](const FaceEdge& face) -> const Vec3& { return mesh.vertices[apex_of(mesh, face)]; };
   const Vec3& first = apex(faces[0]);
+  const Vec3 normal = area_direction(std::array{low, high, first});
+  const auto is_on_first = [&](const FaceEdge& face) {
+    return plane_side(low, high, first, apex(face)) == 0 && turn(normal, low, high, apex(face)) > 0;
+  };
+  if (std::any_of(faces.begin() + 1, faces.end(), is_on_first)) return std::nullopt;
   const auto half_turn = [&](const FaceEdge& face) {  // whether it takes half a turn or more from the first
     return plane_side(low, high, first, apex(face)) <= 0;
   };
@@ -49,19 +55,24 @@ std::vector<FaceEdge> in_turning_order(const TriangleMesh& mesh, std::span<const
     if (a_late != b_late) return b_late;
     return plane_side(low, high, apex(a), apex(b)) > 0;
   });
+  const auto are_on_each_other = [&](const FaceEdge& a, const FaceEdge& b) {
+    return half_turn(a) == half_turn(b) && plane_side(low, high, apex(a), apex(b)) == 0;
+  };
+  if (std::ranges::adjacent_find(order, are_on_each_other) != order.end()) return std::nullopt;
   order.insert(order.begin(), faces[0]);
   return order;
 }
 
-// The solid is behind faces: those that have the edge forward meet it when they turn back. Nothing where faces of
-// either direction do not alternate.
+// The solid is behind faces: those that have the edge forward meet it when they turn back. False where faces of either
+// direction do not alternate, or of more than two one lies on another.
 bool add_pairs(const TriangleMesh& mesh, std::span<const FaceEdge> faces, std::vector<FacePair>& pairs) {
-  const std::vector<FaceEdge> order =
+  const std::optional<std::vector<FaceEdge>> order =
       faces.size() == 2 ? std::vector<FaceEdge>(faces.begin(), faces.end()) : in_turning_order(mesh, faces);
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    const FaceEdge& before = order[(n + order.size() - 1) % order.size()];
-    if (before.is_forward == order[n].is_forward) return false;
-    if (order[n].is_forward) pairs.push_back({order[n], before});
+  if (!order) return false;
+  for (std::size_t n = 0; n < order->size(); ++n) {
+    const FaceEdge &before = (*order)[(n + order->size() - 1) % order->size()], &here = (*order)[n];
+    if (before.is_forward == here.is_forward) return false;
+    if (here.is_forward) pairs.push_back({here, before});
   }
   return true;
 }

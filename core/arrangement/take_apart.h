@@ -11,7 +11,7 @@
 namespace raycone {
 
 struct ApartOptions {
-  double distance = 0.0;          // by which vertices move
+  double distance = 0.0;          // by which vertices move, world units
   bool single_precision = false;  // new vertices are rounded to float
   // Where given, a direction of length 1 that all move along, those of several fans farther and farther: what lies on
   // faces is on one side of all of them afterwards.
@@ -23,9 +23,9 @@ struct ApartOptions {
 // the way given. Where there is no way into a part, its corner is cut off, by 2^-12 of each edge. Faces along an edge
 // belong together where the solid is between them. An edge along which that leaves two parts the same two ends is
 // halved. `sources`: of each triangle, and so of its halves. False, and the border is left half done, where it has no
-// two sides, or two parts cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after
-// it. Preconditions: every edge has as many faces in either direction, which meet in nothing but common corners and
-// edges. Needs DefaultFloatingPoint.
+// two sides, as where of more than two faces at an edge one lies on another, or two parts cannot be moved, nor be cut
+// off. Whether what is moved meets nothing must be looked at after it. Precondition: every edge has as many faces in
+// either direction. Needs DefaultFloatingPoint.
 [[nodiscard]] bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options);
 
 }  // namespace raycone

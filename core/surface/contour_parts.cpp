@@ -136,7 +136,7 @@ std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const Edge
 }
 
 void check_point_numbers(std::size_t points) {
-  if (points > kFirstApex) throw std::length_error("raycone: a surface of more than 2147483647 vertices");
+  if (points > kFirstApex) throw std::length_error("raycone: a surface of more than 2147483648 vertices");
 }
 
 // One kind of items after the other: the memory of parts is given back before the next one needs some.

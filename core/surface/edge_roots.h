@@ -52,7 +52,7 @@ class RuleAlong {
 // Two places of an edge, between which it leaves the set.
 struct Bracket {
   MixedEdge edge;
-  double low, high;      // inside, outside
+  double low, high;      // inside, outside: parts of the way from the one node to the other
   double root = 0.0;     // between them, as find_roots() leaves it
   bool at_jump = false;  // values do not pass 0 there, but jump past it, as at triangles
 };

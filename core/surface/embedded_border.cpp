@@ -44,7 +44,7 @@ bool may_be_closed(const TriangleMesh& mesh) {
   return false;
 }
 
-// `border`: of which `sources` are triangles of another border, whose own sources these become.
+// Makes `sources`, triangles of another border, what the sources of these are.
 void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::uint32_t>& beyond) {
   for (std::uint32_t& source : sources) source = beyond[source];
 }

@@ -66,7 +66,12 @@ std::vector<Vec3> used_vertices(const TriangleMesh& mesh) {
 
 void move_to_corners(const TriangleMesh& input, const Lattice& lattice, double reach, std::vector<Vec3>& vertices) {
   const PointsInCells places(lattice, vertices);
-  std::vector<std::pair<std::uint32_t, Vec3>> moved;  // where nothing has moved yet
+  struct Move {
+    std::uint32_t vertex;
+    double square;  // of the way
+    Vec3 to;
+  };
+  std::vector<Move> moves;  // where nothing has moved yet
   for (const Vec3& corner : used_vertices(input)) {
     double least = reach * reach;
     std::uint32_t nearest = UINT32_MAX;
@@ -77,9 +82,15 @@ void move_to_corners(const TriangleMesh& input, const Lattice& lattice, double r
       least = square;
       nearest = v;
     });
-    if (nearest != UINT32_MAX) moved.emplace_back(nearest, corner);
+    if (nearest != UINT32_MAX) moves.push_back({nearest, least, corner});
   }
-  for (const auto& [v, corner] : moved) vertices[v] = corner;
+  // Of several corners near one vertex the nearest has it.
+  std::ranges::stable_sort(moves, {}, [](const Move& move) { return std::pair(move.vertex, move.square); });
+  std::uint32_t last = UINT32_MAX;
+  for (const Move& move : moves) {
+    if (move.vertex != last) vertices[move.vertex] = move.to;
+    last = move.vertex;
+  }
 }
 
 void move_into_level_planes(const TriangleMesh& input, const std::vector<std::int32_t>& sources, double reach,

@@ -68,7 +68,8 @@ void Sharpener::extend_strips(const std::vector<Triangle>& triangles, const std:
     const auto is_beside = [&](std::uint32_t face) {
       return std::ranges::count_if(triangles[face], [&](std::uint32_t v) { return place_[v] != kNoPlace; }) >= 2;
     };
-    const auto beside = std::partition(off.begin(), off.end(), [&](std::uint32_t face) { return !is_beside(face); });
+    const auto beside =
+        std::stable_partition(off.begin(), off.end(), [&](std::uint32_t face) { return !is_beside(face); });
     std::for_each(beside, off.end(), [&](std::uint32_t face) { add_to_strips(triangles[face]); });
     off.erase(beside, off.end());
   }

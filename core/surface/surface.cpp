@@ -287,6 +287,9 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
           return SurfaceMaker(scaled, in_scale, nodes, as).make();
         });
     if (surface) return *std::move(surface);
+    if (is_far_too_large(inside.lattice())) {
+      throw LatticeOutOfRange("the mesh has coordinates too small beside the lattice for " + precision);
+    }
   }
   return SurfaceMaker(mesh, evaluators, inside, options).make();
 }

@@ -47,6 +47,11 @@ bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options) {
   return !options.single_precision && std::abs(exponent_of(lattice)) > kFar;
 }
 
+bool is_far_too_large(const Lattice& lattice) {
+  constexpr int kMost = 126;  // power of two
+  return exponent_of(lattice) > kMost;
+}
+
 std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
                                              const NodeSet& inside, const SurfaceOptions& options,
                                              const SurfaceOf& make) {

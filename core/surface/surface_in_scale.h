@@ -14,6 +14,9 @@ namespace raycone {
 // Whether products of four lengths and more could over- or underflow. Not where vertices are floats.
 [[nodiscard]] bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options);
 
+// Whether products of eight lengths, more than there are anywhere, could overflow.
+[[nodiscard]] bool is_far_too_large(const Lattice& lattice);
+
 using SurfaceOf = std::function<std::optional<FinishedSurface>(const TriangleMesh& mesh, const FineAndRough& evaluators,
                                                                const NodeSet& inside, const SurfaceOptions& options)>;
 

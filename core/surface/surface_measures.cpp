@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/distance/distance.h"
+#include "core/exact/scale.h"
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/surface/edge_crossing.h"
@@ -20,12 +21,18 @@
 namespace raycone {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // The distance of a point from some point of a triangle: that below it, or the nearest by its barycentric coordinates.
-// Off by a few roundings of the coordinates, but 0 for a corner.
+// Off by a few roundings of the coordinates, but 0 for a corner. Infinite where differences overflow.
 double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) {
   const Triangle& t = mesh.triangles[triangle];
-  if (p == mesh.vertices[t[0]] || p == mesh.vertices[t[1]] || p == mesh.vertices[t[2]]) return 0.0;
-  const Vec3 &a = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - a, v = mesh.vertices[t[2]] - a, from = p - a;
+  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  if (p == a || p == b || p == c) return 0.0;
+  const double size = largest_coordinate(box_of(b - a, c - a, p - a));
+  if (!std::isfinite(size)) return kInfinity;
+  const PowerOfTwo back(std::ilogb(size)), in_scale(-back.exponent());  // products of four lengths overflow otherwise
+  const Vec3 u = in_scale(b - a), v = in_scale(c - a), from = in_scale(p - a);
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), pu = dot(from, u), pv = dot(from, v);
   const double determinant = uu * vv - uv * uv;
   double second = determinant > 0.0 ? std::clamp((vv * pu - uv * pv) / determinant, 0.0, 1.0) : 0.0;
@@ -33,29 +40,30 @@ double distance_at_most(const TriangleMesh& mesh, std::uint32_t triangle, const 
   const double sum = std::max(second + third, 1.0);
   second /= sum;
   third /= sum;
-  return safe_norm(from - second * u - third * v);
+  return back(safe_norm(from - second * u - third * v));
 }
 
-// Of each vertex from the sources of its faces, at most; 0 where it has none. `enough`: no need to look for less.
-std::vector<double> distances_from_sources(const SurfaceMesh& surface, const TriangleMesh& mesh, double enough) {
+// Of each vertex from the sources of its faces, at most; 0 where it has none.
+std::vector<double> distances_from_sources(const SurfaceMesh& surface, const TriangleMesh& mesh) {
   constexpr std::size_t kFacesPerTask = 1024;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<double> distances(surface.mesh.vertices.size(), kInfinity);
+  constexpr double kNone = -1.0;
+  std::vector<double> distances(surface.mesh.vertices.size(), kNone);
   parallel_for(surface.mesh.triangles.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (surface.sources[i] == kHole) continue;
       for (const std::uint32_t corner : surface.mesh.triangles[i]) {
         const std::atomic_ref least(distances[corner]);
         double known = least.load(std::memory_order_relaxed);
-        if (known <= enough) continue;
+        if (known == 0.0) continue;
         const double here =
             distance_at_most(mesh, static_cast<std::uint32_t>(surface.sources[i]), surface.mesh.vertices[corner]);
-        while (here < known && !least.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
+        while ((known == kNone || here < known) &&
+               !least.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
         }
       }
     }
   });
-  std::ranges::replace(distances, kInfinity, 0.0);
+  std::ranges::replace(distances, kNone, 0.0);
   return distances;
 }
 
@@ -66,7 +74,8 @@ double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, co
   constexpr double kRoundings = 64 * 0x1p-53, kRounding = 1.0 + 1e-9;
   // The lattice is around the surface.
   const double rounding = kRoundings * std::max(largest_coordinate(bounding_box(mesh)), largest_coordinate(lattice));
-  const std::vector<double> at_most = distances_from_sources(surface, mesh, rounding);
+  const double near_rounding = kRoundings * largest_coordinate(lattice);
+  const std::vector<double> at_most = distances_from_sources(surface, mesh);
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t v = 0; v < at_most.size(); ++v) {
     if (at_most[v] > 0.0) waiting.push_back(v);
@@ -82,7 +91,11 @@ double largest_distance(const SurfaceMesh& surface, const TriangleMesh& mesh, co
     for (auto v = next; v != waiting.end(); ++v) points.push_back(surface.mesh.vertices[*v]);
     std::vector<double> distances(count);
     evaluator.evaluate(points, distances);
-    largest = std::max(largest, std::ranges::max(distances));
+    for (std::size_t n = 0; n < count; ++n) {
+      const double from_source = at_most[next[static_cast<std::ptrdiff_t>(n)]];
+      // What is far from the lattice costs the evaluator digits there.
+      largest = std::max(largest, from_source + near_rounding < distances[n] ? from_source : distances[n]);
+    }
     waiting.erase(next, waiting.end());
     std::erase_if(waiting, [&](std::uint32_t v) { return at_most[v] * kRounding + rounding <= largest; });
   }
@@ -134,7 +147,8 @@ class MissedSamples {
 
   void ask(const Vec3& p, double area, std::uint32_t triangle) {
     constexpr std::size_t kMany = std::size_t{1} << 17;
-    if (!asked_.empty() && asked_.back().triangle == triangle && in_last_ < std::size_t{1} << asked_ever_ / kMany) {
+    const std::size_t together = std::size_t{1} << std::min(asked_ever_ / kMany, std::size_t{48});
+    if (!asked_.empty() && asked_.back().triangle == triangle && in_last_ < together) {
       asked_.back().area += area;
       ++in_last_;
       return;

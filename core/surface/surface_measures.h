@@ -17,7 +17,7 @@ struct SurfaceMeasures {
   double hole_area = 0.0;        // of faces without a source
 };
 
-// Of triangles of the mesh: the part that is dropped, as judged at points half a cell's diagonal apart, at some 16 000
+// Of triangles of the mesh: the part that is dropped, as judged at points half a cell's diagonal apart, at some 32 000
 // of a triangle at most. It separates nothing, or is of parts thinner than the lattice sees.
 struct DroppedArea {
   double area = 0.0;

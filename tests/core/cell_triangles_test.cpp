@@ -18,15 +18,15 @@ namespace {
 using test::Random;
 using test::uniform;
 
-constexpr std::int64_t kSide = 12;  // nodes
-constexpr Lattice kLattice{{-3.25, 0.5, 7.0}, {0.5, 0.25, 1.0}, {2, -3, 5}, {kSide, kSide, kSide}};
+constexpr std::int64_t kSideOfCells = 12;  // nodes
+constexpr Lattice kLattice{{-3.25, 0.5, 7.0}, {0.5, 0.25, 1.0}, {2, -3, 5}, {kSideOfCells, kSideOfCells, kSideOfCells}};
 
 // Most cells have nodes of both kinds.
 SurfaceCells many_cells() {
   NodeSet nodes(kLattice);
-  for (std::int64_t k = 1; k + 1 < kSide; ++k) {
-    for (std::int64_t j = 1; j + 1 < kSide; ++j) {
-      for (std::int64_t i = 1; i + 1 < kSide; ++i) {
+  for (std::int64_t k = 1; k + 1 < kSideOfCells; ++k) {
+    for (std::int64_t j = 1; j + 1 < kSideOfCells; ++j) {
+      for (std::int64_t i = 1; i + 1 < kSideOfCells; ++i) {
         if ((i + j + k) % 3 == 0) nodes.insert(i, j, k);
       }
     }
@@ -116,7 +116,7 @@ TEST(CellTriangles, MayBeInPlanesOfNodes) {
   TriangleMesh mesh;
   const auto node = [&] {
     const auto at = [&](int axis) {
-      const auto n = static_cast<std::int64_t>(uniform(random, 0.0, static_cast<double>(kSide)));
+      const auto n = static_cast<std::int64_t>(uniform(random, 0.0, static_cast<double>(kSideOfCells)));
       return kLattice.coordinate(axis, kLattice.index_min[static_cast<std::size_t>(axis)] + n);
     };
     return Vec3{at(0), at(1), at(2)};

@@ -221,7 +221,7 @@ std::vector<double> sums_of(const LatticeBlocks& blocks, const LatticeAxes& axes
   return sums;
 }
 
-constexpr std::uint32_t kSide = 33;
+constexpr std::uint32_t kSideOfBlocks = 33;
 
 std::array<SampleRange, 3> whole_of(const LatticeAxes& axes) {
   std::array<SampleRange, 3> all;
@@ -259,7 +259,7 @@ TEST(LatticeBlocksTest, SumsAreWithinTheTolerance) {
   Random random(6);
   const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 300)).triangles;
   for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
-    expect_sums_within(tolerance, triangles, axes_of(cube_lattice(kSide)));
+    expect_sums_within(tolerance, triangles, axes_of(cube_lattice(kSideOfBlocks)));
   }
   for (const auto& [nx, ny, nz] : {std::array{120, 100, 8}, std::array{8, 8, 1500}, std::array{30, 400, 9}}) {
     expect_sums_within(1e-7, triangles, axes_of(box_lattice(nx, ny, nz)));
@@ -271,7 +271,7 @@ TEST(LatticeBlocksTest, WhatIsNearIsTheSameByItsBoundary) {
   TriangleMesh mesh = test::moved(test::sphere(24), {0.375, 0.375, 0.375}, {0, 0, 0});
   mesh.triangles.resize(mesh.triangles.size() * 2 / 3);
   const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
-  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  const LatticeAxes axes = axes_of(cube_lattice(kSideOfBlocks));
   const LatticeBlocks by_triangles(triangles, 1e-13, SimdLevel::kBest);
   const LatticeBlocks by_boundary(triangles, 1e-13, SimdLevel::kBest, LatticeBlocks::Near::kBoundary);
   const std::vector<double> expected = sums_of(by_triangles, axes, whole_of(axes));
@@ -364,8 +364,8 @@ TEST(LatticeBlocksTest, WhatIsSpentIsTheSumOfErrorsAlsoOfWholeLeaves) {
 TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBits) {
   Random random(7);
   const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 200)).triangles;
-  const LatticeAxes axes = axes_of(cube_lattice(kSide));
-  const std::array<SampleRange, 3> all{{{0, kSide}, {0, kSide}, {0, kSide}}};
+  const LatticeAxes axes = axes_of(cube_lattice(kSideOfBlocks));
+  const std::array<SampleRange, 3> all{{{0, kSideOfBlocks}, {0, kSideOfBlocks}, {0, kSideOfBlocks}}};
   const std::vector<double> sums = sums_of(LatticeBlocks(triangles, 1e-8, SimdLevel::kBest), axes, all);
   for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {
     EXPECT_EQ(sums_of(LatticeBlocks(triangles, 1e-8, level), axes, all), sums);
@@ -375,7 +375,7 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBits) {
   for (std::uint32_t z = 3; z < 14; ++z) {
     for (std::uint32_t y = 15; y < 17; ++y) {
       for (std::uint32_t x = 5; x < 30; ++x) {
-        EXPECT_EQ(some[((z - 3) * 2 + y - 15) * 25 + x - 5], sums[(z * kSide + y) * kSide + x]);
+        EXPECT_EQ(some[((z - 3) * 2 + y - 15) * 25 + x - 5], sums[(z * kSideOfBlocks + y) * kSideOfBlocks + x]);
       }
     }
   }
@@ -385,7 +385,7 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBitsByBoundaries) {
   TriangleMesh mesh = test::moved(test::sphere(24), {0.4, 0.37, 0.31}, {0.01, 0.02, 0});
   mesh.triangles.resize(mesh.triangles.size() * 2 / 3);
   const std::vector<SolidTriangle> triangles = solid_faces(mesh).triangles;
-  const LatticeAxes axes = axes_of(cube_lattice(kSide));
+  const LatticeAxes axes = axes_of(cube_lattice(kSideOfBlocks));
   constexpr auto kBoundary = LatticeBlocks::Near::kBoundary;
   const LatticeBlocks blocks(triangles, 1e-8, SimdLevel::kBest, kBoundary);
   const std::vector<double> sums = sums_of(blocks, axes, whole_of(axes));
@@ -394,10 +394,11 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBitsByBoundaries) {
   }
   Random random(8);
   for (int n = 0; n < 1000; ++n) {
-    const auto x = static_cast<std::uint32_t>(random() % kSide), y = static_cast<std::uint32_t>(random() % kSide);
-    const auto z = static_cast<std::uint32_t>(random() % kSide);
+    const auto x = static_cast<std::uint32_t>(random() % kSideOfBlocks),
+               y = static_cast<std::uint32_t>(random() % kSideOfBlocks);
+    const auto z = static_cast<std::uint32_t>(random() % kSideOfBlocks);
     const std::vector<double> one = sums_of(blocks, axes, {{{x, x + 1}, {y, y + 1}, {z, z + 1}}});
-    ASSERT_EQ(one[0], sums[(z * kSide + y) * kSide + x]) << x << ' ' << y << ' ' << z;
+    ASSERT_EQ(one[0], sums[(z * kSideOfBlocks + y) * kSideOfBlocks + x]) << x << ' ' << y << ' ' << z;
   }
 }
 

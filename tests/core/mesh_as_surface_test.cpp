@@ -556,6 +556,7 @@ TEST(MeshAsSurface, IsTheSameInEveryUnitOfLength) {
     const std::optional<FinishedSurface> made = kept(test::moved(mesh, {unit, unit, unit}, {}), 40, options);
     ASSERT_TRUE(made) << exponent;
     EXPECT_EQ(made->surface.mesh.triangles, expected->surface.mesh.triangles) << exponent;
+    EXPECT_EQ(made->surface.mesh.vertices, test::moved(expected->surface.mesh, {unit, unit, unit}, {}).vertices);
   }
 }
 

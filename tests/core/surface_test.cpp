@@ -1217,6 +1217,14 @@ TEST(MeshCorners, TakeTheNearestVertexEach) {
   EXPECT_EQ(vertices, expected);
 }
 
+TEST(MeshCorners, GiveAVertexToTheNearestOfThem) {
+  const TriangleMesh mesh{{{0, 0, 0}, {0.003, 0, 0}, {0.001, 0.002, 0}, {0, 1, 0}}, {{0, 1, 3}, {1, 2, 3}}};
+  const Lattice lattice{{0, 0, 0}, {0.5, 0.5, 0.5}, {-1, -1, -1}, {5, 5, 5}};
+  std::vector<Vec3> vertices{{0.002, 0, 0}};
+  move_to_corners(mesh, lattice, 0.005, vertices);
+  EXPECT_EQ(vertices, (std::vector<Vec3>{{0.003, 0, 0}}));
+}
+
 TEST(MeshCorners, LevelPlanesTakeCornersOfTheirFacesAlone) {
   const TriangleMesh mesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}}};
   TriangleMesh surface{
@@ -1514,6 +1522,46 @@ TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
     }
     EXPECT_EQ(measure_surface(surface, mesh, lattice).max_distance, largest_distance_of(points, mesh)) << round;
   }
+}
+
+// Where products of lengths overflow, and where another part is so far away that distances round to voxels.
+TEST(SurfaceMeasures, DoNotDependOnUnitsAndFarParts) {
+  TriangleMesh box = rotated(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  for (Triangle& t : box.triangles) {  // first the corner with the right angle
+    const auto is_right = [&] {
+      const Vec3& at = box.vertices[t[0]];
+      return std::abs(dot(box.vertices[t[1]] - at, box.vertices[t[2]] - at)) < 0.5;
+    };
+    while (!is_right()) std::ranges::rotate(t, t.begin() + 1);
+  }
+  auto [surface, lattice] = surface_of(box, 12);
+  surface.mesh.vertices[surface.mesh.triangles[7][0]].x += 0.125;
+  const double expected = measure_surface(surface, box, lattice).max_distance;
+  EXPECT_GT(expected, 0.01);
+  for (const int exponent : {-300, 270, 332, 600}) {
+    const double unit = std::ldexp(1.0, exponent);
+    SurfaceMesh scaled = surface;
+    scaled.mesh = test::moved(scaled.mesh, {unit, unit, unit}, {});
+    Lattice here = lattice;
+    here.origin = unit * here.origin;
+    here.spacing = unit * here.spacing;
+    EXPECT_EQ(measure_surface(scaled, test::moved(box, {unit, unit, unit}, {}), here).max_distance, unit * expected);
+  }
+  for (const double far : {1e30, 1e90}) {
+    const TriangleMesh two = test::joined(box, test::box_mesh({far, far, far}, {2 * far, 2 * far, 2 * far}));
+    // As far as sources tell: the nearest triangle may be another one.
+    const double found = measure_surface(surface, two, lattice).max_distance;
+    EXPECT_GE(found, expected * (1 - 1e-9)) << far;
+    EXPECT_LE(found, 0.125) << far;
+  }
+}
+
+// No power of two takes both to where nothing over- or underflows.
+TEST(Surface, RefusesCoordinatesTooFarApart) {
+  TriangleMesh box = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {0x1p400, 0x1p400, 0x1p400}, {});
+  EXPECT_NO_THROW(surface_of(box, 12));
+  box.vertices[0].x = 1e-300;
+  EXPECT_THROW(surface_of(box, 12), LatticeOutOfRange);
 }
 
 // A box beside a plate of a tenth of a voxel, which lies between nodes.

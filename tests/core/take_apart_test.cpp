@@ -229,5 +229,21 @@ TEST(TakeApart, RefusesWhatHasNoSides) {
   taken_apart(weld(test::joined(box, test::reversed(box)), {}));
 }
 
+// Two faces are on the first one, which another one goes on behind the edge.
+TEST(TakeApart, RefusesFacesThatLieOnEachOther) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {2, 0, 0.25}, {-1, 0, 0.5}, {0, 1, 0.5}};
+  const auto close = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {  // with its back
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, b});
+  };
+  std::array<std::uint32_t, 4> apexes{2, 3, 4, 5};
+  do {
+    mesh.triangles.clear();
+    for (const std::uint32_t apex : apexes) close(0, 1, apex);
+    EXPECT_FALSE(taken_apart(mesh).is_apart);
+  } while (std::ranges::next_permutation(apexes).found);
+}
+
 }  // namespace
 }  // namespace raycone

@@ -6,10 +6,11 @@
 #include <numbers>
 #include <utility>
 
+#include "core/evaluation/sums_round.h"
+
 namespace raycone {
 namespace {
 
-constexpr double kSumsRound = 1e-12;  // of products and sums of a few numbers, relative to their magnitudes
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastProduct = 0x1p-900;  // less has lost bits
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/boundary/boundary_term.h"
+#include "core/evaluation/sums_round.h"
 
 namespace raycone {
 namespace {
@@ -15,7 +16,6 @@ constexpr std::size_t kNodes = Interpolation::kOrder;
 static_assert(kNodes * kNodes * kNodes <= kTile);
 
 constexpr double kInterpolation = 4.0;  // at a sample, in units of a triangle's solid angle
-constexpr double kSumsRound = 1e-12;    // of sums and products of some numbers, relative to their magnitudes
 
 NodeGrid nodes_of(const LatticeRows& rows, const SampleBox& samples) {
   constexpr std::array<std::size_t, 3> kDegrees{kNodes - 1, kNodes - 1, kNodes - 1};

@@ -16,6 +16,7 @@
 #include "core/evaluation/node_choice.h"
 #include "core/evaluation/rough_sides.h"
 #include "core/evaluation/side_samples.h"
+#include "core/evaluation/sums_round.h"
 #include "core/far/matrix_kernel.h"
 #include "core/machine/threads.h"
 
@@ -228,7 +229,7 @@ Candidate RuleBlocks::candidate_of(CutBlock block, const Box& box) const {
   const auto [middle, radius] = middle_of(rows_, block.samples, box);
   const double gradient = changes_.gradient_in(box, kMostChange / radius);
   const Crossings which = block.caps.empty() ? Crossings::kClosed : Crossings::kMesh;
-  return {std::move(block), which, gradient, radius * gradient * (1 + kTurnsRound), {middle}};
+  return {std::move(block), which, gradient, radius * gradient * (1 + kSumsRound), {middle}};
 }
 
 // Sets their rests, those of neighbours in space together: they take much the same way through the far field.
@@ -262,7 +263,7 @@ void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
 bool RuleBlocks::decide(const Candidate& candidate) const {
   const double rest = candidate.rest[0];
   return samples_.decide(candidate.block.samples, candidate.which, rest,
-                         candidate.change + mesh_.doubt() + kTurnsRound * (1 + std::abs(rest) + candidate.largest));
+                         candidate.change + mesh_.doubt() + kSumsRound * (1 + std::abs(rest) + candidate.largest));
 }
 
 // Makes nodes the candidate's samples. Returns whether that is worth it.
@@ -281,7 +282,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, std::vector<SampleBox>&
   const SampleBox& box = candidate.block.samples;
   double largest = candidate.largest;
   for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
-  const double doubt = mesh_.doubt() + 32 * kTurnsRound * (1 + largest);
+  const double doubt = mesh_.doubt() + 32 * kSumsRound * (1 + largest);
   const double needed = candidate.nodes->bend() + candidate.nodes->growth() * doubt;
   LayerValues layer;
   SampleBox part{};
@@ -304,7 +305,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, 
   const NodeGrid& nodes = *candidate.nodes;
   const auto [middle, radius] = middle_of(rows_, part, rows_.box_of(part));
   const double rest = nodes.at(candidate.rest, middle);
-  const double change = radius * candidate.gradient * (1 + kTurnsRound);
+  const double change = radius * candidate.gradient * (1 + kSumsRound);
   if (samples_.decide(part, candidate.which, rest, needed + change)) return;
   for (std::size_t k = part.begin[2]; k < part.end[2]; ++k) {
     nodes.interpolate(candidate.rest, part, k, matrices_, layer);

@@ -56,7 +56,7 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
       }
       const double middle = n + (least + most) / 2;
       if (are_known &&
-          is_certain(middle, needed + (most - least) / 2 + kTurnsRound * (1 + std::abs(least) + std::abs(most)))) {
+          is_certain(middle, needed + (most - least) / 2 + kSumsRound * (1 + std::abs(least) + std::abs(most)))) {
         std::fill(place(row + some), place(row + last), holds(side_.rule(), middle) ? 1 : 0);
         continue;
       }

@@ -16,6 +16,7 @@
 #include "core/evaluation/lattice_tile.h"
 #include "core/evaluation/scaled_mesh.h"
 #include "core/evaluation/side_of.h"
+#include "core/evaluation/sums_round.h"
 
 namespace raycone {
 
@@ -25,9 +26,6 @@ enum class Crossings {
   kClosed,  // of the mesh less its caps, which is closed
   kMesh,
 };
-
-// Rounding of sums and differences of a few numbers of turns, beside the doubt of values; times their magnitude.
-inline constexpr double kTurnsRound = 1e-12;
 
 // Sides are set by certainty, where all that a winding number may be off by does not matter, or by its value. Different
 // samples may be set at the same time. Arguments of the constructor must outlive this.
@@ -85,7 +83,7 @@ class SideSamples {
 
   // Whether numbers of turns that are off by at most `needed` are on w's side.
   [[nodiscard]] bool is_certain(double w, double needed) const {
-    return distance_to_threshold(side_.rule(), w) - kTurnsRound * std::abs(w) > needed;
+    return distance_to_threshold(side_.rule(), w) - kSumsRound * std::abs(w) > needed;
   }
 
   // visit(begin, end of the indices, crossings) for runs of samples whose crossings are the same, as long as it returns

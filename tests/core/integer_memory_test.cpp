@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <atomic>
+#include <barrier>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
-#include <string>
+#include <thread>
+#include <vector>
 
 namespace raycone {
 namespace {
@@ -47,6 +50,29 @@ TEST(IntegerMemory, IsThereWhereTheCLibraryHasNone) {
       if (!multiplies_integers()) std::_Exit(1);
     }
     std::_Exit(0);
+  };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
+}
+
+// A block that two threads got, or that one lost, would be a wrong product.
+TEST(IntegerMemory, IsSharedByThreads) {
+  const auto run = [] {
+    constexpr int kThreads = 8;
+    reserve_memory_for_integers();
+    std::atomic<bool> is_right = true;
+    std::barrier all(kThreads);
+    const auto multiply = [&] {
+      all.arrive_and_wait();  // without memory no thread starts
+      use_up_memory();        // that of the thread's own heap
+      all.arrive_and_wait();
+      for (int n = 0; n < 300; ++n) {
+        if (!multiplies_integers()) is_right = false;
+      }
+    };
+    std::vector<std::thread> threads(kThreads);
+    for (std::thread& thread : threads) thread = std::thread(multiply);
+    for (std::thread& thread : threads) thread.join();
+    std::_Exit(is_right ? 0 : 1);
   };
   EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
 }

@@ -107,6 +107,9 @@ struct FieldTotals {
   std::uint64_t exterior_edges = 0;  // of all parts where there are labels: they are prepared one after the other
 };
 
+// What VDB's writer has for slab_alignment(), along z: the side of a leaf.
+inline constexpr std::int64_t kVdbSlabAlignment = 8;
+
 // Takes the values of a lattice block by block. Blocks are slabs that span the lattice across `slab_axis()`, in
 // increasing order, together all samples. Whatever writes throws OutputError.
 class LatticeWriter {

@@ -207,6 +207,8 @@ class ZstandardSource final : public DecodingSource {
   explicit ZstandardSource(PackedInput packed)
       : DecodingSource(std::move(packed)), state_(ZSTD_createDStream(), &ZSTD_freeDStream) {
     if (!state_) throw std::bad_alloc();
+    // By default frames of more than 128 MB are refused; the memory limit knows better.
+    ZSTD_DCtx_setParameter(state_.get(), ZSTD_d_windowLogMax, ZSTD_dParam_getBounds(ZSTD_d_windowLogMax).upperBound);
   }
 
  private:

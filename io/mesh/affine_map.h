@@ -24,7 +24,7 @@ struct AffineMap {
 // Of 16 numbers, column after column; the last row is taken to be 0 0 0 1.
 [[nodiscard]] AffineMap affine_map_of_matrix(std::span<const double> matrix);
 
-// Scaled, then turned by the quaternion (x, y, z, w) of any finite length but 0, then moved.
+// Scaled, then turned by the quaternion (x, y, z, w), then moved. Of its length, 2 over the square must be finite.
 [[nodiscard]] AffineMap affine_map_of_parts(const Vec3& translation, std::span<const double> rotation,
                                             const Vec3& scale);
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -24,54 +25,51 @@ struct FaceGroups {
   std::vector<GroupRun> runs;      // the first of them starts at triangle 0; empty where a format has no groups
 };
 
-// Bytes of a name that count: else a long name and many short lines could take any amount of memory.
+// Bytes of a name that are kept: else a long name and many short lines could take any amount of memory.
 inline constexpr std::size_t kMostOfName = 255;
 
-// As many bytes of the name as count, without a part of a character of UTF-8 at the end.
+// As many bytes of the name as are kept, without a part of a character of UTF-8 at the end.
 [[nodiscard]] std::string cut_name(std::string_view name);
 
-// Collects groups while a reader meets their faces.
+// A name, and a hash of what was cut off it: that tells apart those that begin alike. 0 where nothing was.
+struct GroupName {
+  std::string text;
+  std::uint64_t missing = 0;
+
+  friend bool operator==(const GroupName&, const GroupName&) = default;
+};
+
+// Adds `more` to a name, whose text stays below twice kMostOfName.
+void append_to_name(GroupName& name, std::string_view more);
+void append_to_name(GroupName& name, const GroupName& more);
+
+// Collects groups while a reader meets their faces. Those without triangles leave nothing behind.
 class GroupCollector {
  public:
   // The triangles from `first` on, which does not decrease, belong to the group of this name.
-  void continue_group(const std::string& name, std::size_t first) {
-    const auto known = numbers_.try_emplace(cut_name(name), static_cast<std::uint32_t>(names_.size()));
-    if (known.second) names_.push_back(known.first->first);
-    add_run(first, known.first->second);
-  }
+  void continue_group(GroupName name, std::size_t first) { next({std::move(name), first, false}); }
 
   // The same, of a group of their own, whatever others are called.
-  void start_group(const std::string& name, std::size_t first) {
-    names_.push_back(cut_name(name));
-    add_run(first, static_cast<std::uint32_t>(names_.size() - 1));
-  }
+  void start_group(std::string_view name, std::size_t first) { next({{cut_name(name)}, first, true}); }
 
-  // Groups without triangles are left out. `triangles`: how many there are.
-  [[nodiscard]] FaceGroups finish(std::size_t triangles) {
-    if (!runs_.empty() && runs_.back().first == triangles) runs_.pop_back();
-    constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
-    std::vector<std::uint32_t> number(names_.size(), kUnknown);
-    FaceGroups groups;
-    for (GroupRun run : runs_) {
-      if (number[run.group] == kUnknown) {
-        number[run.group] = static_cast<std::uint32_t>(groups.names.size());
-        groups.names.push_back(std::move(names_[run.group]));
-      }
-      run.group = number[run.group];
-      if (groups.runs.empty() || groups.runs.back().group != run.group) groups.runs.push_back(run);
-    }
-    return groups;
-  }
+  // `triangles`: how many there are.
+  [[nodiscard]] FaceGroups finish(std::size_t triangles);
 
  private:
-  void add_run(std::size_t first, std::uint32_t group) {
-    if (!runs_.empty() && runs_.back().first == first) runs_.pop_back();
-    if (runs_.empty() || runs_.back().group != group) runs_.push_back({first, group});
-  }
+  struct Named {
+    GroupName name;
+    std::size_t first;
+    bool is_own;
+  };
 
-  std::unordered_map<std::string, std::uint32_t> numbers_;
-  std::vector<std::string> names_;
-  std::vector<GroupRun> runs_;
+  void next(Named named);
+  void close(std::size_t end);
+  [[nodiscard]] std::uint32_t number_of(const Named& named);
+
+  std::optional<Named> last_;
+  FaceGroups groups_;
+  std::vector<std::uint64_t> missing_;                             // of their names
+  std::unordered_multimap<std::uint64_t, std::uint32_t> numbers_;  // by hashes of names, but of groups of their own
 };
 
 }  // namespace raycone

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,6 +55,14 @@ class ThreeMfPackage {
     if (sliced_ > 0) {
       parsed_.warnings.push_back(
           {"slices", counted(sliced_, "object") + " with slices, which are ignored: triangles count"});
+    }
+    if (others_ > 0) {
+      parsed_.warnings.push_back(
+          {"other-objects",
+           counted(others_, "object") + " of the type 'other', as modifiers and holes are, count as solid"});
+    }
+    if (empty_ > 0) {
+      parsed_.warnings.push_back({"empty-objects", counted(empty_, "object") + " without triangles ignored"});
     }
     return std::move(parsed_);
   }
@@ -109,11 +118,17 @@ class ThreeMfPackage {
     } else if (placed.is_sliced && placed.components.empty()) {
       throw InputError(file_ + ": object " + std::to_string(use.object) + " has slices only, expected triangles");
     }
-    lattices_ += placed.lattices;
-    sliced_ += placed.is_sliced;
+    if (seen_.insert(&placed).second) note_omissions(placed);
     ++depth_;
     for (const ThreeMfUse& component : placed.components) place(component, placement, unit);
     --depth_;
+  }
+
+  void note_omissions(const ThreeMfObject& placed) {
+    lattices_ += placed.lattices;
+    sliced_ += placed.is_sliced;
+    others_ += placed.is_other && !placed.mesh.triangles.empty();
+    empty_ += placed.mesh.triangles.empty() && placed.components.empty() && placed.lattices == 0;
   }
 
   // Bounds what a small file may ask for by naming an object many times.
@@ -133,7 +148,8 @@ class ThreeMfPackage {
   std::vector<Instance> instances_;
   std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
   std::size_t uses_ = 0, depth_ = 0;
-  std::uint64_t lattices_ = 0, sliced_ = 0;
+  std::set<const ThreeMfObject*> seen_;
+  std::uint64_t lattices_ = 0, sliced_ = 0, others_ = 0, empty_ = 0;  // of objects that were seen
   std::uint64_t stored_ = 0, spent_ = 0;  // vertices and triangles: of models_, and of copies
   GroupCollector groups_;
   ParsedMesh parsed_;

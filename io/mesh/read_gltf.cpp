@@ -15,6 +15,7 @@
 
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
+#include "io/files/text_scanner.h"
 #include "io/mesh/affine_map.h"
 #include "io/mesh/append_placed.h"
 #include "io/mesh/gltf_data.h"
@@ -186,7 +187,7 @@ AffineMap transform_of(const tinygltf::Node& node, const std::string& place) {
   };
   const std::vector<double> rotation = node.rotation.empty() ? std::vector<double>{0, 0, 0, 1} : node.rotation;
   const double norm = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
-  if (!(norm > 0.0) || !std::isfinite(norm)) throw InputError(place + "rotation is not a unit quaternion");
+  if (!std::isfinite(2 / norm) || !std::isfinite(norm)) throw InputError(place + "rotation is not a unit quaternion");
   return affine_map_of_parts(vector_or(node.translation, {}), rotation, vector_or(node.scale, {1, 1, 1}));
 }
 
@@ -200,6 +201,12 @@ bool is_visible(const tinygltf::Node& node) {
          visibility->second.Get("visible").Get<bool>();
 }
 
+void check_unique(std::vector<int> nodes, const std::string& place) {
+  std::ranges::sort(nodes);
+  const auto twice = std::ranges::adjacent_find(nodes);
+  if (twice != nodes.end()) throw InputError(place + std::to_string(*twice) + " twice, expected once");
+}
+
 // Checks all nodes, and returns how many nodes each is a child of. The specification allows one, but files that share
 // children exist and mean what they seem to: each parent shows its own copy.
 std::vector<std::size_t> parent_counts(const tinygltf::Model& model, const std::string& file) {
@@ -207,6 +214,7 @@ std::vector<std::size_t> parent_counts(const tinygltf::Model& model, const std::
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const tinygltf::Node& node = model.nodes[i];
     if (has_transform(node)) static_cast<void>(transform_of(node, file + ": node " + std::to_string(i) + ": "));
+    check_unique(node.children, file + ": node " + std::to_string(i) + " has the child ");
     for (const int child : node.children) ++counts[to_size(child)];
   }
   return counts;
@@ -237,6 +245,7 @@ std::vector<int> shown_roots(const tinygltf::Model& model, const std::vector<std
     return roots;
   }
   const int scene = std::max(model.defaultScene, 0);
+  check_unique(model.scenes[to_size(scene)].nodes, file + ": scene " + std::to_string(scene) + " names node ");
   for (const int node : model.scenes[to_size(scene)].nodes) {
     if (parents[to_size(node)] != 0) {
       throw InputError(file + ": scene " + std::to_string(scene) + " names node " + std::to_string(node) +
@@ -328,6 +337,7 @@ GlbChunks chunks_of(const NamedBytes& source) {
 }
 
 GltfDocument document_of(const NamedBytes& source, const GlbChunks& chunks) {
+  if (is_utf16(chunks.json)) throw InputError(source.name + ": the text is UTF-16, expected UTF-8");
   const auto offset = is_glb(source.bytes) ? std::optional<std::size_t>(chunks.json_offset) : std::nullopt;
   return parse_gltf_document({source.name, chunks.json, offset, "a glTF document"});
 }

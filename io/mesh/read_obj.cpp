@@ -2,6 +2,7 @@
 // Format: Wavefront "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/files/counted.h"
@@ -18,7 +19,7 @@ class ObjReader {
   explicit ObjReader(const NamedBytes& source) : text_(source), builder_(source) { text_.take_mixed_line_ends(); }
 
   ParsedMesh read() {
-    groups_.continue_group(kDefaultGroup, 0);
+    groups_.continue_group({kDefaultGroup}, 0);
     while (!text_.at_end()) {
       text_.skip_byte_order_mark();
       text_.skip_blanks();
@@ -51,16 +52,16 @@ class ObjReader {
       continue_group();
     } else if (keyword == "o") {
       object_ = read_name();
-      group_.clear();
+      group_ = {};
       continue_group();
     }
     text_.skip_continued_line('#');
   }
 
   // What follows the keyword, with single blanks.
-  std::string read_name() {
+  GroupName read_name() {
     text_.advance(1);
-    std::string name;
+    GroupName name;
     for (text_.skip_blanks(); !text_.at_line_end(); text_.skip_blanks()) {
       const std::string_view rest = text_.rest();
       const std::size_t start = text_.offset();
@@ -70,17 +71,21 @@ class ObjReader {
         text_.seek(text_.offset() - 1);
         if (!text_.at_token_end()) text_.advance(1);
       }
-      const std::size_t length = std::min(text_.offset() - start, kMostOfName);
-      if (name.size() < kMostOfName) name += (name.empty() ? "" : " ") + std::string(rest.substr(0, length));
+      if (!name.text.empty()) append_to_name(name, " ");
+      append_to_name(name, rest.substr(0, text_.offset() - start));
     }
-    return cut_name(name);
+    return name;
   }
 
   // A group belongs to its object, and many exporters give both the same name.
   void continue_group() {
-    const bool both = !object_.empty() && !group_.empty() && object_ != group_;
-    const std::string name = both ? object_ + '/' + group_ : object_.empty() ? group_ : object_;
-    groups_.continue_group(name.empty() ? kDefaultGroup : name, builder_.triangle_count());
+    GroupName name = object_.text.empty() ? group_ : object_;
+    if (!object_.text.empty() && !group_.text.empty() && object_ != group_) {
+      append_to_name(name, "/");
+      append_to_name(name, group_);
+    }
+    if (name.text.empty()) name.text = kDefaultGroup;
+    groups_.continue_group(std::move(name), builder_.triangle_count());
   }
 
   // Weights and colours may follow.
@@ -151,7 +156,7 @@ class ObjReader {
   TextScanner text_;
   MeshBuilder builder_;
   GroupCollector groups_;
-  std::string object_, group_;  // of the faces that follow; empty: none
+  GroupName object_, group_;  // of the faces that follow; empty: none
   std::vector<ForwardReference> forward_references_;
 };
 

@@ -281,13 +281,21 @@ class PlyReader {
     read_index_lists(element, [this](const PlyProperty& list) { read_strip_list(list); });
   }
 
+  // By either name; null where there is none.
+  [[nodiscard]] static const PlyProperty* index_list(const PlyElement& element) {
+    for (const char* const name : {"vertex_indices", "vertex_index"}) {
+      const PlyProperty* const property = element.find(name);
+      if (property && property->is_list()) return property;
+    }
+    return nullptr;
+  }
+
   // Calls read(list) at the list of vertex indices of each row.
   template <class Read>
   void read_index_lists(const PlyElement& element, Read read) {
     const std::uint64_t rows = checked_rows(element);
-    const PlyProperty* indices = element.find("vertex_indices");
-    if (!indices) indices = element.find("vertex_index");
-    if (rows > 0 && !(indices && indices->is_list()))
+    const PlyProperty* const indices = index_list(element);
+    if (rows > 0 && !indices)
       body_.fail_at(body_.next_offset(),
                     "element '" + element.name + "' has no list 'vertex_indices' or 'vertex_index'");
     for (std::uint64_t row = 0; row < rows; ++row) {

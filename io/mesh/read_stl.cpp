@@ -14,6 +14,13 @@
 namespace raycone {
 namespace {
 
+// Text without what DOS and tapes have behind it.
+NamedBytes without_padding(const NamedBytes& source) {
+  const std::size_t text_end = source.bytes.find_last_not_of(std::string_view("\0\x1A \t\r\n\v\f", 8)) + 1;
+  const std::size_t end = source.bytes.find_first_of(std::string_view("\0\x1A", 2), text_end);
+  return {source.name, source.directory, source.bytes.substr(0, end)};
+}
+
 class AsciiStlReader {
  public:
   explicit AsciiStlReader(const NamedBytes& source) : text_(source), builder_(source) { text_.take_mixed_line_ends(); }
@@ -159,7 +166,13 @@ std::uint32_t checked_triangle_count(const NamedBytes& source) {
     throw InputError(source.name + ":1: expected 'solid' or the " + std::to_string(kStlHeaderSize) +
                      " bytes that open a binary STL, the file has only " + std::to_string(source.bytes.size()));
   }
+  const std::string_view head = source.bytes.substr(0, kStlHeaderSize);
   const std::uint64_t room = (source.bytes.size() - kStlHeaderSize) / kStlTriangleSize;
+  const auto is_text = [](char c) { return (c >= ' ' && c <= '~') || is_space(c); };
+  if (*count > room && std::ranges::all_of(head, is_text)) {
+    const std::string_view line = head.substr(0, head.find_first_of("\r\n"));
+    throw InputError(source.name + ":1: found '" + excerpt(line) + "', expected 'solid' or a binary STL");
+  }
   if (*count > room) {
     fail_at_byte(source.name, kStlHeaderSize - 4,
                  counted(*count, "triangle") + " announced, but only " + std::to_string(room) +
@@ -204,7 +217,7 @@ ParsedMesh read_stl(const NamedBytes& source) {
   // Text in UTF-16 is refused by the text scanner, more clearly than as a binary STL of a wrong size.
   const bool is_text =
       is_ascii_stl(source.bytes) || (is_utf16(source.bytes) && recognise_mesh(source.bytes) != MeshFormat::kStl);
-  return is_text ? AsciiStlReader(source).read() : read_binary_stl(source);
+  return is_text ? AsciiStlReader(without_padding(source)).read() : read_binary_stl(source);
 }
 
 }  // namespace raycone

@@ -202,6 +202,7 @@ class ModelReader {
     if (!is_new) attributes.fail("a second object " + std::to_string(id));
     object_ = &object->second;
     object_->name = cut_name(attributes.find("name").value_or(""));
+    object_->is_other = attributes.find("type") == "other";
     object_->is_sliced = attributes.find(kSliceStack).has_value();
     if (attributes.find(kMeshResolution) == "lowres") object_->stands_for = "of low resolution beside its slices";
     const std::string_view model = attributes.find(kModelResolution).value_or("fullres");

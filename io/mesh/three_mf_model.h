@@ -28,6 +28,7 @@ struct ThreeMfObject {
   TriangleMesh mesh;
   std::vector<ThreeMfUse> components;
   bool is_sliced = false;      // it has slices, which may be all that it has
+  bool is_other = false;       // by its type: not to be built by itself
   std::string stands_for;      // what its triangles only stand for, and how; else empty
   std::uint64_t lattices = 0;  // of beams, which are passed over
 };

@@ -2,11 +2,14 @@
 #include "io/points/read_points.h"
 
 #include <algorithm>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/npy_head.h"
+#include "io/files/text_scanner.h"
 #include "io/files/unpack.h"
 #include "io/files/zip_reader.h"
 #include "io/mesh/ply.h"
@@ -41,6 +44,16 @@ bool begins_with(InputBuffer& input, std::string_view signature) {
     if (!input.fill()) return false;
   }
   return input.pending().starts_with(signature);
+}
+
+// As read_mesh() knows it.
+bool begins_with_ply(InputBuffer& input) {
+  for (const std::string_view mark : {std::string_view(), kByteOrderMark}) {
+    for (const char blank : {'\n', '\r', ' ', '\t'}) {
+      if (begins_with(input, std::string(mark) + "ply" + blank)) return true;
+    }
+  }
+  return false;
 }
 
 // A file of no bytes is text of no points, but no binary file: whoever was to write that one has failed.
@@ -79,7 +92,7 @@ std::unique_ptr<PointReader> open_points(const std::string& path, const ReadPoin
       }
       return read_npz_points(path);
     }
-    if (begins_with(*input, "ply\n") || begins_with(*input, "ply\r")) return read_ply_points(std::move(input));
+    if (begins_with_ply(*input)) return read_ply_points(std::move(input));
     refuse_empty(path, *input);
   }
   return read_text_points(std::move(input), options);

@@ -51,6 +51,9 @@ class TextPointReader : public PointReader {
  private:
   bool take_header(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
+    if (line.substr(0, line.find_last_not_of(" \t") + 1) == "ply") {
+      lines_.fail("found 'ply', expected text; PLY is read from files by their names");
+    }
     if (!is_header(line, given_)) return false;
     header_ = line;
     header_number_ = lines_.number();

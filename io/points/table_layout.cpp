@@ -130,21 +130,58 @@ std::vector<std::string_view> fields_of(std::string_view line, char delimiter) {
 
 namespace {
 
-// x, y and z in any case, with or without a unit: "X", "y [mm]", "z(m)". Nothing where two columns have one of them.
-std::optional<Columns> columns_with_units(const std::vector<std::string_view>& names) {
-  Columns columns{};
-  std::array<int, 3> found{};
-  for (std::size_t column = 0; column < names.size(); ++column) {
-    std::string_view name = names[column];
-    const std::size_t unit = name.find_first_of("[(");
-    if (unit != std::string_view::npos && (name.ends_with(']') || name.ends_with(')'))) name = name.substr(0, unit);
-    while (name.ends_with(' ')) name.remove_suffix(1);
-    const std::size_t axis = name.size() == 1 ? std::string_view("xyz").find(lower_case(name.front())) : 3;
-    if (axis >= 3) continue;
-    columns[axis] = column;
-    ++found[axis];
+// Words that may stand beside x, y or z in a name.
+bool says_little(std::string_view word) {
+  constexpr std::array<std::string_view, 14> kWords{
+      "point", "points", "pos", "position", "coord", "coordinate", "coords", "um", "mm", "cm", "m", "km", "in", "ft"};
+  return std::ranges::any_of(kWords, [&](std::string_view known) { return is_word(word, known); });
+}
+
+constexpr std::size_t kNoAxis = 3;
+
+std::size_t axis_of_letter(std::string_view name) {
+  return name.size() == 1 ? std::min(std::string_view("xyz").find(lower_case(name.front())), kNoAxis) : kNoAxis;
+}
+
+// Of "X", "y [mm]", "z(m)".
+std::size_t axis_with_unit(std::string_view name) {
+  const std::size_t unit = name.find_first_of("[(");
+  if (unit != std::string_view::npos && (name.ends_with(']') || name.ends_with(')'))) name = name.substr(0, unit);
+  while (name.ends_with(' ')) name.remove_suffix(1);
+  return axis_of_letter(name);
+}
+
+// Of "POINT_X", "pos.y", "z_mm".
+std::size_t axis_with_words(std::string_view name) {
+  std::size_t axis = kNoAxis;
+  while (!name.empty()) {
+    const std::size_t end = std::min(name.find_first_of("_. "), name.size());
+    const std::string_view word = name.substr(0, end);
+    name.remove_prefix(std::min(end + 1, name.size()));
+    if (word.empty() || says_little(word)) continue;
+    if (axis != kNoAxis) return kNoAxis;
+    axis = axis_of_letter(word);
+    if (axis == kNoAxis) return kNoAxis;
   }
-  return found == std::array{1, 1, 1} ? std::optional(columns) : std::nullopt;
+  return axis;
+}
+
+// The columns of the axes, and how many each has.
+struct AxisColumns {
+  Columns last{};
+  std::array<int, 3> count{};
+};
+
+template <class AxisOf>
+AxisColumns columns_by(const AxisOf& axis_of, const std::vector<std::string_view>& names) {
+  AxisColumns columns;
+  for (std::size_t column = 0; column < names.size(); ++column) {
+    const std::size_t axis = axis_of(names[column]);
+    if (axis == kNoAxis) continue;
+    columns.last[axis] = column;
+    ++columns.count[axis];
+  }
+  return columns;
 }
 
 }  // namespace
@@ -162,7 +199,9 @@ std::optional<Columns> named_columns(const std::vector<std::string_view>& names)
     }
     if (found == 3) return columns;
   }
-  return columns_with_units(names);
+  AxisColumns columns = columns_by(axis_with_unit, names);
+  if (columns.count == std::array{0, 0, 0}) columns = columns_by(axis_with_words, names);
+  return columns.count == std::array{1, 1, 1} ? std::optional(columns.last) : std::nullopt;
 }
 
 bool is_header(std::string_view line, const std::optional<Columns>& given) {

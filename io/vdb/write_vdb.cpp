@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -30,6 +32,7 @@ namespace raycone {
 namespace {
 
 using vdb::kLeafLog2, vdb::kLeafSize, vdb::kLeafVoxels, vdb::LeafLayer;
+static_assert(kVdbSlabAlignment == kLeafSize);
 
 // --- A grid without its tree
 
@@ -422,7 +425,7 @@ class VdbWriter final : public LatticeWriter {
   }
 
   int slab_axis() const override { return 2; }
-  std::int64_t slab_alignment() const override { return kLeafSize; }
+  std::int64_t slab_alignment() const override { return kVdbSlabAlignment; }
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
     for (std::size_t f = 0; f < fields.size(); ++f) builders_[f]->add(block, fields[f]);
@@ -434,11 +437,19 @@ class VdbWriter final : public LatticeWriter {
   void finish(const FieldTotals& totals) override {
     openvdb::GridCPtrVec grids;
     for (const std::unique_ptr<GridBuilder>& builder : builders_) grids.push_back(builder->finish(totals));
+    make_sure_of_memory();
     write_archive(output_.stream(), grids);
     output_.commit();
   }
 
  private:
+  // Blosc crashes where it gets no memory. What is given back here is free for it. Throws std::bad_alloc.
+  static void make_sure_of_memory() {
+    constexpr std::size_t kInAll = std::size_t{1} << 20, kPerThread = std::size_t{1} << 17;
+    void* volatile block = ::operator new(kInAll + kPerThread * static_cast<std::size_t>(thread_count()));
+    ::operator delete(block);
+  }
+
   SeekableOutput output_;
   std::vector<std::unique_ptr<GridBuilder>> builders_;  // of each field
 };

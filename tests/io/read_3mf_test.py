@@ -243,6 +243,25 @@ class Values(unittest.TestCase):
         result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
         self.assertEqual(json.loads(result.stdout)["warnings"][:2], ["beam-lattices", "slices"])
 
+    def test_objects_that_may_be_holes_are_told(self):
+        hole = mesh_object(2, VERTICES, FACES).replace('type="model"', 'type="other"')
+        both = '<object id="3"><components><component objectid="1"/><component objectid="2"/></components></object>'
+        with open(self.path, "wb") as file:
+            file.write(package(model(TETRAHEDRON + hole + both, '<item objectid="3"/>')))
+        result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
+        document = json.loads(result.stdout)
+        self.assertEqual((document["warnings"][0], document["faces"]), ("other-objects", 8))
+
+    def test_objects_without_triangles_are_told_once(self):
+        """One of a shape of another extension, built twice, and a component with nothing."""
+        shape = '<object id="2"><m:shape/></object>'
+        empty = '<object id="3"/><object id="4"><components><component objectid="3"/></components></object>'
+        items = ITEM + '<item objectid="2"/>' * 2 + '<item objectid="4"/>'
+        with open(self.path, "wb") as file:
+            file.write(package(model(TETRAHEDRON + shape + empty, items)))
+        result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
+        self.assertEqual(json.loads(result.stdout)["warning_lines"][0], "empty-objects: 2 objects without triangles ignored")
+
 
 REFUSED = {
     "no_relations": (package(model(TETRAHEDRON, ITEM), root=None), "no part _rels/.rels, expected a 3MF package"),

@@ -181,31 +181,33 @@ TEST(ReadGltf, InterleavedPositionsAreReadByTheirStride) {
   EXPECT_EQ(triangles_of(parse(asset).mesh), kSquareTriangles);
 }
 
-TEST(ReadGltf, SparseElementsReplaceThoseOfTheView) {
+// The square, but for the corners with these numbers.
+Asset with_corners_instead(const std::vector<std::uint16_t>& numbers, const std::vector<float>& coordinates) {
   Asset asset;
-  asset.binary = square_data() + bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({5, 6, 7});
-  asset.buffers = R"([{"byteLength":76}])";
+  const std::string count = std::to_string(numbers.size()), size = std::to_string(12 * numbers.size());
+  const std::string of_numbers = bytes_of(numbers), padding(of_numbers.size() % 4, '\0');
+  const std::string begin = std::to_string(60 + of_numbers.size() + padding.size());
+  asset.binary = square_data() + of_numbers + padding + bytes_of(coordinates);
+  asset.buffers = R"([{"byteLength":)" + std::to_string(asset.binary.size()) + "}]";
   asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},)"
-                R"({"buffer":0,"byteOffset":60,"byteLength":2},{"buffer":0,"byteOffset":64,"byteLength":12}])";
-  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,)"
-                    R"("indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
+                R"({"buffer":0,"byteOffset":60,"byteLength":)" +
+                std::to_string(of_numbers.size()) + R"(},{"buffer":0,"byteOffset":)" + begin + R"(,"byteLength":)" +
+                size + "}]";
+  asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":)" + count +
+                    R"(,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
                     R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
-  const TriangleMesh mesh = parse(asset).mesh;
+  return asset;
+}
+
+TEST(ReadGltf, SparseElementsReplaceThoseOfTheView) {
+  const TriangleMesh mesh = parse(with_corners_instead({2}, {5, 6, 7})).mesh;
   EXPECT_EQ(mesh.vertices[2], (Vec3{5, 6, 7}));
   EXPECT_EQ(mesh.vertices[3], (Vec3{0, 1, 0}));
 }
 
 TEST(ReadGltf, SparseElementsAreInAscendingOrder) {
   for (const std::uint16_t second : std::array<std::uint16_t, 2>{2, 1}) {
-    Asset asset;
-    asset.binary = square_data() + bytes_of<std::uint16_t>({2, second}) + bytes_of<float>({5, 6, 7, 8, 9, 10});
-    asset.buffers = R"([{"byteLength":88}])";
-    asset.views = R"([{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},)"
-                  R"({"buffer":0,"byteOffset":60,"byteLength":4},{"buffer":0,"byteOffset":64,"byteLength":24}])";
-    asset.accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":2,)"
-                      R"("indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}},)"
-                      R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
-    EXPECT_EQ(error_of(asset),
+    EXPECT_EQ(error_of(with_corners_instead({2, second}, {5, 6, 7, 8, 9, 10})),
               "a.glb: accessor 0 has sparse index " + std::to_string(second) + " behind 2, expected ascending ones");
   }
 }
@@ -354,11 +356,33 @@ TEST(ReadGltf, NodeWithTwoParentsIsShownOnceForEach) {
 }
 
 TEST(ReadGltf, SharedChildrenOfSharedChildrenAreALimit) {
-  Asset asset;  // 2^40 copies
+  Asset asset;  // 2^40 copies: nodes 2 i and 2 i + 1 both have 2 i + 2 and 2 i + 3 as children
   asset.nodes = "[";
-  for (int i = 1; i <= 40; ++i) asset.nodes += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
-  asset.nodes += R"({"mesh":0}])";
+  for (int i = 1; i <= 40; ++i) {
+    const std::string children = std::to_string(2 * i) + "," + std::to_string(2 * i + 1);
+    for (int k = 0; k < 2; ++k) asset.nodes += R"({"children":[)" + children + "]},";
+  }
+  asset.nodes += R"({"mesh":0},{"mesh":0}])";
   EXPECT_THROW(static_cast<void>(parse(asset)), LimitError);
+}
+
+TEST(ReadGltf, RotationsHaveALength) {
+  Asset asset;
+  asset.nodes = R"([{"mesh":0,"rotation":[0,0,1e-150,0]}])";
+  EXPECT_NEAR(parse(asset).mesh.vertices[1].x, -1, 1e-15);  // roundings of the quaternion's square
+  for (const char* const number : {"0", "1e-160", "1e200"}) {
+    asset.nodes = std::string(R"([{"mesh":0,"rotation":[0,0,)") + number + R"(,0]}])";
+    EXPECT_EQ(error_of(asset), "a.glb: node 0: rotation is not a unit quaternion") << number;
+  }
+}
+
+TEST(ReadGltf, NodesHaveAChildOnceAndScenesARoot) {
+  Asset asset;
+  asset.nodes = R"([{"children":[1,2,1]},{"mesh":0},{"mesh":0}])";
+  EXPECT_EQ(error_of(asset), "a.glb: node 0 has the child 1 twice, expected once");
+  asset.nodes = R"([{"mesh":0},{"mesh":0}])";
+  asset.rest = R"("scenes":[{"nodes":[1,0,1]}])";
+  EXPECT_EQ(error_of(asset), "a.glb: scene 0 names node 1 twice, expected once");
 }
 
 TEST(ReadGltf, SceneMayNameRootNodesOnly) {
@@ -537,6 +561,10 @@ TEST(ReadGltf, MessagesAreOneShortLineWhateverAnExtensionIsCalled) {
   asset.rest += R"(,"extensionsRequired":["a\nb\u001b)" + std::string(200, 'c') + R"("])";
   EXPECT_EQ(error_of(asset),
             "a.glb: requires the extension a?b?" + std::string(116, 'c') + "..., which is not supported");
+}
+
+TEST(ReadGltf, TextInUtf16IsRefusedByName) {
+  EXPECT_EQ(error_of(std::string("\xFF\xFE{\0}\0", 6)), "a.glb: the text is UTF-16, expected UTF-8");
 }
 
 TEST(ReadGltf, InstancingIsRefusedAlsoWhereMerelyUsed) {

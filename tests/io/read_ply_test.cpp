@@ -248,6 +248,14 @@ TEST(ReadPly, FacesWithoutAListOfIndicesAreAnError) {
             "f:13: element 'face' has no list 'vertex_indices' or 'vertex_index'");
 }
 
+TEST(ReadPly, ANumberNamedLikeTheListHidesItNot) {
+  const std::string text = kAscii + "element vertex 3\n" + kXyz +
+                           "element face 1\nproperty int vertex_indices\nproperty list uchar int vertex_index\n"
+                           "end_header\n" +
+                           kVertices + "7 3 0 1 2\n";
+  EXPECT_EQ(parse(text).mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+}
+
 TEST(ReadPly, CountsThatTheFileCannotHoldAreRefusedBeforeAllocating) {
   EXPECT_EQ(error_of(kAscii + "element vertex 1000000000000\n" + kXyz + "end_header\n" + kVertices),
             "f:8: 1000000000000 elements 'vertex' announced, but only 18 bytes follow");

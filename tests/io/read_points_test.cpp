@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/files/file_error.h"
+#include "io/points/point_readers.h"
 #include "io/points/read_points.h"
 #include "tests/support/temporary_directory.h"
 
@@ -115,6 +116,32 @@ TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
   // No other character decides that what is not a number is one.
   for (const char* const line : {"10 5\t-4\t1.25", "10,5 -4,0 1,25", "10,5\t-4,0\t1,25", "1,5;2;3", "1\t2,5\t3"}) {
     EXPECT_NE(error_of(std::string(line) + "\n").find("expected a"), std::string::npos) << line;
+  }
+}
+
+TEST_F(ReadPoints, NamesOfColumnsMayHaveWordsThatSayLittle) {
+  for (const char* const header : {"OBJECTID,POINT_X,POINT_Y,POINT_Z", "t,pos_x,pos_y,pos_z", "id,x_mm,y_mm,z_mm",
+                                   "n,coord.x,coord.y,coord.z", "n,X (m),Y (m),Z (m)"}) {
+    EXPECT_EQ(read(std::string(header) + "\n7,1,2,3\n8,-4,.5,6e-3\n"), kTwo) << header;
+  }
+  EXPECT_EQ(read("n,X [m],Y [m],Z [m],pos_x\n7,1,2,3,0\n8,-4,.5,6e-3,0\n"), kTwo);
+  EXPECT_EQ(read("n,x (m),y (m),z (m),x_ft,y_ft,z_ft\n7,1,2,3,0,0,0\n8,-4,.5,6e-3,0,0,0\n"), kTwo);
+  // Of velocities, normals and two points nobody knows.
+  for (const char* const header :
+       {"a,b,c,vel_x,vel_y,vel_z", "px,py,pz,nx", "x y,b,c,z", "a,b,c,pos_x,x_mm,pos_y,pos_z"}) {
+    EXPECT_EQ(read(std::string(header) + "\n1,2,3,7,8,9,0\n-4,.5,6e-3,7,8,9,0\n"), kTwo) << header;
+  }
+}
+
+TEST_F(ReadPoints, PlyInAPipeIsTold) {
+  std::ofstream(path_) << "ply\nformat ascii 1.0\n";
+  const auto reader = read_text_points(std::make_unique<InputBuffer>(path_), {});
+  try {
+    read_all(*reader);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              path_ + ":1: found 'ply', expected text; PLY is read from files by their names");
   }
 }
 
@@ -531,12 +558,14 @@ TEST_F(ReadPoints, FlippedBytesNeverDoMoreThanThrow) {
 // --- PLY ------------------------------------------------------------------------------------------------------------
 
 TEST_F(ReadPoints, PlyGivesItsVerticesWhateverTheFileIsCalled) {
-  const std::string ply =
-      "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\nend_header\n"
+  const std::string rest =
+      "\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\nend_header\n"
       "1 2 3\n-4 0.5 6e-3\n";
-  const auto reader = open(ply);
-  EXPECT_EQ(reader->size(), 2u);
-  EXPECT_EQ(read_all(*reader, 1), kTwo);
+  for (const char* const begin : {"ply", "ply ", "ply\t", "\xEF\xBB\xBFply", "\xEF\xBB\xBFply \r"}) {
+    const auto reader = open(begin + rest);
+    EXPECT_EQ(reader->size(), 2u);
+    EXPECT_EQ(read_all(*reader, 1), kTwo);
+  }
 }
 
 }  // namespace

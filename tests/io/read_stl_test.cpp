@@ -260,6 +260,22 @@ TEST(ReadStl, BinaryCountBeyondTheLengthIsAnErrorThatNamesBoth) {
   EXPECT_EQ(error_of(binary_file("", 0xffffffff, 2)), "f:byte 80: 4294967295 triangles announced, but only 2 follow");
 }
 
+TEST(ReadStl, TextThatIsNoStlIsToldByItsFirstLine) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 1\n";
+  EXPECT_EQ(error_of(pointer),
+            "f:1: found 'version https://git-lfs.github.com/spec/v1', expected 'solid' or a binary STL");
+}
+
+TEST(ReadStl, PaddingBehindTextIsPassedOver) {
+  for (const std::string& end : {std::string("\x1A"), std::string("\x1A\n"), std::string(700, '\0')}) {
+    EXPECT_EQ(parse("solid a\n" + kFacet + "endsolid a\n" + end).mesh.triangles.size(), 1u);
+  }
+  EXPECT_EQ(parse("solid a\n" + kFacet + "endsolid\x1A").mesh.triangles.size(), 1u);
+  EXPECT_EQ(parse("solid a\n" + kFacet + std::string("endsolid\0\0", 10)).mesh.triangles.size(), 1u);
+  EXPECT_NE(error_of("solid a\n" + kFacet + "endsolid a\n\x1A!\n"), "");
+}
+
 TEST(ReadStl, BytesAfterTheLastBinaryTriangleAreWarnedAbout) {
   const ParsedMesh parsed = parse(binary_file("", 1, 2) + "x");
   EXPECT_EQ(parsed.mesh.triangles.size(), 1u);

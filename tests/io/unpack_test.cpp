@@ -128,12 +128,19 @@ std::string arrived(const std::string& sent) {
   return all;
 }
 
-// Frames of one block each, that says `byte` some times (RFC 8878, 3.1.1); a byte of it before and behind.
-std::string zstandard_frame(char byte, std::uint32_t times) {
+// Frames of one block each, that says `byte` some times (RFC 8878, 3.1.1); a byte of it before and behind. By default
+// their window has 128 KiB.
+std::string zstandard_frame(char byte, std::uint32_t times, char window = '\x38') {
   const std::uint32_t head = times << 3 | 1 << 1 | 1;  // a run, the last block
-  std::string frame("\x28\xb5\x2f\xfd\x00\x38", 6);    // a window of 128 KiB
+  std::string frame = std::string("\x28\xb5\x2f\xfd\x00", 5) + window;
   for (int n = 0; n < 3; ++n) frame += static_cast<char>(head >> (8 * n) & 0xFF);
   return frame + byte;
+}
+
+// As `zstd --long=28` makes them.
+TEST(Unpack, TakesZstandardFramesOfLargeWindows) {
+  constexpr char kQuarterOfGigabyte = '\x90';
+  EXPECT_EQ(arrived(zstandard_frame('a', 7, kQuarterOfGigabyte)), "aaaaaaa");
 }
 
 TEST(Unpack, GivesAllThatHasComeOfZstandardFrames) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/command_line/common_options.h"
+#include "app/command_line/given_options.h"
 #include "app/command_line/idle_options.h"
 #include "app/command_line/lattice_options.h"
 #include "app/command_line/parse_shard.h"
@@ -122,15 +123,17 @@ void refuse_parts_by_file(const MeshOptions& mesh, const FieldOptions& field) {
 
 bool is_list(const std::string& operand) { return operand.starts_with('@') || operand == "-"; }
 
-// A line an option, as it was given: "--name=value", flags "--name". Batches keep this text: to change how an option is
-// written there makes all results out of date.
+// A line an option, as it was given: "--name=value", flags "--name"; none that holds anyway. Batches keep this text: to
+// change how an option is written there makes all results out of date.
 std::string result_options(const std::string& format, const MeshValues& of_mesh) {
   static const OptionNames known = option_names(batch_spec());
   const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
+  const bool draws = of_mesh.contains("--sample");
   std::string text = "--format=" + format;
   for (const auto& [name, given] : of_mesh) {
     if (without_effect.contains(name)) continue;
-    text += '\n' + (known.flags.contains(name) ? name : name + '=' + given.back());
+    const std::string option = known.flags.contains(name) ? name : name + '=' + given.back();
+    if (!is_default(option, draws ? kDefaultOfPoints : kDefaultOfLattices, draws)) text += '\n' + option;
   }
   return text;
 }

@@ -1,9 +1,15 @@
 #include "app/command_line/given_options.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
+
+#include "app/text/parse_value.h"
 
 namespace raycone {
 
@@ -23,24 +29,38 @@ std::vector<std::string> values_that_count(const std::string& name, const std::v
   return last;
 }
 
+// "--band=3.0" is "--band=3".
+bool are_same(std::string_view option, std::string_view other) {
+  if (option == other) return true;
+  const std::size_t value = option.rfind('=') + 1;
+  if (value == 0 || option.substr(0, value) != other.substr(0, value)) return false;
+  const std::optional<double> number = number_from(option.substr(value));
+  return number && number == number_from(other.substr(value));
+}
+
 }  // namespace
 
-std::vector<std::string> given_options(const Values& values, const OptionNames& known) {
+bool is_default(const std::string& option, std::string_view own_default, bool draws) {
+  static constexpr std::array<std::string_view, 13> kDefaults{
+      "--band=3", "--orient=keep", "--resolution=64", "--rule=threshold=0.5", "--scale=1",
+      "--seed=1", "--at=50%",      "--weld=exact",    "--simplify=0",         "--tolerance=1e-10",
+      "--axis=z", "--size=1024",   "--parts=file"};
+  const auto is_same = [&](std::string_view usual) { return are_same(option, usual); };
+  const bool is_field = !draws && option == "--field=winding";  // more is asked about drawn points
+  return is_field || is_same(own_default) || std::ranges::any_of(kDefaults, is_same);
+}
+
+std::vector<std::string> given_options(const Values& values, const OptionNames& known, std::string_view own_default) {
   static const std::set<std::string> without_effect{
       "--depfile", "--engine", "--format", "--memory-limit", "--no-clobber", "--output", "--progress", "--quiet",
       "--report",  "--simd",   "--strict", "--threads",      "--timeout",    "--values", "--verify"};
-  static const std::set<std::string> defaults{
-      "--field=winding", "--band=3", "--orient=keep",     "--resolution=64", "--rule=threshold=0.5",
-      "--scale=1",       "--seed=1", "--tolerance=1e-10", "--weld=exact",    "--simplify=0",
-      "--axis=z",        "--at=50%", "--size=1024"};
   std::vector<std::string> options;
   for (const auto& [name, given] : values.all()) {
     if (!name.starts_with("--") || without_effect.contains(name)) continue;
     for (const std::string& text : values_that_count(name, given)) {
       const std::string value = name == "--like" ? std::filesystem::path(text).filename().string() : text;
       std::string option = known.flags.contains(name) ? name : name + '=' + value;
-      const bool is_default = defaults.contains(option) && !(name == "--field" && values.given("--sample"));
-      if (!is_default) options.push_back(std::move(option));
+      if (!is_default(option, own_default, values.given("--sample"))) options.push_back(std::move(option));
     }
   }
   return options;

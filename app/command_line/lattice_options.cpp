@@ -196,7 +196,7 @@ Command parse_lattice(const Values& values) {
   check_one_field(command);
   check_halves(command.encoding);
   parse_compress(values, command.encoding);
-  command.run.options = given_options(values, option_names(lattice_spec()));
+  command.run.options = given_options(values, option_names(lattice_spec()), kDefaultOfLattices);
   refuse_idle_options(values, command);
   return command;
 }

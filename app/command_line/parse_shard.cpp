@@ -30,12 +30,13 @@ Shard slurm_shard() {
   const std::int64_t step = required_slurm_number("STEP");
   const bool ordered = 0 <= least && least <= task && task <= most && step > 0;
   const bool regular = ordered && (task - least) % step == 0 && (most - least) % step == 0;
-  const std::int64_t count = regular ? (most - least) / step + 1 : 0;
-  if (!regular || slurm_number("COUNT").value_or(count) != count) {
+  const std::uint64_t count = regular ? static_cast<std::uint64_t>((most - least) / step) + 1 : 0;
+  const std::optional<std::int64_t> announced = slurm_number("COUNT");
+  if (!regular || (announced && static_cast<std::uint64_t>(*announced) != count)) {
     throw UsageError(
         "--shard slurm: the array's task numbers have gaps, expected a regular range such as --array=1-100");
   }
-  return {static_cast<std::uint64_t>((task - least) / step + 1), static_cast<std::uint64_t>(count)};
+  return {static_cast<std::uint64_t>((task - least) / step) + 1, count};
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ Command parse_points(const Values& given) {
   command.output = parse_output_files(values);
   command.encoding = parse_encoding(values, command.output, output_formats(command));
   check_npy_columns(command);
-  command.run.options = given_options(values, option_names(points_spec()));
+  command.run.options = given_options(values, option_names(points_spec()), kDefaultOfPoints);
   refuse_idle_options(values, command);
   return command;
 }

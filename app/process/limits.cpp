@@ -221,8 +221,11 @@ void check_memory(const std::string& name, double more, std::uint64_t limit) {
   malloc_trim(0);  // what was freed counts as in use as long as the allocator keeps it
   const double needed = more + memory_in_use();
   if (needed <= static_cast<double>(limit)) return;
-  throw LimitError(name + ": needs about " + readable_bytes(needed) + " of memory, but the limit is " +
-                   readable_bytes(static_cast<double>(limit)));
+  const std::string allowed = readable_bytes(static_cast<double>(limit));
+  std::string wanted = readable_bytes(needed);
+  constexpr double kMore = 1.02;
+  if (wanted == allowed) wanted = readable_bytes(kMore * needed);
+  throw LimitError(name + ": needs about " + wanted + " of memory, but the limit is " + allowed);
 }
 
 }  // namespace raycone

@@ -1,5 +1,6 @@
 #include "app/report/run_report.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "io/files/counted.h"
@@ -32,6 +33,24 @@ std::string surface_clause(const std::optional<SurfaceReport>& surface) {
 }
 
 }  // namespace
+
+void Verification::merge(const Verification& other) {
+  samples = std::min(samples, other.samples);
+  on_surface = std::max(on_surface, other.on_surface);
+  unresolved = std::max(unresolved, other.unresolved);
+  largest_difference = std::max(largest_difference, other.largest_difference);
+  largest_bound = std::max(largest_bound, other.largest_bound);
+  largest_distance_difference = std::max(largest_distance_difference, other.largest_distance_difference);
+  largest_gradient_difference = std::max(largest_gradient_difference, other.largest_gradient_difference);
+}
+
+void RunReport::add_verification(const Verification& found) {
+  if (verification) {
+    verification->merge(found);
+  } else {
+    verification = found;
+  }
+}
 
 std::string summary_line(const RunReport& report) {
   const Seconds& s = report.seconds;

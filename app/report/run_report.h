@@ -34,6 +34,10 @@ struct Verification {
   double largest_bound = 0.0;                           // of the values' error bounds
   std::optional<double> largest_distance_difference{};  // world units; where distances are wanted
   std::optional<double> largest_gradient_difference{};  // of components, per world unit; where gradients are wanted
+
+  // Adds what was found of the same samples by another one of their fields. `samples` are at most those that either
+  // compared.
+  void merge(const Verification& other);
 };
 
 // What `raycone surface` made; the surface has been checked.
@@ -56,6 +60,9 @@ struct PartReport {
 };
 
 struct RunReport {
+  // Adds what one more verification of this run found.
+  void add_verification(const Verification& found);
+
   std::string mesh;                     // files as named on the command line
   std::vector<std::string> files_read;  // the mesh and what it refers to, points, the grid of --like
   std::vector<FileRead> companions;     // what the mesh refers to

@@ -76,6 +76,7 @@ double bytes_of_point(FieldFormat format, const OutputDescription& description) 
       return numbers * sizeof(float);
     case FieldFormat::kNpz:
       return kCoordinates * (description.has_places ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +
+             (description.has_places ? sizeof(std::int64_t) : 0.0) +
              bytes_of_values(description, bytes_of_real(description, Precision::kDouble));
     case FieldFormat::kCsv:
       return bytes_of_row(3 + description.components());

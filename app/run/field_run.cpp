@@ -96,13 +96,13 @@ void FieldRun::finish(double band_width) {
   const double bound = field_.diagnostics ? largest_bound_ : evaluator_.accuracy();
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
-  run_.report.verification = timed(run_.report.seconds.verify, [&] {
+  run_.report.add_verification(timed(run_.report.seconds.verify, [&] {
     // Lattices and points may have different engines, each within the tolerance.
     const bool may_differ = of_lattice_ && evaluator.exterior_edges() > 0 && field_.tolerance > 0.0;
     const double within = may_differ ? 2 * evaluator.accuracy() : 0.0;
     return raycone::verify(run_.report.mesh, {original_, &solid_}, evaluator_, field_, band_width, draw_.samples(),
                            within);
-  });
+  }));
 }
 
 void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,

@@ -96,6 +96,7 @@ void LabelledParts::finish(std::span<const std::uint64_t> samples) {
   }
   report.terms += terms_;
   if (!field_.labels_only()) return;
+  report.tally += tally_;
   report.exterior_edges = 0;
   for (const PartReport& part : report.parts) report.exterior_edges += part.exterior_edges;
 }

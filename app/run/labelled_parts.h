@@ -41,6 +41,8 @@ class LabelledParts {
   void found(bool inside, bool expected);
   // What was spent on a part.
   void spent(const FieldEvaluator& evaluator);
+  // What was counted at some of its samples.
+  void count(const Tally& tally) { tally_ += tally; }
 
   // When all parts have been evaluated. `samples`: of each label, from 0.
   void finish(std::span<const std::uint64_t> samples);
@@ -62,6 +64,7 @@ class LabelledParts {
   OrientationCounts turned_;
   // What the report is told when all has been evaluated.
   Terms terms_;
+  Tally tally_;  // where nothing is asked about all of them together
 };
 
 }  // namespace raycone

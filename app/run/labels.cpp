@@ -51,7 +51,7 @@ bool add_part(MeshToEvaluate part, std::int32_t label, LabelledParts& parts, Lab
   bool found = false;
   timed(run.report.seconds.evaluate, [&] {
     for_slabs(reach, slab_samples(options, {open, !lattice.along_axes()}, left), [&](const LatticeBlock& slab) {
-      run.report.tally += evaluator.evaluator().evaluate(lattice, slab, samples, done);
+      parts.count(evaluator.evaluator().evaluate(lattice, slab, samples, done));
       if (!any_inside(flags_of(samples))) return;
       found = true;
       volume.add(slab, flags_of(samples), label, parts.first_wins());
@@ -106,7 +106,7 @@ LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, co
   if (field.verify == 0) return volume;
   std::vector<std::int32_t> labels;
   for (const DrawnSample& sample : check.samples()) labels.push_back(volume.at(sample.number));
-  report.verification = check.compare(report.mesh, labels);
+  report.add_verification(check.compare(report.mesh, labels));
   return volume;
 }
 
@@ -145,7 +145,7 @@ void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t>
       numbers.push_back(n);
     }
     if (reached.empty()) continue;
-    run_.report.tally += evaluator.evaluator().evaluate(reached, inside_, nullptr);
+    parts_.count(evaluator.evaluator().evaluate(reached, inside_, nullptr));
     const std::span<const std::uint8_t> inside = flags_of(inside_);
     for (std::size_t n = 0; n < reached.size(); ++n) {
       if (inside[n] != 0) labels[numbers[n]] = static_cast<std::int32_t>(part + 1);
@@ -166,7 +166,7 @@ void PointLabels::finish() {
     for (const TriangleMesh& mesh : meshes_) check.add(mesh);
     std::vector<std::int32_t> labels;
     for (const DrawnSample& sample : check.samples()) labels.push_back(*sample.label);
-    run_.report.verification = check.compare(run_.report.mesh, labels);
+    run_.report.add_verification(check.compare(run_.report.mesh, labels));
   });
 }
 

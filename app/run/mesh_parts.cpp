@@ -114,8 +114,22 @@ void MeshParts::keep_all() {
     for (std::size_t f = 0; f < part_of.size(); ++f) part_of[f] = components.of_vertex[all.triangles[f][0]];
     for (std::uint32_t n = 0; n < components.count; ++n) names_.push_back("component " + std::to_string(n + 1));
   }
-  box_ = bounding_box(all);
   split_.emplace(std::move(all), part_of, static_cast<std::uint32_t>(names_.size()));
+  if (options_.weld.mode != WeldMode::kDistance) {
+    box_ = bounding_box(whole());
+  } else if (files_.size() == 1) {
+    box_ = welded_box(whole());
+  } else {
+    for (std::uint32_t file = 0; file < files_.size(); ++file) extend_box(welded_box(split_->part(file)));
+  }
+}
+
+// Components are welded before they are told apart.
+Box MeshParts::welded_box(TriangleMesh mesh) const {
+  const bool moves_vertices = options_.weld.mode == WeldMode::kDistance && options_.parts.by != PartsBy::kComponent;
+  std::vector<Warning> told_of_parts;
+  if (moves_vertices) mesh = welded_mesh(std::move(mesh), options_, told_of_parts);
+  return bounding_box(mesh);
 }
 
 // Groups whose polygons have become no triangles are no parts.
@@ -135,12 +149,15 @@ void MeshParts::keep_some() {
   std::size_t room = kKept;
   for (std::size_t file = 0; file < files_.size(); ++file) {
     TriangleMesh mesh = read(file);
-    box_ = file == 0 ? bounding_box(mesh) : hull(box_, bounding_box(mesh));
     names_.push_back(stem_of(files_[file].read.path));
     std::optional<TriangleMesh>& kept = kept_.emplace_back();
     // Welding leaves a third of what many files hold.
-    if (is_regular(files_[file].read.path) && bytes_of(mesh) / 3 > room) continue;
+    if (is_regular(files_[file].read.path) && bytes_of(mesh) / 3 > room) {
+      extend_box(welded_box(std::move(mesh)));
+      continue;
+    }
     kept = welded_mesh(std::move(mesh), options_, files_[file].warnings);
+    extend_box(bounding_box(*kept));
     kept->vertices.shrink_to_fit();
     room -= std::min(bytes_of(*kept), room);
   }

@@ -35,7 +35,8 @@ class MeshParts {
 
   [[nodiscard]] const std::vector<File>& files() const { return files_; }
   [[nodiscard]] const Matrix4& transform() const { return transform_; }
-  [[nodiscard]] const Box& box() const { return box_; }  // of all
+  // Of all files; with a distance to weld within, which moves vertices, of each as a run of it alone has it.
+  [[nodiscard]] const Box& box() const { return box_; }
 
   // At least one.
   [[nodiscard]] std::size_t size() const { return names_.size(); }
@@ -54,6 +55,8 @@ class MeshParts {
   TriangleMesh read(std::size_t file);
   void keep_all();
   void keep_some();
+  [[nodiscard]] Box welded_box(TriangleMesh mesh) const;
+  void extend_box(const Box& box) { box_ = hull(box_, box); }
   void name_groups(std::vector<std::uint32_t>& part_of);
 
   const MeshOptions& options_;
@@ -62,7 +65,7 @@ class MeshParts {
   std::vector<std::string> names_;
   FaceGroups groups_;  // of the only file, until they have become parts
   Matrix4 transform_{};
-  Box box_;
+  Box box_ = empty_box();
   std::optional<MeshSplit> split_;                 // of all; absent where files are kept one by one, or not at all
   std::vector<std::optional<TriangleMesh>> kept_;  // of each file then, welded
 };

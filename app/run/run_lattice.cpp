@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,12 +13,12 @@
 
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
-#include "app/process/usage_error.h"
 #include "app/report/json.h"
 #include "app/run/disk_space.h"
 #include "app/run/field_run.h"
 #include "app/run/grid_lattice.h"
 #include "app/run/labels.h"
+#include "app/run/lattice_checks.h"
 #include "app/run/lattice_choice.h"
 #include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
@@ -28,40 +27,16 @@
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
-#include "io/files/half.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
 namespace {
 
-// A level set has one voxel size.
-void check_cubic(const char* field, const PlacedLattice& lattice) {
-  const bool turned = !world_order(lattice).has_value();
-  if (lattice.is_cubic(turned ? 1e-5 : 1e-12)) return;  // of matrices in 32 bits; of sides divided by counts
-  const Vec3& spacing = lattice.grid.spacing;
-  char message[200];
-  std::snprintf(message, sizeof message,
-                "--field %s: voxels of %g x %g x %g%s, expected cubic ones (--resolution N, --voxel-size H)", field,
-                spacing.x, spacing.y, spacing.z,
-                lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles");
-  throw UsageError(message);
-}
-
-// The surface is made on the axes of the world.
-void check_solid(const PlacedLattice& lattice) {
-  check_cubic("solid", lattice);
-  if (!world_order(lattice)) {
-    throw UsageError(
-        "--field solid: a lattice whose axes are not the world's, expected --field sdf, or another --like");
-  }
-}
-
 PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const auto chosen = [&] { return choose_lattice(box, std::get<LatticeRequest>(command.lattice), warnings); };
   const PlacedLattice lattice = grid ? lattice_of_grid(*grid) : PlacedLattice(choose_for(command.mesh.path, chosen));
-  if (command.field.has(Field::kDistance)) check_cubic("sdf", lattice);
-  if (command.field.has(Field::kSolid)) check_solid(lattice);
+  check_axes(lattice, command.field, grid ? "another --like" : "--resolution N, --voxel-size H");
   return lattice;
 }
 
@@ -105,67 +80,19 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
                                            const PlacedLattice& lattice, const OutputDescription& description,
                                            const RunLimits& limits) {
   constexpr double kMappedByModule = 160.0 * 1024 * 1024;
-  constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
   const bool loads = command.encoding.format == FieldFormat::kVdb;
-  if (loads) check_memory(command.mesh.path, kTouchedByModule, limits.memory());
   if (loads) cap_memory(limits.memory(), kMappedByModule);
   std::unique_ptr<LatticeWriter> writer = make_lattice_writer(command.encoding.format, output, lattice, description);
   if (loads) cap_memory(limits.memory());
   return writer;
 }
 
-// A wider band is everywhere.
-bool cuts_off(const LatticeCommand& command, const Lattice& lattice) {
-  return command.field.band < static_cast<double>(std::ranges::max(lattice.counts));
-}
-
-// The largest number that `format` holds.
-double largest_stored(FieldFormat format, const OutputDescription& description) {
-  const bool any = format == FieldFormat::kCsv || format == FieldFormat::kNone;
-  if (any || description.is(Precision::kDouble)) return std::numeric_limits<double>::infinity();
-  return description.is(Precision::kHalf) ? kLargestHalf : std::numeric_limits<float>::max();
-}
-
-// Below, numbers of `format` lose digits.
-double least_stored(FieldFormat format, const OutputDescription& description) {
-  const double largest = largest_stored(format, description);
-  if (std::isinf(largest)) return 0.0;
-  return largest == kLargestHalf ? kLeastHalf : std::numeric_limits<float>::min();
-}
-
-// Of distances, some of which are about a voxel. VDB has its own limits (io/vdb/check_lattice.h).
-void check_voxel(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
-  if (command.encoding.format == FieldFormat::kVdb) return;
-  const double least = least_stored(command.encoding.format, description);
-  const double voxel = report.lattice->grid.least_spacing();
-  if (!command.field.has_distance() || voxel >= least) return;
-  const int bits = least == kLeastHalf ? 16 : 32;
-  char message[160];
-  std::snprintf(message, sizeof message,
-                ": a voxel of %.2g is below %.2g, where distances of %d bits lose digits; expected --dtype f%d, or "
-                "another --scale",
-                voxel, least, bits, 2 * bits);
-  throw OutputError(report.output + message);
-}
-
-// Of distances. Those that nothing cuts off may be halves after all, as writers find.
-void check_range(const LatticeCommand& command, const RunReport& report, const OutputDescription& description) {
-  const double largest = largest_stored(command.encoding.format, description);
-  const double most = command.field.band * report.lattice->grid.spacing.x;
-  if (!command.field.has_distance() || most <= largest) return;
-  const bool half = largest == kLargestHalf;
-  if (half && !cuts_off(command, report.lattice->grid)) return;
-  char message[160];
-  std::snprintf(
-      message, sizeof message,
-      ": distances of up to %.6g are beyond %.6g, the range of %d bits; expected --dtype f%d, or another --scale", most,
-      largest, half ? 16 : 32, half ? 32 : 64);
-  throw OutputError(report.output + message);
+bool may_take_blocks(const LatticeCommand& command, const PlacedLattice& lattice) {
+  return may_use_blocks(command.field) && lattice.along_axes() && cuts_off(command.field.band, lattice.grid);
 }
 
 bool takes_blocks(const LatticeCommand& command, const LatticeWriter& writer, const PlacedLattice& lattice) {
-  return writer.takes_blocks() && may_use_blocks(command.field) && lattice.along_axes() &&
-         cuts_off(command, lattice.grid);
+  return writer.takes_blocks() && may_take_blocks(command, lattice);
 }
 
 SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
@@ -173,6 +100,19 @@ SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0,
 double writer_memory(const LatticeCommand& command, const RunReport& report) {
   const OutputDescription description = description_of(report, command.field, command.encoding);
   return writer_memory(report.lattice->grid, command.encoding.format, description, slab_kind(report));
+}
+
+// What is needed beside what is in memory, as far as it is known before there is a writer. All of it for VDB, whose
+// module must be counted before it is loaded.
+double memory_to_begin(const LatticeCommand& command, const RunReport& report) {
+  constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
+  const double of_writer = writer_memory(command, report);
+  if (command.encoding.format != FieldFormat::kVdb) return of_writer;
+  const Lattice& grid = report.lattice->grid;
+  SlabKind kind = slab_kind(report);
+  kind.blocks = may_take_blocks(command, *report.lattice);
+  const LatticeBlock smallest = slab_from(grid, 2, kVdbSlabAlignment, grid.index_min[2], 1);
+  return kTouchedByModule + of_writer + slab_memory(smallest, command.field, kind);
 }
 
 // Refuses lattices of which not even the smallest slab fits beside what is in memory.
@@ -190,9 +130,8 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
   const RunReport& report = run.report;
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
-  check_range(command, report, description);
-  check_voxel(command, report, description);
-  check_memory(report.mesh, writer_memory(command, report), run.limits().memory());
+  check_digits(report.output, *report.lattice, command.field, format, description);
+  check_memory(report.mesh, memory_to_begin(command, report), run.limits().memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
   std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, *report.lattice, description, run.limits());
   check_slab_memory(command, *writer, report, run.limits());

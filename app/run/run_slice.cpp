@@ -202,8 +202,8 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
     values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber, &run.files);
   CutMesh cut;
   load(command, run, cut);
-  const Slice slice = choose_for(command.mesh.path,
-                                 [&] { return choose_slice(bounding_box(cut.mesh), command.slice, report.warnings); });
+  const Box box = cut.parts ? cut.parts->box() : bounding_box(cut.mesh);
+  const Slice slice = choose_for(command.mesh.path, [&] { return choose_slice(box, command.slice, report.warnings); });
   report.lattice = lattice_of(slice);
   report.samples = static_cast<std::uint64_t>(slice.view.width) * static_cast<std::uint64_t>(slice.view.height);
   run.print_warnings();

@@ -305,6 +305,19 @@ class Provenance(DataSets):
             self.works(command + " -o a.npz --weld exact --orient keep --engine embree")  # what would hold anyway
             self.assertEqual(read("a.npz"), whole)
 
+    def test_defaults_are_no_options_however_they_are_spelled(self):
+        usual = " --tolerance .1e-9 --scale 1.0 --orient keep --weld exact --field winding"
+        for command, more in (("lattice %s --resolution 3" % CUBE, " --dtype f32"),
+                              ("points %s %s" % (CUBE, "p.csv"), " --dtype f64")):
+            with open("p.csv", "w", encoding="ascii") as file:
+                file.write("0,0,0\n1,2,3\n")
+            self.works(command + " -o a.npz")
+            whole = read("a.npz")
+            self.works(command + usual + more + " -o a.npz")
+            self.assertEqual(read("a.npz"), whole)
+            self.works(command + " --scale 1.5 -o a.npz")
+            self.assertNotEqual(read("a.npz"), whole)
+
     def test_a_default_of_others_is_an_option_of_samples(self):
         for given, options in (([], ["--sample=uniform=3"]),
                                (["--field", "winding"], ["--field=winding", "--sample=uniform=3"])):

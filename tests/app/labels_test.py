@@ -231,6 +231,41 @@ class Values(Labels):
         message = self.reported("lattice %s -o l.npy --field label --verify 200%s" % (self.files, BOX))
         self.assertIn("verified 200 samples", message)
 
+    def test_reports_are_about_all_fields(self):
+        """Corners of left_lobe.obj are samples, so ties and samples on the surface count."""
+        words = " --verify 30 --report r.json"
+        fields = "winding,sdf,gradient"
+        for command, place in (("lattice", " --bounds -1,-1,-1,4,3,3 --resolution 11,9,9 -o o.npz"),
+                               ("points", " --sample uniform=40,surface=40 -o o.npz")):
+            reports = []
+            for names, mesh in ((fields + ",label", self.files), (fields, "groups.obj")):
+                self.works("%s %s --field %s%s%s" % (command, mesh, names, place, words))
+                report = json.loads(read("r.json"))
+                reports.append([report[key] for key in ("verify", "on_surface", "degenerate", "exterior_edges")])
+            self.assertEqual(reports[0], reports[1], command)
+            self.assertIn("largest_gradient_difference", reports[0][0])
+            self.assertGreater(reports[0][0]["largest_distance_difference"], 0)
+        self.assertGreater(reports[0][1], 0)
+
+    def test_welding_within_a_distance_makes_the_box_of_single_jobs(self):
+        """A vertex beside a cube's corner is drawn into it where both are in one file, and the box ends there."""
+        cube, beside = box((0, 0, 0)), ([[1.1, 1, 1], [.5, .5, .5], [.5, .2, .8]], [(0, 1, 2, 2)])
+        self.write("w.obj", obj({"a": cube, "b": beside}))
+        self.write("a.obj", obj({"": cube}))
+        self.write("b.obj", obj({"": ([[1.1, 1, 1], [1.1, .5, 1], [1.5, 1, 1]], [(0, 1, 2, 2)])}))
+        for mesh, expected, kinds in (("w.obj", [.5, 1], ("inside", "label", "label --parts group",
+                                                          "label --parts component", "label,inside --parts group")),
+                                      ("a.obj b.obj", [.75, 1.5], ("label", "label --normalize cube", "label,inside"))):
+            sides = set()
+            for options in kinds:
+                self.works("lattice %s --field %s --weld .2 --resolution 3 -o w.npz --report r.json" % (mesh, options))
+                lattice = json.loads(read("r.json"))["lattice"]
+                if "normalize" not in options:
+                    sides.add((lattice["spacing"][0], lattice["origin"][0] + 2 * lattice["spacing"][0]))
+                if options.split()[0] in ("inside", "label"):
+                    self.works("slice %s --field %s --weld .2 --size 8 -o w.png --report r.json" % (mesh, options))
+            self.assertEqual(sides, {tuple(expected)}, mesh)
+
     def test_results_do_not_depend_on_threads_and_engines(self):
         for end in ("npz", "vdb", "nii.gz", "nrrd", "vti", "csv"):
             contents = set()

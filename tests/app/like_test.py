@@ -131,7 +131,8 @@ class Values(Like):
                 # The length of a voxel is rounded.
                 self.assertTrue((abs(got - numpy.copysign(limit, whole))[beyond] < 1e-15).all())
                 self.assertEqual(beyond.sum() > 100, band == "2")
-        for steps, message in ((SHEAR, "not at right angles"), (rotation(4) * [[1], [1], [2]], "expected cubic ones")):
+        remedy = "expected cubic ones (another --like)"
+        for steps, message in ((SHEAR, "not at right angles"), (rotation(4) * [[1], [1], [2]], remedy)):
             self.lattice_around(steps)
             self.refused("lattice %s --like g.nrrd -o - --format csv --field sdf" % CUBE, 1, message)
 

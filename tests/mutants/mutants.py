@@ -581,8 +581,20 @@ MUTANTS = [
     Mutant("groups_are_far_as_points", "points around one that is dropped are not all dropped", [
         ("core/surface/dropped_samples.cpp", "of_middles[n] > group.radius + farthest_", "of_middles[n] > farthest_")]),
     Mutant("farthest_by_source_alone", "a vertex may be farther from the mesh than the others whose sources are", [
-        ("core/surface/surface_measures.cpp", "largest = std::max(largest, std::ranges::max(distances));",
-         "largest = std::max(largest, std::ranges::min(distances));")]),
+        ("core/surface/surface_measures.cpp",
+         "largest = std::max(largest, from_source + near_rounding < distances[n] ? from_source : distances[n]);",
+         "largest = n == 0 ? std::max(largest, distances[n]) : largest;")]),
+    Mutant("far_parts_round_measures", "what is far from the lattice costs distances their digits", [
+        ("core/surface/surface_measures.cpp", "from_source + near_rounding < distances[n] ? from_source : distances[n]",
+         "distances[n]")]),
+    Mutant("corner_to_the_last_vertex", "of several corners near one vertex the nearest has it", [
+        ("core/surface/mesh_corners.cpp", "return std::pair(move.vertex, move.square);",
+         "return std::pair(move.vertex, -move.square);")]),
+    Mutant("groups_by_cut_names", "names that begin alike are names of several groups", [
+        ("io/mesh/face_groups.cpp", "return groups_.names[entry.second] == text && missing_[entry.second] == missing;",
+         "return groups_.names[entry.second] == text;"),
+        ("io/mesh/face_groups.cpp", "const std::uint64_t hash = joined(hash_of(text), missing);",
+         "const std::uint64_t hash = hash_of(text);")]),
     Mutant("beside_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it, for many, too", [
         ("core/intersections/triangle_pair.cpp", "beside &= (left - right < -trust) | is_start | is_end;",
          "beside = (left - right < -trust) | is_start | is_end;")]),
@@ -598,7 +610,7 @@ MUTANTS = [
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
         ("core/surface/kept_vertices.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
-        ("core/surface/mesh_corners.cpp", "for (const auto& [v, corner] : moved) vertices[v] = corner;", "")]),
+        ("core/surface/mesh_corners.cpp", "if (move.vertex != last) vertices[move.vertex] = move.to;", "")]),
     Mutant("points_beside_level_planes", "points of faces in level planes are in these exactly", [
         ("core/surface/mesh_corners.cpp", "if (std::abs(here - a[axis]) <= reach) here = a[axis];", "")]),
     Mutant("once_around_twice", "a polygon that ends where it starts has that corner once", [
@@ -640,7 +652,7 @@ MUTANTS = [
     Mutant("borders_face_in", "where the rule holds in front of faces, the border faces the other way", [
         ("core/arrangement/rule_border.cpp", ": Place::kTurned);", ": Place::kAsItIs);")]),
     Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
-        ("core/arrangement/take_apart.cpp", "order[(n + order.size() - 1) % order.size()]", "order[(n + 1) % order.size()]")]),
+        ("core/arrangement/take_apart.cpp", "(*order)[(n + order->size() - 1) % order->size()]", "(*order)[(n + 1) % order->size()]")]),
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
         ("core/arrangement/fan_cone.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
     Mutant("flat_triangles_stay", "sides that corners are near to are split there", [

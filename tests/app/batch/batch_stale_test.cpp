@@ -102,6 +102,23 @@ TEST_F(BatchStale, WorkingDirectoriesDoNotMatter) {
   EXPECT_NE(planned({meshes_}), "");
 }
 
+TEST_F(BatchStale, WhatWouldHoldAnywayChangesNothing) {
+  const std::string mesh = put("a.obj");
+  ASSERT_EQ(run_on({mesh}).status, 0);
+  EXPECT_EQ(planned({mesh}, {"--orient", "keep", "--weld", "exact", "--scale", "1.0", "--tolerance", "1e-10"}), "");
+  EXPECT_EQ(planned({mesh}, {"--field", "winding"}), "");
+  EXPECT_EQ(planned({mesh}, {"--scale", "2"}), mesh + "\toptions changed\n");
+  const std::vector<std::string> sampled{"batch", mesh, "--out-dir", out_, "--sample", "uniform=5", "--quiet"};
+  ASSERT_EQ(run_raycone(sampled).status, 0);
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), sampled.begin(), sampled.end());
+    more.push_back("--dry-run");
+    return run_raycone(more).out;
+  };
+  EXPECT_EQ(with({"--dtype", "f64", "--seed", "1"}), "");
+  EXPECT_EQ(with({"--field", "winding"}), mesh + "\toptions changed\n") << "more is asked about drawn points";
+}
+
 TEST_F(BatchStale, GridsAreKnownByWhatTheyHold) {
   const std::string mesh = put("a.obj");
   const std::string grid = dir_ / "grid.npz";

@@ -41,6 +41,11 @@ TEST(Shard, OfSlurmCountsTheTasksOfTheArray) {
     EXPECT_EQ(parse_shard("slurm").index, 1U);
     EXPECT_EQ(parse_shard("slurm").count, 1U);
   }
+  {
+    const Environment environment = array_task("9223372036854775807", "0", "9223372036854775807", "1");
+    EXPECT_EQ(parse_shard("slurm").count, std::uint64_t{1} << 63);
+    EXPECT_EQ(parse_shard("slurm").index, std::uint64_t{1} << 63);
+  }
 }
 
 TEST(Shard, OfSlurmRefusesArraysWithGaps) {

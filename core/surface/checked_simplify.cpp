@@ -42,10 +42,7 @@ bool checked_simplify(SurfaceMesh& surface, const NodeSet& inside, double most, 
         return true;
       }
     }
-    const std::vector<bool> beside = faces_beside(vertices, merged.triangles, misplaced);
-    for (std::size_t face = 0; face < beside.size(); ++face) {
-      for (const std::uint32_t corner : merged.triangles[face]) touched[corner] = touched[corner] || beside[face];
-    }
+    touch_faces_beside(vertices, merged.triangles, misplaced, touched);
     const std::vector<bool> before = kept;
     for (std::size_t v = 0; v < kept.size(); ++v) kept[v] = kept[v] || touched[merged.into[v]];
     if (kept == before) return false;  // another round would be the same

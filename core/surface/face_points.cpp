@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
@@ -161,28 +163,44 @@ bool has_few_digits(double x) {
   return same == x;
 }
 
-// Of what coordinates are rounded to, relative to the largest one: what they look like who are `so_far`, and x.
-double least_rounding(double x, double so_far) {
-  if (so_far == kDouble || (so_far == kSingle && is_single(x))) return so_far;
-  return is_single(x) || has_few_digits(x) ? kText : kDouble;
+// What numbers look like. Of many, the last one of them is what they all do.
+enum Look : int { kLikeSingle, kLikeText, kLikeDouble };
+
+Look look_of(double x) { return is_single(x) ? kLikeSingle : has_few_digits(x) ? kLikeText : kLikeDouble; }
+
+// Of vertices [begin, end) that are used, and of those seen before.
+int look_of(const TriangleMesh& mesh, const std::vector<std::uint8_t>& is_used, std::size_t begin, std::size_t end,
+            int look) {
+  for (std::size_t v = begin; v < end && look != kLikeDouble; ++v) {
+    for (int axis = 0; axis < 3 && is_used[v] != 0; ++axis) {
+      look = std::max<int>(look, look_of(mesh.vertices[v][axis]));
+    }
+  }
+  return look;
+}
+
+// What used coordinates are rounded to, relative to the largest one.
+double rounding_of(const TriangleMesh& mesh) {
+  constexpr std::size_t kPerTask = 4096;
+  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t corner : t) is_used[corner] = 1;
+  }
+  std::atomic<int> look = kLikeSingle;
+  parallel_for(is_used.size(), kPerTask, [&](std::size_t begin, std::size_t end) {
+    int known = look.load(std::memory_order_relaxed);
+    const int here = look_of(mesh, is_used, begin, end, known);
+    while (here > known && !look.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
+    }
+  });
+  return look == kLikeSingle ? kSingle : look == kLikeText ? kText : kDouble;
 }
 
 }  // namespace
 
 double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice) {
-  double largest = 0.0, rounding = kSingle;
-  std::vector<bool> is_seen(mesh.vertices.size());
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t corner : t) {
-      if (is_seen[corner]) continue;
-      is_seen[corner] = true;
-      const Vec3& p = mesh.vertices[corner];
-      largest = std::max(largest, largest_coordinate(p));
-      for (int axis = 0; axis < 3; ++axis) rounding = least_rounding(p[axis], rounding);
-    }
-  }
-  return std::max(kVoxels, std::min(kMostVoxels, rounding * largest / lattice.least_spacing())) *
-         lattice.least_spacing();
+  const double off = rounding_of(mesh) * largest_coordinate(bounding_box(mesh));
+  return std::max(kVoxels, std::min(kMostVoxels, off / lattice.least_spacing())) * lattice.least_spacing();
 }
 
 std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell, std::size_t face) {

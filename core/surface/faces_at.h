@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/mesh/vertex_faces.h"
 #include "core/surface/contour.h"
 #include "core/surface/gap.h"
 
@@ -15,24 +16,9 @@ namespace raycone {
 // The surface must stay, though it may have more faces and vertices for a while, which this does not know.
 class FacesAt {
  public:
-  explicit FacesAt(const SurfaceMesh& surface)
-      : mesh_(surface.mesh),
-        sources_(surface.sources),
-        begin_(surface.mesh.vertices.size() + 1, 0),
-        faces_(3 * surface.mesh.triangles.size()) {
-    for (const Triangle& t : mesh_.triangles) {
-      for (const std::uint32_t v : t) ++begin_[v];
-    }
-    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    // From the end of each vertex's faces backwards.
-    for (auto face = static_cast<std::uint32_t>(mesh_.triangles.size()); face-- > 0;) {
-      for (const std::uint32_t v : mesh_.triangles[face]) faces_[--begin_[v]] = face;
-    }
-  }
+  explicit FacesAt(const SurfaceMesh& surface) : mesh_(surface.mesh), sources_(surface.sources), faces_(surface.mesh) {}
 
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
-    return std::span(faces_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
-  }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const { return faces_.of(vertex); }
 
   // For gap.h.
   [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return mesh_.triangles[face]; }
@@ -51,8 +37,7 @@ class FacesAt {
  private:
   const TriangleMesh& mesh_;
   const std::vector<std::int32_t>& sources_;
-  std::vector<std::size_t> begin_;  // of each vertex
-  std::vector<std::uint32_t> faces_;
+  VertexFaces faces_;
 };
 
 }  // namespace raycone

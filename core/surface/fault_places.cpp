@@ -68,6 +68,15 @@ std::vector<bool> faces_beside(const std::vector<Vec3>& vertices, const std::vec
   return beside;
 }
 
+void touch_faces_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const NodeSet& nodes,
+                        std::vector<bool>& touched) {
+  const std::vector<bool> beside = faces_beside(vertices, triangles, nodes);
+  for (std::size_t face = 0; face < triangles.size(); ++face) {
+    if (!beside[face]) continue;
+    for (const std::uint32_t corner : triangles[face]) touched[corner] = true;
+  }
+}
+
 TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles) {
   constexpr std::uint32_t kUnused = 0xFFFFFFFF;
   std::vector<std::uint32_t> number(vertices.size(), kUnused);

@@ -89,15 +89,6 @@ bool KeptVertices::keep_near(const FaultyMerge& found, double most) {
   });
 }
 
-void KeptVertices::touch_beside(const FaultyMerge& found, std::vector<bool>& touched) const {
-  const std::vector<Triangle>& triangles = found.merged.triangles;
-  const std::vector<bool> beside = faces_beside(surface_->mesh.vertices, triangles, found.misplaced);
-  for (std::size_t face = 0; face < triangles.size(); ++face) {
-    if (!beside[face]) continue;
-    for (const std::uint32_t corner : triangles[face]) touched[corner] = true;
-  }
-}
-
 // Each time more: all that was pulled into faces with faults and into those around them, in twice as many rings; what
 // is beside nodes on the lines of misplaced ones, four times as far. At last, misplaced nodes are faults of the faces
 // next to them.
@@ -105,7 +96,7 @@ bool KeptVertices::keep_around(const FaultyMerge& found, int wide) {
   constexpr int kFacesFrom = 4;
   const std::vector<Vec3>& vertices = surface_->mesh.vertices;
   std::vector<bool> touched = vertices_at_faults(found);
-  if (wide >= kFacesFrom) touch_beside(found, touched);
+  if (wide >= kFacesFrom) touch_faces_beside(vertices, found.merged.triangles, found.misplaced, touched);
   for (int ring = 0; ring < 1 << wide; ++ring) {
     std::vector<bool> wider = touched;
     for (const Triangle& t : found.merged.triangles) {

@@ -39,7 +39,6 @@ class KeptVertices {
   bool keep_at_home(const FaultyMerge& found);
   bool keep_near(const FaultyMerge& found, double most);
   bool keep_around(const FaultyMerge& found, int wide);
-  void touch_beside(const FaultyMerge& found, std::vector<bool>& touched) const;
   template <class MayStay>
   bool keep_where(const MayStay& may_stay);
   [[nodiscard]] std::vector<bool> vertices_at_faults(const FaultyMerge& found) const;

@@ -26,10 +26,10 @@ struct SharpenLimits {
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
 // mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
 // such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
-// stay in them and keep their fronts; what is left of strips vanishes between them. Where less than three of
-// four faces are in planes, strips are judged one by one: those stay as they are of which too many faces are in none.
-// Whether faces intersect now, or nodes have changed sides, is not looked at. The
-// same for any number of threads. Needs DefaultFloatingPoint.
+// stay in them and keep their fronts; what is left of strips vanishes between them. Where less than three of four faces
+// are in planes, strips are judged one by one: those stay as they are of which too many faces are in none. Whether
+// faces intersect now, or nodes have changed sides, is not looked at. The same for any number of threads. Needs
+// DefaultFloatingPoint.
 class Sharpener {
  public:
   // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of

@@ -7,6 +7,7 @@ minutes): prints the runs that came nearest to their limits, for docs/robustness
 
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,7 @@ import time
 
 LONG = "--long" in sys.argv
 RAYCONE, MESHES = (os.path.abspath(path) for path in [word for word in sys.argv[1:] if word != "--long"][:2])
-UNITS = {"M": 1 << 20, "G": 1 << 30}
+UNITS = {"k": 1 << 10, "M": 1 << 20, "G": 1 << 30}
 LIMITS = ["32M", "64M", "128M", "256M", "512M", "1G", "2G", "4G"] if LONG else ["32M", "64M"]
 THREADS = [1, 2, 8, 64] if LONG else [1, 64]
 CASES = [(limit, threads) for limit in LIMITS for threads in THREADS] if LONG else [("32M", 64), ("64M", 1)]
@@ -88,6 +89,23 @@ class Run:
                 f"| {self.seconds:.2f} s |")
 
 
+def check_told_at_once(mesh, out):
+    """A lattice to VDB is told the same number whatever the limit is, and half as much again suffices."""
+    words = ["lattice", mesh, "-o", out + ".vdb", "--resolution", "120"]
+    first, told = None, []
+    for limit in (22, 40):
+        told += re.findall(r"needs about (\d+) MB of memory, but", Run("told", words, f"{limit}M", 1).message)
+    if len(told) == 2 and abs(int(told[0]) - int(told[1])) < 5:  # memory in use differs from run to run
+        first = Run("told", words, f"{3 * int(told[0]) // 2}M", 1)
+    return [] if first and first.status == 0 else [f"told: {told} MB, and {first}"]
+
+
+def near_limits(mesh, out, count):
+    """Limits from what is told to what suffices, where memory ends anywhere, also in libraries: level sets to VDB."""
+    words = ["lattice", mesh, "-o", out + ".vdb", "--field", "sdf", "--resolution", "300"]
+    return [Run("near limits", words, f"{(60 << 10) + (10 << 10) * n // count}k", 2) for n in range(count)]
+
+
 def check_batch(meshes, limit, out, runs):
     """Per worker, as its row says; a mesh that does not fit costs only its row."""
     process = subprocess.run([RAYCONE, "batch", *meshes, "--out-dir", out, "--format", "npy", "--resolution", "64", "--quiet",
@@ -120,8 +138,10 @@ def main():
                 for of, mesh, resolution in meshes
                 for limit, threads in CASES
                 for name, arguments in commands(mesh, resolution, points, os.path.join(directory, "out"))]
+        runs += near_limits(teapot, os.path.join(directory, "out"), 200 if LONG else 12)
         count = [len(runs)]
         wrong = [f"{run} {run.message}" for run in runs if not run.is_right()]
+        wrong += check_told_at_once(teapot, os.path.join(directory, "out"))
         for limit in LIMITS:
             wrong += check_batch([sheets, sphere, teapot], limit, os.path.join(directory, "batch" + limit), count)
     nearest = sorted(runs, key=lambda run: -run.share)

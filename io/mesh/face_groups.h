@@ -69,7 +69,7 @@ class GroupCollector {
   std::optional<Named> last_;
   FaceGroups groups_;
   std::vector<std::uint64_t> missing_;                             // of their names
-  std::unordered_multimap<std::uint64_t, std::uint32_t> numbers_;  // by hashes of names, but of groups of their own
+  std::unordered_multimap<std::uint64_t, std::uint32_t> numbers_;  // by hashes of names; none of start_group()
 };
 
 }  // namespace raycone

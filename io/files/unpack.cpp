@@ -220,6 +220,9 @@ class ZstandardSource final : public DecodingSource {
     const std::size_t result = ZSTD_decompressStream(state_.get(), &out, &in);
     input().consume(in.pos);
     if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+    if (ZSTD_getErrorCode(result) == ZSTD_error_frameParameter_windowTooLarge) {
+      input().fail("a window of more than 2 GB, expected a smaller one (zstd --long=31 or less)");
+    }
     if (ZSTD_isError(result)) fail_as_damaged(ZSTD_getErrorName(result));
     within_ = result != 0;
     return out.pos;

@@ -141,6 +141,14 @@ std::string zstandard_frame(char byte, std::uint32_t times, char window = '\x38'
 TEST(Unpack, TakesZstandardFramesOfLargeWindows) {
   constexpr char kQuarterOfGigabyte = '\x90';
   EXPECT_EQ(arrived(zstandard_frame('a', 7, kQuarterOfGigabyte)), "aaaaaaa");
+  constexpr char kFourGigabytes = '\xB0';
+  try {
+    arrived(zstandard_frame('a', 7, kFourGigabytes));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a window of more than 2 GB, expected"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(Unpack, GivesAllThatHasComeOfZstandardFrames) {

@@ -134,9 +134,7 @@ Tally FieldEvaluator::evaluate(const PlacedLattice& lattice, const LatticeBlock&
   }
   std::vector<Vec3> points(static_cast<std::size_t>(block.size()));
   constexpr std::size_t kGrain = std::size_t{1} << 14;
-  parallel_for(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) points[n] = lattice.position(block, n);
-  });
+  parallel_for_each(points.size(), kGrain, [&](std::size_t n) { points[n] = lattice.position(block, n); });
   return evaluate_points(points, band_width, samples, done);
 }
 

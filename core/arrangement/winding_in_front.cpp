@@ -86,17 +86,15 @@ class Rays {
     const RayGrid grid(places);  // rounding keeps the order of coordinates, by which it finds rays
     std::vector<std::atomic<std::int64_t>> sums(probes.size());
     std::vector<std::atomic<bool>> at_edges(probes.size());
-    parallel_for(mesh_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        const auto& [a, b, c] = mesh_.triangles[n];
-        const std::array<Vec3, 3> face{mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
-        constexpr double kAll = -std::numeric_limits<double>::infinity();
-        grid.for_each_ray(turned(face[0]), turned(face[1]), turned(face[2]), kAll, [&](std::size_t i) {
-          const Meeting meeting = meeting_of(probes[i].point, axis, face, points);
-          sums[i] += meeting.leaves;
-          if (meeting.at_edge) at_edges[i] = true;
-        });
-      }
+    parallel_for_each(mesh_.triangles.size(), kGrain, [&](std::size_t n) {
+      const auto& [a, b, c] = mesh_.triangles[n];
+      const std::array<Vec3, 3> face{mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+      constexpr double kAll = -std::numeric_limits<double>::infinity();
+      grid.for_each_ray(turned(face[0]), turned(face[1]), turned(face[2]), kAll, [&](std::size_t i) {
+        const Meeting meeting = meeting_of(probes[i].point, axis, face, points);
+        sums[i] += meeting.leaves;
+        if (meeting.at_edge) at_edges[i] = true;
+      });
     });
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const auto& [n, point, looks_along] = probes[i];

@@ -12,13 +12,6 @@ namespace {
 constexpr double kPlaneError = 0x1p-44;
 constexpr double kLeastLength = 0x1p-200;
 
-bool overlap(const Box& a, const Box& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(a.lower[axis] <= b.upper[axis] && b.lower[axis] <= a.upper[axis])) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 FlatPiece FlatPiece::of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Box& box) {

@@ -80,12 +80,10 @@ std::vector<Filed> filed(const std::vector<SolidTriangle>& all) {
 std::vector<SolidTriangle> solid_triangles(const TriangleMesh& mesh) {
   constexpr std::size_t kPerTask = 4096;
   std::vector<SolidTriangle> all(mesh.triangles.size());
-  parallel_for(all.size(), kPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& t = mesh.triangles[i];
-      const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-      all[i] = collinear(a, b, c) ? SolidTriangle{a, b, c, {}, 0.0} : with_sorted_corners(a, b, c);
-    }
+  parallel_for_each(all.size(), kPerTask, [&](std::size_t i) {
+    const Triangle& t = mesh.triangles[i];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    all[i] = collinear(a, b, c) ? SolidTriangle{a, b, c, {}, 0.0} : with_sorted_corners(a, b, c);
   });
   return all;
 }

@@ -80,9 +80,7 @@ void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, c
 // no row, and need nothing else.
 void scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
   std::vector<VertexRows> at(mesh.vertices.size());
-  parallel_for(at.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) at[i] = rows_at(mesh.vertices[i], rows);
-  });
+  parallel_for_each(at.size(), kVerticesPerTask, [&](std::size_t i) { at[i] = rows_at(mesh.vertices[i], rows); });
   parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     LatticeSums::Collector collector(sums);
     for (std::size_t i = begin; i < end; ++i) {

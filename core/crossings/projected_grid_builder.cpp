@@ -55,9 +55,8 @@ void ProjectedGridBuilder::set_triangles() {
   constexpr std::size_t kCodesPerBucket = 16;
   const std::size_t count = mesh_.triangles.size();
   std::vector<std::uint16_t> codes(count);
-  parallel_for(count, kTrianglesOfATask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) codes[i] = result_.morton_code(mesh_.vertices[mesh_.triangles[i][0]]);
-  });
+  parallel_for_each(count, kTrianglesOfATask,
+                    [&](std::size_t i) { codes[i] = result_.morton_code(mesh_.vertices[mesh_.triangles[i][0]]); });
   const Buckets<std::uint32_t> buckets(count, ProjectedGrid::kMortonCodes / kCodesPerBucket,
                                        [&](std::size_t begin, std::size_t end, auto emit) {
                                          for (std::size_t i = begin; i < end; ++i)
@@ -67,12 +66,10 @@ void ProjectedGridBuilder::set_triangles() {
   result_.triangles_.assign(in_order.begin(), in_order.end());
   result_.filters_ = std::make_unique_for_overwrite<ProjectedGrid::Filter[]>(count);
   footprints_ = std::make_unique_for_overwrite<Footprint[]>(count);
-  parallel_for(count, kTrianglesOfATask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& t = mesh_.triangles[in_order[i]];
-      result_.filters_[i] = result_.filter_of(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
-      footprints_[i] = footprint(t);
-    }
+  parallel_for_each(count, kTrianglesOfATask, [&](std::size_t i) {
+    const Triangle& t = mesh_.triangles[in_order[i]];
+    result_.filters_[i] = result_.filter_of(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+    footprints_[i] = footprint(t);
   });
 }
 

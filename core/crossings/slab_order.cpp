@@ -64,14 +64,12 @@ std::vector<std::uint32_t> ordered(const TriangleMesh& mesh, int axis) {
 SlabOrder::SlabOrder(const TriangleMesh& mesh, int axis)
     : triangles_(ordered(mesh, axis)), groups_((triangles_.size() + kGroup - 1) / kGroup) {
   constexpr std::size_t kGroupsOfATask = 64;
-  parallel_for(groups_.size(), kGroupsOfATask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::span<const std::uint32_t> group = (*this)[static_cast<std::uint32_t>(n)];
-      groups_[n] = extent_of(mesh, mesh.triangles[group.front()], axis);
-      for (const std::uint32_t triangle : group) {
-        const Interval one = extent_of(mesh, mesh.triangles[triangle], axis);
-        groups_[n] = {std::min(groups_[n].lower, one.lower), std::max(groups_[n].upper, one.upper)};
-      }
+  parallel_for_each(groups_.size(), kGroupsOfATask, [&](std::size_t n) {
+    const std::span<const std::uint32_t> group = (*this)[static_cast<std::uint32_t>(n)];
+    groups_[n] = extent_of(mesh, mesh.triangles[group.front()], axis);
+    for (const std::uint32_t triangle : group) {
+      const Interval one = extent_of(mesh, mesh.triangles[triangle], axis);
+      groups_[n] = {std::min(groups_[n].lower, one.lower), std::max(groups_[n].upper, one.upper)};
     }
   });
 }

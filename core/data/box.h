@@ -56,6 +56,23 @@ inline int longest_axis(const Box& box) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
+// Whether two boxes have a point in common; false where a coordinate is not a number.
+inline bool overlap(const Box& a, const Box& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(a.lower[axis] <= b.upper[axis] && b.lower[axis] <= a.upper[axis])) return false;
+  }
+  return true;
+}
+
+// Whether a box has all of another one, or a point.
+inline bool contains(const Box& outer, const Box& inner) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(outer.lower[axis] <= inner.lower[axis] && inner.upper[axis] <= outer.upper[axis])) return false;
+  }
+  return true;
+}
+inline bool contains(const Box& box, const Vec3& p) { return contains(box, Box{p, p}); }
+
 // Of the distance between two boxes, and between a box and a point, the square; 0 where they meet.
 inline double square_of_gap(const Box& a, const Box& b) {
   double sum = 0.0;

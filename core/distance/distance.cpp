@@ -31,9 +31,7 @@ void for_each_point(std::span<const Vec3> points, const Visit& visit) {
   constexpr unsigned kBits = 10, kBucketBits = 12, kNumberBits = 32;
   static_assert(kMost <= std::size_t{1} << kNumberBits && 3 * kBits + kNumberBits <= 64);
   if (points.size() < kFew) {
-    return parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) visit(n);
-    });
+    return parallel_for_each(points.size(), kPointsPerTask, visit);
   }
   for (std::size_t first = 0; first < points.size(); first += kMost) {
     const std::span<const Vec3> here = points.subspan(first, std::min(kMost, points.size() - first));
@@ -49,9 +47,8 @@ void for_each_point(std::span<const Vec3> points, const Visit& visit) {
     const Buckets<std::uint64_t> buckets(here.size(), std::size_t{1} << kBucketBits, add);
     parallel_for_each(buckets.count(), [&](std::size_t n) { std::ranges::sort(buckets[n]); });
     const std::span<const std::uint64_t> order = buckets.all();
-    parallel_for(order.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) visit(first + static_cast<std::uint32_t>(order[n]));
-    });
+    parallel_for_each(order.size(), kPointsPerTask,
+                      [&](std::size_t n) { visit(first + static_cast<std::uint32_t>(order[n])); });
   }
 }
 

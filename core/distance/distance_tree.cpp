@@ -32,12 +32,10 @@ std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<c
                                            std::span<Box> boxes) {
   auto packs = std::make_unique_for_overwrite<TrianglePack[]>(boxes.size());
   constexpr std::size_t kPacksPerTask = 256;
-  parallel_for(boxes.size(), kPacksPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t first = n * kWidth;
-      packs[n].set(mesh, triangles.subspan(first, std::min(kWidth, triangles.size() - first)));
-      boxes[n] = box_of_columns(packs[n]);
-    }
+  parallel_for_each(boxes.size(), kPacksPerTask, [&](std::size_t n) {
+    const std::size_t first = n * kWidth;
+    packs[n].set(mesh, triangles.subspan(first, std::min(kWidth, triangles.size() - first)));
+    boxes[n] = box_of_columns(packs[n]);
   });
   return packs;
 }

@@ -90,13 +90,11 @@ class CoherentOrder {
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
     constexpr std::size_t kPointsPerTask = 4096;
-    parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const bool taken = mesh.can_take(points[i]);
-        if (!taken) all_taken = false;
-        const auto group = taken ? blocks.group_of(mesh.to_scale(points[i])) : std::nullopt;
-        keys.of_points[i] = group ? *group + 1 : kOutside;
-      }
+    parallel_for_each(points.size(), kPointsPerTask, [&](std::size_t i) {
+      const bool taken = mesh.can_take(points[i]);
+      if (!taken) all_taken = false;
+      const auto group = taken ? blocks.group_of(mesh.to_scale(points[i])) : std::nullopt;
+      keys.of_points[i] = group ? *group + 1 : kOutside;
     });
     keys.all_taken = all_taken;
     std::vector<std::uint8_t> used(std::size_t{blocks.groups()} + 1);

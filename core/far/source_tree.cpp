@@ -124,9 +124,7 @@ void SourceTree::build() {
   std::size_t coefficients = 0;
   corners_ = SharedCorners(triangles_);
   constexpr std::size_t kPerTask = 64;  // nodes
-  parallel_for(nodes_.size(), kPerTask, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) measure(nodes_[n]);
-  });
+  parallel_for_each(nodes_.size(), kPerTask, [&](std::size_t n) { measure(nodes_[n]); });
   for (SourceNode& node : nodes_) {
     node.first_chunk = static_cast<std::uint32_t>(corners_.chunks());
     corners_.add_group(node.own_end - node.begin);

@@ -78,14 +78,12 @@ std::vector<std::uint32_t> triangles_along_curve(const TriangleMesh& mesh) {
                                          }
                                        });
   std::vector<std::uint32_t> triangles(mesh.triangles.size());
-  parallel_for(buckets.count(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::span<std::uint64_t> bucket = buckets[n];
-      std::ranges::sort(bucket);
-      std::ranges::transform(bucket, triangles.begin() + (bucket.data() - buckets[0].data()), [](std::uint64_t at) {
-        return static_cast<std::uint32_t>(at & ((std::uint64_t{1} << kNumberBits) - 1));
-      });
-    }
+  parallel_for_each(buckets.count(), 16, [&](std::size_t n) {
+    const std::span<std::uint64_t> bucket = buckets[n];
+    std::ranges::sort(bucket);
+    std::ranges::transform(bucket, triangles.begin() + (bucket.data() - buckets[0].data()), [](std::uint64_t at) {
+      return static_cast<std::uint32_t>(at & ((std::uint64_t{1} << kNumberBits) - 1));
+    });
   });
   return triangles;
 }
@@ -178,12 +176,10 @@ class PairTree {
         triangles_(order == SearchOrder::kRuns ? triangles_in_runs(mesh, kWidth) : triangles_along_curve(mesh)) {
     Level level((triangles_.size() + kWidth - 1) / kWidth);
     std::vector<Box> boxes(level.size());
-    parallel_for(level.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t run = begin; run < end; ++run) {
-        const RunBoxes of_run(*this, run);
-        boxes[run] = of_run.all();
-        level[run] = of_run.node();
-      }
+    parallel_for_each(level.size(), kGrain, [&](std::size_t run) {
+      const RunBoxes of_run(*this, run);
+      boxes[run] = of_run.all();
+      level[run] = of_run.node();
     });
     while (level.size() > 1) {
       levels_.push_back(std::move(level));

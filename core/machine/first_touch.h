@@ -17,9 +17,7 @@ void resize_on_all_threads(std::vector<Item>& v, std::size_t size) {
     v.reserve(size);
     const std::size_t begin = v.size() * sizeof(Item), pages = (size * sizeof(Item) - begin) / kPage;
     volatile unsigned char* const bytes = reinterpret_cast<volatile unsigned char*>(v.data()) + begin;
-    parallel_for(pages, kPagesPerTask, [&](std::size_t first, std::size_t last) {
-      for (std::size_t page = first; page < last; ++page) bytes[page * kPage] = 0;
-    });
+    parallel_for_each(pages, kPagesPerTask, [&](std::size_t page) { bytes[page * kPage] = 0; });
   }
   v.resize(size);
 }

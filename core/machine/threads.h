@@ -47,12 +47,18 @@ void prime_threads();
 // need before the loop.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
-// Calls body(n) for each n below `count`, as parallel_for() of grain 1 does. For bodies that take some microseconds.
+// Calls body(n) for each n below `count`, as parallel_for() does for ranges of them.
 template <class Body>
-void parallel_for_each(std::size_t count, const Body& body) {
-  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+void parallel_for_each(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) body(n);
   });
+}
+
+// Of grain 1: for bodies that take some microseconds.
+template <class Body>
+void parallel_for_each(std::size_t count, const Body& body) {
+  parallel_for_each(count, 1, body);
 }
 
 // Calls work(), which may use threads by other means than parallel_for(). It takes no part in loops outside either.

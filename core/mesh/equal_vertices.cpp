@@ -58,10 +58,8 @@ void find_first(const Buckets<HashedVertex>& buckets, const Same& same, std::vec
 bool all_equal(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& first) {
   constexpr std::size_t kVerticesPerTask = 4096;
   std::atomic<bool> equal = true;
-  parallel_for(vertices.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!same_bits(vertices[i], vertices[first[i]])) equal = false;
-    }
+  parallel_for_each(vertices.size(), kVerticesPerTask, [&](std::size_t i) {
+    if (!same_bits(vertices[i], vertices[first[i]])) equal = false;
   });
   return equal;
 }

@@ -20,8 +20,8 @@ struct FaceEdge {
   [[nodiscard]] bool is_same_edge(const FaceEdge& other) const { return low == other.low && high == other.high; }
 };
 
-// Sorted by low, then high, then face. Uses the threads that ThreadLimit allows. Preconditions: no triangle has two equal
-// corners, fewer than 2^32 triangles.
+// Sorted by low, then high, then face; a triangle with two equal corners has its one edge twice. Uses the threads that
+// ThreadLimit allows. Precondition: fewer than 2^32 triangles.
 [[nodiscard]] std::vector<FaceEdge> face_edges(const std::vector<Triangle>& triangles);
 
 // Calls visit(faces) for each edge, in this order, with those that have it. Of what face_edges() returns.

@@ -146,9 +146,7 @@ std::vector<std::optional<std::vector<Triangle>>> cut(const TriangleMesh& mesh, 
                                                       std::span<const std::size_t> indices) {
   std::vector<std::optional<std::vector<Triangle>>> parts(indices.size());
   constexpr std::size_t kGrain = 64;
-  parallel_for(indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) parts[i] = cut(mesh, fans[indices[i]]);
-  });
+  parallel_for_each(indices.size(), kGrain, [&](std::size_t i) { parts[i] = cut(mesh, fans[indices[i]]); });
   return parts;
 }
 

@@ -99,9 +99,7 @@ std::vector<double> crossing_votes(const std::vector<Triangle>& faces, const std
   const std::size_t voting = samples_that_vote(faces, vertices, samples);
   for (int axis = 0; axis < 3; ++axis) {
     const AxisRays rays(faces, vertices, axis);
-    parallel_for(voting, kSamplesPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) votes[k] += rays.vote(samples[k]);
-    });
+    parallel_for_each(voting, kSamplesPerTask, [&](std::size_t k) { votes[k] += rays.vote(samples[k]); });
   }
   return votes;
 }

@@ -14,13 +14,6 @@
 namespace raycone {
 namespace {
 
-bool holds_box(const Box& outer, const Box& inner) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (inner.lower[axis] < outer.lower[axis] || inner.upper[axis] > outer.upper[axis]) return false;
-  }
-  return true;
-}
-
 // That along which the fewest boxes lie beside each other: of all parts in a plane, one within it.
 int axis_to_sweep(const std::vector<Box>& boxes) {
   Box all = empty_box();
@@ -47,8 +40,8 @@ std::vector<std::vector<std::uint32_t>> boxes_around(const std::vector<Box>& box
   for (const std::uint32_t i : order) {
     std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper[axis] < boxes[i].lower[axis]; });
     for (const std::uint32_t j : met) {
-      if (holds_box(boxes[j], boxes[i])) around[i].push_back(j);
-      if (holds_box(boxes[i], boxes[j])) around[j].push_back(i);
+      if (contains(boxes[j], boxes[i])) around[i].push_back(j);
+      if (contains(boxes[i], boxes[j])) around[j].push_back(i);
     }
     met.push_back(i);
   }

@@ -62,17 +62,14 @@ class OpenSurfaceTurner::Search {
     constexpr std::size_t kSamples = 1024, kMost = 64;
     const std::size_t each = std::clamp(kSamples / surfaces.size(), surfaces.size() <= kFewSurfaces ? 2UL : 1UL, kMost);
     surfaces_.resize(surfaces.size());
-    parallel_for(surfaces.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::vector<Triangle>& faces = surfaces[i].faces;
-        TurningSurface& turning = surfaces_[i];
-        turning = {&faces, i, first_canonical_face(faces, numbered_.exact), sample_surface(faces, numbered_, each),
-                   0.0};
-        for (SurfaceSample& sample : turning.samples) {
-          sample.side *= turning.first.sign;
-          sample.face.sign *= turning.first.sign;
-          turning.weight += sample.weight;
-        }
+    parallel_for_each(surfaces.size(), 16, [&](std::size_t i) {
+      const std::vector<Triangle>& faces = surfaces[i].faces;
+      TurningSurface& turning = surfaces_[i];
+      turning = {&faces, i, first_canonical_face(faces, numbered_.exact), sample_surface(faces, numbered_, each), 0.0};
+      for (SurfaceSample& sample : turning.samples) {
+        sample.side *= turning.first.sign;
+        sample.face.sign *= turning.first.sign;
+        turning.weight += sample.weight;
       }
     });
     std::sort(surfaces_.begin(), surfaces_.end(), [](const TurningSurface& a, const TurningSurface& b) {
@@ -169,11 +166,9 @@ class OpenSurfaceTurner::Search {
     constexpr std::size_t kTried = 256, kMostNear = 96;
     constexpr double kLeastReach = 0x1p-40;  // of the size of a mesh in scale
     std::vector<SurfaceDipole> dipoles(surfaces_.size());
-    parallel_for(surfaces_.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign < 0);
-        if (i < kLargestSurfaces) dipoles[i].area = {};
-      }
+    parallel_for_each(surfaces_.size(), 64, [&](std::size_t i) {
+      dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign < 0);
+      if (i < kLargestSurfaces) dipoles[i].area = {};
     });
     // Samples may lie on the centres of many surfaces: to them all is far at last.
     for (double reach = 1.0;; reach = reach > kLeastReach ? reach / 2 : 0.0) {
@@ -191,12 +186,10 @@ class OpenSurfaceTurner::Search {
   // For each surface the samples that it is near.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> near_samples(const DipoleTree& tree) const {
     std::vector<std::vector<std::uint32_t>> near_surfaces(samples_.size());
-    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        tree.for_each_near(samples_[k].at, [&](std::uint32_t surface) {
-          if (surface >= kLargestSurfaces && !is_own(surface, k)) near_surfaces[k].push_back(surface);
-        });
-      }
+    parallel_for_each(samples_.size(), 256, [&](std::size_t k) {
+      tree.for_each_near(samples_[k].at, [&](std::uint32_t surface) {
+        if (surface >= kLargestSurfaces && !is_own(surface, k)) near_surfaces[k].push_back(surface);
+      });
     });
     std::vector<std::vector<std::uint32_t>> result(surfaces_.size(), std::vector<std::uint32_t>());
     for (std::size_t i = 0; i < kLargestSurfaces; ++i) result[i] = all_samples();
@@ -214,9 +207,7 @@ class OpenSurfaceTurner::Search {
   [[nodiscard]] std::vector<double> with_far(DipoleTree& tree, const std::vector<int>& turn) const {
     tree.set_signs(turn);
     std::vector<double> rest = constant_;
-    parallel_for(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) rest[k] += tree.far_sum(samples_[k].at);
-    });
+    parallel_for_each(samples_.size(), 256, [&](std::size_t k) { rest[k] += tree.far_sum(samples_[k].at); });
     for (std::uint32_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
       for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) {
         rest[k] -= turn[i] * tree.far_part(i, samples_[k].at);

@@ -9,7 +9,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/equal_vertices.h"
 #include "core/orientation/closed_patches.h"
-#include "core/orientation/face_edges.h"
+#include "core/orientation/face_neighbours.h"
 #include "core/orientation/open_bodies.h"
 #include "core/orientation/open_patches.h"
 #include "core/orientation/patches.h"
@@ -192,9 +192,10 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
 }
 
 // As OrientationCounts says. `turn` as for fates().
-std::uint64_t wall_edges(const UniqueFaces& unique, const FaceEdges& edges, const std::vector<std::int8_t>& turn) {
+std::uint64_t wall_edges(const UniqueFaces& unique, const FaceNeighbours& neighbours,
+                         const std::vector<std::int8_t>& turn) {
   std::uint64_t count = 0;
-  for (const UnpairedEdge& edge : edges.unpaired()) {
+  for (const UnpairedEdge& edge : neighbours.unpaired()) {
     bool has_others = false;
     int walls = 0, others = 0;
     for (const FaceAtEdge& at : edge.faces) {
@@ -218,9 +219,9 @@ std::vector<std::uint32_t> positions(const TriangleMesh& mesh, bool is_welded) {
 OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   const DefaultFloatingPoint guard;
   const UniqueFaces unique = unique_faces(mesh, positions(mesh, is_welded));
-  const FaceEdges edges(unique.corners, mesh.vertices.size());
-  const Patches patches = find_patches(unique.corners, edges, mesh.vertices);
-  const Pieces pieces = find_pieces(patches, edges, unique.vote);
+  const FaceNeighbours neighbours(unique.corners, mesh.vertices.size());
+  const Patches patches = find_patches(unique.corners, neighbours, mesh.vertices);
+  const Pieces pieces = find_pieces(patches, neighbours, unique.vote);
   const std::vector<Vec3> vertices = scaled_vertices(mesh);
   const std::vector<int> turn_of_piece = PieceTurner(faces_of_pieces(unique, patches, pieces), pieces, vertices).turn();
   std::vector<std::int8_t> turn(patches.sign);
@@ -232,7 +233,7 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   OrientedMesh result = with_fates(std::move(mesh), fate);
   result.counts.patches = patches.size();
   result.counts.cut_edges = patches.cut_edges;
-  result.counts.wall_edges = wall_edges(unique, edges, turn);
+  result.counts.wall_edges = wall_edges(unique, neighbours, turn);
   return result;
 }
 

@@ -12,8 +12,8 @@ constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;
 
 class PatchFinder {
  public:
-  PatchFinder(const std::vector<Triangle>& faces, const FaceEdges& edges, const std::vector<Vec3>& vertices)
-      : faces_(faces), edges_(edges), vertices_(vertices) {}
+  PatchFinder(const std::vector<Triangle>& faces, const FaceNeighbours& neighbours, const std::vector<Vec3>& vertices)
+      : faces_(faces), neighbours_(neighbours), vertices_(vertices) {}
 
   Patches find() {
     patches_.sign.assign(faces_.size(), 0);
@@ -33,7 +33,7 @@ class PatchFinder {
   template <class Visit>
   void for_each_neighbour(std::uint32_t face, const Visit& visit) const {
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (const FaceNeighbour other = edges_.neighbour(face, corner); other.agrees != 0) visit(other);
+      if (const FaceNeighbour other = neighbours_.neighbour(face, corner); other.agrees != 0) visit(other);
     }
   }
 
@@ -144,7 +144,7 @@ class PatchFinder {
   }
 
   const std::vector<Triangle>& faces_;
-  const FaceEdges& edges_;
+  const FaceNeighbours& neighbours_;
   const std::vector<Vec3>& vertices_;
   std::vector<std::uint32_t> rank_;  // of the faces of patches that are cut, along their order
   Patches patches_;
@@ -152,8 +152,9 @@ class PatchFinder {
 
 }  // namespace
 
-Patches find_patches(const std::vector<Triangle>& faces, const FaceEdges& edges, const std::vector<Vec3>& vertices) {
-  return PatchFinder(faces, edges, vertices).find();
+Patches find_patches(const std::vector<Triangle>& faces, const FaceNeighbours& neighbours,
+                     const std::vector<Vec3>& vertices) {
+  return PatchFinder(faces, neighbours, vertices).find();
 }
 
 }  // namespace raycone

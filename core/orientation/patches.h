@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/orientation/face_edges.h"
+#include "core/orientation/face_neighbours.h"
 
 namespace raycone {
 
@@ -25,7 +25,7 @@ struct Patches {
 // Faces joined across the edges that exactly two of them share, and turned to agree there. Where that is impossible,
 // edges are cut: few, not the fewest, and which ones depends on coordinates only. Takes time in proportion to the
 // faces, those on patches that are cut to n log n.
-[[nodiscard]] Patches find_patches(const std::vector<Triangle>& faces, const FaceEdges& edges,
+[[nodiscard]] Patches find_patches(const std::vector<Triangle>& faces, const FaceNeighbours& neighbours,
                                    const std::vector<Vec3>& vertices);
 
 }  // namespace raycone

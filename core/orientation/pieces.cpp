@@ -21,7 +21,7 @@ struct PieceLink {
 
 class PieceFinder {
  public:
-  PieceFinder(const Patches& patches, const FaceEdges& edges) : patches_(patches), edges_(edges) {
+  PieceFinder(const Patches& patches, const FaceNeighbours& neighbours) : patches_(patches), neighbours_(neighbours) {
     pieces_.sign.assign(patches.size(), 1);
     for (std::uint32_t patch = 0; patch < patches.size(); ++patch) pieces_.of_patch.push_back(patch);
     pieces_.is_closed.assign(patches.size(), 1);
@@ -31,7 +31,7 @@ class PieceFinder {
     join_as_stored(vote);
     while (join()) {
     }
-    for (const UnpairedEdge& edge : edges_.unpaired()) {
+    for (const UnpairedEdge& edge : neighbours_.unpaired()) {
       for (const NetUse& use : net_uses(edge)) pieces_.is_closed[use.piece] = 0;
     }
     for_each_cut_patch([this](std::uint32_t patch) { pieces_.is_closed[pieces_.of_patch[patch]] = 0; });
@@ -90,7 +90,7 @@ class PieceFinder {
     std::vector<std::uint8_t> hinders(patches_.size(), 0);
     std::vector<std::vector<PieceLink>> links(patches_.size());
     for (std::uint32_t patch = 0; patch < patches_.size(); ++patch) hinders[patch] = stored[patch] == Stored::kMixed;
-    for (const UnpairedEdge& edge : edges_.unpaired()) {
+    for (const UnpairedEdge& edge : neighbours_.unpaired()) {
       std::vector<NetUse> uses = net_uses(edge);
       std::erase_if(uses, [&](const NetUse& use) { return stored[use.piece] == Stored::kWithoutOpinion; });
       int sum = 0;
@@ -109,7 +109,7 @@ class PieceFinder {
   // What becomes one piece, turned so; false where there is nothing to join.
   bool join() {
     std::vector<std::vector<PieceLink>> links(pieces_.size());
-    for (const UnpairedEdge& edge : edges_.unpaired()) {
+    for (const UnpairedEdge& edge : neighbours_.unpaired()) {
       if (edge.faces.size() < 2) continue;
       const std::vector<NetUse> uses = net_uses(edge);
       if (uses.size() != 2 || std::abs(uses[0].net) != std::abs(uses[1].net)) continue;
@@ -169,7 +169,7 @@ class PieceFinder {
     if (patches_.cut_edges == 0) return;
     for (std::uint32_t face = 0; face < patches_.of_face.size(); ++face) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
-        const FaceNeighbour other = edges_.neighbour(face, corner);
+        const FaceNeighbour other = neighbours_.neighbour(face, corner);
         if (other.agrees == 0 || patches_.sign[face] * patches_.sign[other.face] == other.agrees) continue;
         visit(patches_.of_face[face]);
       }
@@ -177,14 +177,14 @@ class PieceFinder {
   }
 
   const Patches& patches_;
-  const FaceEdges& edges_;
+  const FaceNeighbours& neighbours_;
   Pieces pieces_;
 };
 
 }  // namespace
 
-Pieces find_pieces(const Patches& patches, const FaceEdges& edges, const std::vector<std::int8_t>& vote) {
-  return PieceFinder(patches, edges).find(vote);
+Pieces find_pieces(const Patches& patches, const FaceNeighbours& neighbours, const std::vector<std::int8_t>& vote) {
+  return PieceFinder(patches, neighbours).find(vote);
 }
 
 }  // namespace raycone

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/orientation/face_edges.h"
+#include "core/orientation/face_neighbours.h"
 #include "core/orientation/patches.h"
 
 namespace raycone {
@@ -22,9 +22,10 @@ struct Pieces {
 // `vote`: per face, how it is stored (core/orientation/unique_faces.h). Patches whose faces all agree as stored, and
 // that have no boundary together as they are stored, keep their relations; faces that are stored as often either way
 // cancel there. Others are joined as edges wish; where wishes contradict each other, they are not. The result does not
-// depend on the order of faces, but for the numbers of pieces and for which of the two orientations is 1. Takes the time
-// of all edges once for each round in which patches are joined: few, but for chains of patches of which each decides
-// about the next.
-[[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceEdges& edges, const std::vector<std::int8_t>& vote);
+// depend on the order of faces, but for the numbers of pieces and for which of the two orientations is 1. Takes the
+// time of all edges once for each round in which patches are joined: few, but for chains of patches of which each
+// decides about the next.
+[[nodiscard]] Pieces find_pieces(const Patches& patches, const FaceNeighbours& neighbours,
+                                 const std::vector<std::int8_t>& vote);
 
 }  // namespace raycone

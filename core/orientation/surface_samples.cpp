@@ -115,9 +115,7 @@ int side_of_perturbed(const CanonicalFace& face, const Vec3& q) {
 NumberedVertices::NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact_vertices)
     : at(std::move(moved)), number(at.size()), exact(exact_vertices) {
   constexpr std::size_t kGrain = 4096;
-  parallel_for(at.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) number[v] = hash_of(at[v]);
-  });
+  parallel_for_each(at.size(), kGrain, [&](std::size_t v) { number[v] = hash_of(at[v]); });
 }
 
 std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, const NumberedVertices& vertices,

@@ -170,18 +170,14 @@ PointSampler::Drawn PointSampler::drawn(std::uint64_t number) const {
 }
 
 void PointSampler::draw(std::uint64_t first, std::span<Vec3> points) const {
-  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) points[n] = drawn(first + n).point;
-  });
+  parallel_for_each(points.size(), kPointsPerTask, [&](std::size_t n) { points[n] = drawn(first + n).point; });
 }
 
 void PointSampler::draw(std::uint64_t first, std::span<Vec3> points, std::span<std::int64_t> faces) const {
-  parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Drawn one = drawn(first + n);
-      points[n] = one.point;
-      faces[n] = one.face;
-    }
+  parallel_for_each(points.size(), kPointsPerTask, [&](std::size_t n) {
+    const Drawn one = drawn(first + n);
+    points[n] = one.point;
+    faces[n] = one.face;
   });
 }
 

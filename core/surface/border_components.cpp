@@ -9,7 +9,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/exact/volume_sign.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/surface/fault_places.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/components.h"
-#include "core/surface/contour.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

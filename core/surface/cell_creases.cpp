@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <numeric>
-#include <tuple>
+#include <span>
 
+#include "core/mesh/disjoint_sets.h"
+#include "core/mesh/face_edges.h"
 #include "core/surface/edge_crossing.h"
 #include "core/surface/planes_point.h"
 
@@ -17,31 +18,17 @@ constexpr double kFlat = 0.999999999999995;    // cos 1e-7
 
 constexpr double kTouch = 1e-9;  // of barycentric coordinates, where a crease only touches a tetrahedron
 
-// A triangle's side, from the lower vertex to the higher one or back.
-struct SideUse {
-  std::uint32_t low, high, triangle;
-  std::uint8_t side;
-  bool forward;
-};
-
-std::vector<SideUse> uses_of(const TriangleMesh& mesh) {
-  std::vector<SideUse> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const Triangle& t = mesh.triangles[triangle];
-    for (std::uint8_t side = 0; side < 3; ++side) {
-      const std::uint32_t a = t[side], b = t[(side + 1U) % 3U];
-      if (a != b) uses.push_back({std::min(a, b), std::max(a, b), triangle, side, a < b});
-    }
-  }
-  std::ranges::sort(uses, {}, [](const SideUse& use) { return std::tuple(use.low, use.high, use.triangle, use.side); });
-  return uses;
+// The side of a triangle that is this edge.
+unsigned side_of(const TriangleMesh& mesh, const FaceEdge& edge) {
+  const Triangle& t = mesh.triangles[edge.face];
+  const std::uint32_t from = edge.is_forward ? edge.low : edge.high, to = edge.is_forward ? edge.high : edge.low;
+  return t[0] == from && t[1] == to ? 0 : t[1] == from && t[2] == to ? 1 : 2;
 }
 
 // Of the angle between two triangles at an edge of both.
-double cosine_at(const TriangleNormals& normals, const SideUse& a, const SideUse& b) {
-  const double cosine = dot(normals.of(a.triangle), normals.of(b.triangle));
-  return a.forward == b.forward ? -cosine : cosine;
+double cosine_at(const TriangleNormals& normals, const FaceEdge& a, const FaceEdge& b) {
+  const double cosine = dot(normals.of(a.face), normals.of(b.face));
+  return a.is_forward == b.is_forward ? -cosine : cosine;
 }
 
 // The part of a line that is within a tetrahedron, as a range of its parameter from 0 to 1.
@@ -55,32 +42,16 @@ struct LinePart {
   }
 };
 
-template <std::size_t count>
-Box box_of(const std::array<Vec3, count>& points) {
-  Box box{points[0], points[0]};
-  for (std::size_t i = 1; i < count; ++i) {
-    const Vec3& p = points[i];
-    box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y), std::min(box.lower.z, p.z)};
-    box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y), std::max(box.upper.z, p.z)};
-  }
-  return box;
+Box box_of(const std::array<Vec3, 4>& corners) {
+  return hull(box_of(corners[0], corners[1]), box_of(corners[2], corners[3]));
 }
+Box box_of(const std::array<Vec3, 3>& corners) { return box_of(corners[0], corners[1], corners[2]); }
 
 // By far more than what touches, or rounds.
 Box widened(const Box& box) {
   constexpr double kPart = 0x1p-6;
   const Vec3 by = kPart * (box.upper - box.lower);
   return {box.lower - by, box.upper + by};
-}
-
-bool holds(const Box& box, const Vec3& p) {
-  return p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y && p.z >= box.lower.z &&
-         p.z <= box.upper.z;
-}
-
-bool meets(const CellCreases::Crease& crease, const Vec3& lower, const Vec3& upper) {
-  return crease.lower.x <= upper.x && crease.upper.x >= lower.x && crease.lower.y <= upper.y &&
-         crease.upper.y >= lower.y && crease.lower.z <= upper.z && crease.upper.z >= lower.z;
 }
 
 // Of some points the one that is nearest to another; the first of equal ones.
@@ -112,19 +83,19 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const TriangleNormals& normal
       sides_(mesh.triangles.size(), 0),
       beyond_(mesh.triangles.size()),
       parts_(mesh.triangles.size()) {
-  std::iota(parts_.begin(), parts_.end(), 0U);
-  const std::vector<SideUse> uses = uses_of(mesh);
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    const SideUse& first = uses[begin];
-    while (end < uses.size() && uses[end].low == first.low && uses[end].high == first.high) ++end;
-    const double cosine = end - begin == 2 ? cosine_at(normals, first, uses[begin + 1]) : 0.0;
+  DisjointSets<> parts(mesh.triangles.size());
+  for_each_edge(face_edges(mesh.triangles), [&](std::span<const FaceEdge> faces) {
+    const FaceEdge &first = faces.front(), &last = faces.back();
+    const bool are_two = faces.size() == 2;
+    const double cosine = are_two ? cosine_at(normals, first, last) : 0.0;
     const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kFine ? 0U : 1U << kCreaseBit) |
                           (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
-    sides_[first.triangle] = static_cast<std::uint16_t>(sides_[first.triangle] | bits << first.side);
-    beyond_[first.triangle][first.side] = end - begin == 2 ? uses[begin + 1].triangle : first.triangle;
-    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);
-  }
-  for (std::uint32_t& part : parts_) part = parts_[part];  // lower ones know theirs
+    const unsigned side = side_of(mesh, first);
+    sides_[first.face] = static_cast<std::uint16_t>(sides_[first.face] | bits << side);
+    beyond_[first.face][side] = are_two ? last.face : first.face;
+    if (bits == 0) parts.join(first.face, last.face);
+  });
+  for (std::uint32_t triangle = 0; triangle < parts_.size(); ++triangle) parts_[triangle] = parts.lowest(triangle);
   find_ends(cells);
 }
 
@@ -154,30 +125,18 @@ void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
     for (unsigned side = 0; side < t.size(); ++side) {
       if ((sides_[triangle] >> side & 1U) == 0) continue;
       const Vec3 &a = mesh_->vertices[t[side]], &b = mesh_->vertices[t[(side + 1) % t.size()]];
-      const Box box = box_of(std::array{a, b});
       const auto has = [&](unsigned bit) { return (sides_[triangle] >> (side + bit) & 1U) != 0; };
-      found.push_back(
-          {a, b, box.lower, box.upper, has(kSharpBit), !has(kCreaseBit), {triangle, beyond_[triangle][side]}});
+      found.push_back({a, b, box_of(a, b), has(kSharpBit), !has(kCreaseBit), {triangle, beyond_[triangle][side]}});
     }
   }
-}
-
-// Each takes the number of a lower one of its part, until that is its own.
-void CellCreases::unite(std::uint32_t a, std::uint32_t b) {
-  const auto lowest_of = [&](std::uint32_t t) {
-    while (parts_[t] != t) t = parts_[t] = parts_[parts_[t]];
-    return t;
-  };
-  const std::uint32_t of_a = lowest_of(a), of_b = lowest_of(b);
-  parts_[std::max(of_a, of_b)] = std::min(of_a, of_b);
 }
 
 // A hit is in the crease's box, but for rounding.
 bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance, CreaseKinds kinds) {
   const Vec3 reach{2.0 * distance, 2.0 * distance, 2.0 * distance};
-  const Vec3 lower = p - reach, upper = p + reach;
+  const Box near{p - reach, p + reach};
   return std::ranges::any_of(all(), [&](const Crease& crease) {
-    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, lower, upper)) return false;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !overlap(crease.box, near)) return false;
     const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
     if (!at) return false;
     const Vec3 off = crease.from + *at * (crease.to - crease.from) - p;
@@ -190,7 +149,7 @@ std::optional<Vec3> CreasesHere::farthest_hit(const std::array<Vec3, 3>& corners
   std::optional<Vec3> farthest;
   double most = -1.0;
   for (const Crease& crease : all()) {
-    if (!crease.is_sharp || !meets(crease, box.lower, box.upper)) continue;
+    if (!crease.is_sharp || !overlap(crease.box, box)) continue;
     const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
     if (!at) continue;
     const Vec3 hit = crease.from + *at * (crease.to - crease.from), off = cross(q - p, hit - p);
@@ -208,7 +167,7 @@ CreasesHere::Section CreasesHere::section(const std::array<Vec3, 3>& corners, st
   const Box box = box_of(corners);
   hits_.clear();
   for (const Crease& crease : all()) {
-    if (!meets(crease, box.lower, box.upper)) continue;
+    if (!overlap(crease.box, box)) continue;
     const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
     if (at) hits_.push_back({crease.from + *at * (crease.to - crease.from), crease.triangles});
   }
@@ -233,7 +192,7 @@ std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& wi
   const Box box = widened(box_of(within.corners()));
   Nearest nearest(near);
   for (const Crease& crease : all()) {
-    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, box.lower, box.upper)) continue;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !overlap(crease.box, box)) continue;
     const Vec3 from = crease.from - first_corner, step = crease.to - crease.from;
     const std::array<double, 4> first = within.of(from), last = within.of(crease.to - first_corner);
     LinePart part;
@@ -252,7 +211,7 @@ std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates
   for (const Crease& crease : all()) {
     if (crease.is_fine) continue;
     for (const Vec3& end : {crease.from, crease.to}) {
-      if (!holds(box, end)) continue;
+      if (!contains(box, end)) continue;
       const Vec3 from_first = end - within.corners()[0];
       if (within.is_within(from_first, margin)) nearest.add(from_first);
     }
@@ -266,10 +225,10 @@ CreasesHere::Ends CreasesHere::ends_within(const Vec3& lower, const Vec3& upper,
   const Box around{lower - by, upper + by}, within{lower + by, upper - by};
   Ends ends;
   for (const Crease& crease : all()) {
-    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !meets(crease, around.lower, around.upper)) continue;
+    if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !overlap(crease.box, around)) continue;
     for (const Vec3& end : {crease.from, crease.to}) {
-      if (!holds(around, end)) continue;
-      if (!holds(within, end) || (ends.one && *ends.one != end)) return {std::nullopt, true};
+      if (!contains(around, end)) continue;
+      if (!contains(within, end) || (ends.one && *ends.one != end)) return {std::nullopt, true};
       ends.one = end;
     }
   }

@@ -6,10 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/cell_triangles.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/planes_point.h"
+#include "core/surface/surface_cells.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {
@@ -28,7 +31,8 @@ class CellCreases {
 
   // A side of a triangle, and its box.
   struct Crease {
-    Vec3 from, to, lower, upper;
+    Vec3 from, to;
+    Box box;
     bool is_sharp, is_fine;
     std::array<std::uint32_t, 2> triangles;  // that it is of; twice the same one where these are not two
   };
@@ -53,7 +57,6 @@ class CellCreases {
  private:
   static constexpr unsigned kCreaseBit = 4, kSharpBit = 8;
 
-  void unite(std::uint32_t a, std::uint32_t b);
   void find_ends(const SurfaceCells& cells);
 
   const TriangleMesh* mesh_ = nullptr;

@@ -10,6 +10,7 @@
 #include "core/surface/edge_points.h"
 #include "core/surface/face_points.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

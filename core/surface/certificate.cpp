@@ -121,18 +121,16 @@ std::uint64_t equal_vertices(const std::vector<Vec3>& vertices, std::vector<std:
     for (std::size_t v = begin; v < end; ++v) emit(hash_of(vertices[v]) % kBuckets, static_cast<std::uint32_t>(v));
   });
   std::atomic<std::uint64_t> equal = 0;
-  parallel_for(kBuckets, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::span<std::uint32_t> bucket = buckets[n];
-      std::ranges::sort(bucket, {}, [&](std::uint32_t v) {
-        const Vec3& p = vertices[v];
-        return std::tuple(p.x, p.y, p.z);
-      });
-      for (std::size_t i = 1; i < bucket.size(); ++i) {
-        if (vertices[bucket[i]] != vertices[bucket[i - 1]]) continue;
-        if (marked) (*marked)[bucket[i - 1]] = (*marked)[bucket[i]] = 1;  // nobody else has these
-        ++equal;
-      }
+  parallel_for_each(kBuckets, 8, [&](std::size_t n) {
+    const std::span<std::uint32_t> bucket = buckets[n];
+    std::ranges::sort(bucket, {}, [&](std::uint32_t v) {
+      const Vec3& p = vertices[v];
+      return std::tuple(p.x, p.y, p.z);
+    });
+    for (std::size_t i = 1; i < bucket.size(); ++i) {
+      if (vertices[bucket[i]] != vertices[bucket[i - 1]]) continue;
+      if (marked) (*marked)[bucket[i - 1]] = (*marked)[bucket[i]] = 1;  // nobody else has these
+      ++equal;
     }
   });
   return equal;
@@ -150,9 +148,7 @@ struct MeshPart {
 void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice, MeshPart& part) {
   CellSet cells(lattice);
   auto cell_of = sized_on_all_threads<CellSet::Cell>(mesh.vertices.size());
-  parallel_for(cell_of.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) cell_of[v] = cells.cell_of(mesh.vertices[v]);
-  });
+  parallel_for_each(cell_of.size(), 4096, [&](std::size_t v) { cell_of[v] = cells.cell_of(mesh.vertices[v]); });
   const auto range_of = [&](const Triangle& t) {
     return CellSet::range_of(cell_of[t[0]], cell_of[t[1]], cell_of[t[2]]);
   };
@@ -170,26 +166,21 @@ void add_faces_near(const TriangleMesh& mesh, const SurfaceEdit& change, const L
   }
   part.faces = numbers_where(is_near.size(), [&](std::uint32_t face) { return is_near[face] != 0; });
   part.changed.resize(part.faces.size());
-  parallel_for(part.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) part.changed[n] = is_near[part.faces[n]] == kChanged ? 1 : 0;
-  });
+  parallel_for_each(part.faces.size(), 4096,
+                    [&](std::size_t n) { part.changed[n] = is_near[part.faces[n]] == kChanged ? 1 : 0; });
 }
 
 // The vertices that some faces have, in increasing order. Sets their places there in `number`.
 std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& faces,
                                        std::vector<std::uint32_t>& number) {
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
-  parallel_for(faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      for (const std::uint32_t corner : mesh.triangles[faces[n]])
-        std::atomic_ref(used[corner]).store(1, std::memory_order_relaxed);
-    }
+  parallel_for_each(faces.size(), 4096, [&](std::size_t n) {
+    for (const std::uint32_t corner : mesh.triangles[faces[n]])
+      std::atomic_ref(used[corner]).store(1, std::memory_order_relaxed);
   });
   std::vector<std::uint32_t> vertices = numbers_where(used.size(), [&](std::uint32_t v) { return used[v] != 0; });
   resize_on_all_threads(number, mesh.vertices.size());
-  parallel_for(vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) number[vertices[n]] = static_cast<std::uint32_t>(n);
-  });
+  parallel_for_each(vertices.size(), 4096, [&](std::size_t n) { number[vertices[n]] = static_cast<std::uint32_t>(n); });
   return vertices;
 }
 
@@ -201,14 +192,11 @@ MeshPart part_near(const TriangleMesh& mesh, const SurfaceEdit& change, const La
   part.vertices = vertices_of(mesh, part.faces, number);
   resize_on_all_threads(part.mesh.vertices, part.vertices.size());
   resize_on_all_threads(part.mesh.triangles, part.faces.size());
-  parallel_for(part.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) part.mesh.vertices[n] = mesh.vertices[part.vertices[n]];
-  });
-  parallel_for(part.faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Triangle& t = mesh.triangles[part.faces[n]];
-      part.mesh.triangles[n] = {number[t[0]], number[t[1]], number[t[2]]};
-    }
+  parallel_for_each(part.vertices.size(), 4096,
+                    [&](std::size_t n) { part.mesh.vertices[n] = mesh.vertices[part.vertices[n]]; });
+  parallel_for_each(part.faces.size(), 4096, [&](std::size_t n) {
+    const Triangle& t = mesh.triangles[part.faces[n]];
+    part.mesh.triangles[n] = {number[t[0]], number[t[1]], number[t[2]]};
   });
   part.whole.assign(part.vertices.size(), 0);
   for (const std::uint32_t face : change.faces) {

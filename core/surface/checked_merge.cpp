@@ -10,12 +10,12 @@
 
 #include "core/data/single_precision.h"
 #include "core/surface/certificate.h"
-#include "core/surface/fault_places.h"
 #include "core/surface/kept_vertices.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/mesh_corners.h"
 #include "core/surface/repeated_check.h"
 #include "core/surface/source_plane.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -3,8 +3,8 @@
 
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/sharpen.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {

@@ -9,6 +9,7 @@
 #include "core/surface/component_signs.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/simplify.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

@@ -1,8 +1,8 @@
 // Fewer triangles for nearly the same surface, as far as that does no harm.
 #pragma once
 
-#include "core/surface/contour.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -9,13 +9,9 @@
 #include "core/surface/edge_points.h"
 #include "core/surface/face_points.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
-
-struct SurfaceMesh {
-  TriangleMesh mesh;
-  std::vector<std::int32_t> sources;  // of each triangle: a triangle of the input, or kHole
-};
 
 struct ContouredSurface {
   SurfaceMesh surface;

@@ -99,10 +99,8 @@ void join_triangles(ContourPart& part, const PartPlace& place, const PointNumber
 
 void join_points(std::span<const EdgePoint> edge_points, std::span<const Vec3> face_points, const PointNumbers& numbers,
                  const SparePoints* spare, std::vector<Vec3>& vertices) {
-  parallel_for(edge_points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      if (!spare || spare->edges[n] == 0) vertices[numbers(n)] = edge_points[n].position;
-    }
+  parallel_for_each(edge_points.size(), 4096, [&](std::size_t n) {
+    if (!spare || spare->edges[n] == 0) vertices[numbers(n)] = edge_points[n].position;
   });
   for (std::size_t n = 0; n < face_points.size(); ++n) {
     if (!spare || spare->faces[n] == 0) vertices[numbers(edge_points.size() + n)] = face_points[n];

@@ -8,10 +8,9 @@
 #include "core/surface/cell_triangles.h"
 #include "core/surface/edge_roots.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
-
-inline constexpr std::int32_t kHole = -1;  // in place of a triangle
 
 struct EdgePoint {
   Vec3 position;

@@ -92,9 +92,7 @@ class RootSearch {
 template <class Body>
 void for_each(std::size_t count, const Body& body) {
   constexpr std::size_t kPerTask = 4096;
-  parallel_for(count, kPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) body(i);
-  });
+  parallel_for_each(count, kPerTask, body);
 }
 
 // Asks once where points are equal: many edges have an end in common.

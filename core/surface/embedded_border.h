@@ -5,8 +5,8 @@
 
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/surface.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -25,17 +25,15 @@ Placed placed(const std::vector<Vec3>& vertices, const Triangle& t, const Source
 std::vector<Placed> placements(const SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
                                double off) {
   auto result = sized_on_all_threads<Placed>(surface.sources.size());
-  parallel_for(result.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face) {
-      const std::int32_t source = surface.sources[face];
-      if (source == kHole) {
-        result[face] = Placed::kInPlane;
-        continue;
-      }
-      const auto triangle = static_cast<std::uint32_t>(source);
-      const SourcePlane plane{input.vertices[input.triangles[triangle][0]], normals.of(triangle), source};
-      result[face] = placed(surface.mesh.vertices, surface.mesh.triangles[face], plane, off);
+  parallel_for_each(result.size(), 4096, [&](std::size_t face) {
+    const std::int32_t source = surface.sources[face];
+    if (source == kHole) {
+      result[face] = Placed::kInPlane;
+      return;
     }
+    const auto triangle = static_cast<std::uint32_t>(source);
+    const SourcePlane plane{input.vertices[input.triangles[triangle][0]], normals.of(triangle), source};
+    result[face] = placed(surface.mesh.vertices, surface.mesh.triangles[face], plane, off);
   });
   return result;
 }

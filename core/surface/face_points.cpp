@@ -296,12 +296,10 @@ void FacePoints::join(std::vector<FacePoints>& parts) {
   }
   resize_on_all_threads(faces_, count);
   resize_on_all_threads(positions_, count);
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      std::ranges::copy(parts[n].faces_, faces_.begin() + static_cast<std::ptrdiff_t>(places[n]));
-      std::ranges::copy(parts[n].positions_, positions_.begin() + static_cast<std::ptrdiff_t>(places[n]));
-      parts[n] = {};
-    }
+  parallel_for_each(parts.size(), [&](std::size_t n) {
+    std::ranges::copy(parts[n].faces_, faces_.begin() + static_cast<std::ptrdiff_t>(places[n]));
+    std::ranges::copy(parts[n].positions_, positions_.begin() + static_cast<std::ptrdiff_t>(places[n]));
+    parts[n] = {};
   });
   number_cells();
 }

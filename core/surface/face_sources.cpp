@@ -11,7 +11,7 @@
 #include "core/machine/threads.h"
 #include "core/surface/cell_creases.h"
 #include "core/surface/edge_crossing.h"
-#include "core/surface/edge_points.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {
@@ -94,11 +94,9 @@ bool SourceSettler::may_be_of(const SurfaceMesh& surface, std::size_t number, st
 
 std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surface) const {
   std::vector<std::uint8_t> doubtful(surface.sources.size(), 0);
-  parallel_for(doubtful.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face) {
-      if (surface.sources[face] == kHole) continue;
-      doubtful[face] = may_be_of(surface, face, static_cast<std::uint32_t>(surface.sources[face])) ? 0 : 1;
-    }
+  parallel_for_each(doubtful.size(), kFacesInTask, [&](std::size_t face) {
+    if (surface.sources[face] == kHole) return;
+    doubtful[face] = may_be_of(surface, face, static_cast<std::uint32_t>(surface.sources[face])) ? 0 : 1;
   });
   return numbers_where(doubtful.size(), [&](std::uint32_t face) { return doubtful[face] != 0; });
 }
@@ -112,11 +110,9 @@ void SourceSettler::settle(SurfaceMesh& surface) const {
   std::vector<std::uint32_t> nearest(faces.size());
   distance_.find_nearest(middles, nearest);
   std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);
-  parallel_for(faces.size(), kFacesInTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      surface.sources[faces[n]] = static_cast<std::int32_t>(nearest[n]);
-      off_mesh[faces[n]] = may_be_of(surface, faces[n], nearest[n]) ? 0 : 1;
-    }
+  parallel_for_each(faces.size(), kFacesInTask, [&](std::size_t n) {
+    surface.sources[faces[n]] = static_cast<std::int32_t>(nearest[n]);
+    off_mesh[faces[n]] = may_be_of(surface, faces[n], nearest[n]) ? 0 : 1;
   });
   spread_holes(off_mesh, surface);
 }

@@ -8,7 +8,7 @@
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
-#include "core/surface/contour.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {

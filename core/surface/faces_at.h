@@ -8,8 +8,8 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/vertex_faces.h"
-#include "core/surface/contour.h"
 #include "core/surface/gap.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

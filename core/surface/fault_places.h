@@ -27,7 +27,4 @@ namespace raycone {
 void touch_faces_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const NodeSet& nodes,
                         std::vector<bool>& touched);
 
-// A mesh without the vertices that no triangle uses.
-[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles);
-
 }  // namespace raycone

@@ -10,8 +10,8 @@
 
 #include "core/distance/distance.h"
 #include "core/surface/dropped_samples.h"
-#include "core/surface/edge_points.h"
 #include "core/surface/surface_measures.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {

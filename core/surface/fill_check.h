@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/edge_roots.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

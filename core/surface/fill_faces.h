@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -7,10 +7,10 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/surface/contour.h"
 #include "core/surface/edge_roots.h"
 #include "core/surface/node_set.h"
 #include "core/surface/surface.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -7,6 +7,7 @@
 #include "core/surface/fault_places.h"
 #include "core/surface/node_set.h"
 #include "core/surface/surface_edit.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {
@@ -76,15 +77,7 @@ class FilledSurface {
       const std::vector<std::int32_t>& sources = fills[fill].filled.sources;
       for (std::size_t n = 0; n < sources.size(); ++n) surface_.sources[edit_.faces[begin_[fill] + n]] = sources[n];
     }
-    std::vector<std::int32_t> sources;
-    std::vector<Triangle> triangles;
-    for (std::size_t face = 0; face < surface_.sources.size(); ++face) {
-      if (is_gone(surface_.mesh.triangles[face])) continue;
-      sources.push_back(surface_.sources[face]);
-      triangles.push_back(surface_.mesh.triangles[face]);
-    }
-    surface_.sources = std::move(sources);
-    surface_.mesh = used_part(surface_.mesh.vertices, std::move(triangles));
+    drop_gone(surface_);
   }
   void undo() {
     for (std::size_t n = 0; n < edit_.faces.size(); ++n)

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/data/lattice.h"
-#include "core/surface/contour.h"
 #include "core/surface/fill_gap.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -12,8 +12,8 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
-#include "core/surface/contour.h"
 #include "core/surface/fill_gap.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -92,11 +92,8 @@ class BrickMerger {
   // A face is in the brick of its first corner. Bricks are in the order of their first faces.
   [[nodiscard]] Bricks bricks(double shift) const {
     auto brick_of = sized_on_all_threads<std::uint32_t>(work_.triangles.size());
-    parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t face = begin; face < end; ++face) {
-        brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift);
-      }
-    });
+    parallel_for_each(brick_of.size(), kFacesPerTask,
+                      [&](std::size_t face) { brick_of[face] = brick_at(vertices_[work_.triangles[face][0]], shift); });
     std::vector<std::uint32_t> numbers(all_bricks(), kNone), places;
     for (std::uint32_t& brick : brick_of) {
       std::uint32_t& number = numbers[brick];
@@ -193,15 +190,13 @@ class BrickMerger {
 
   // Whoever comes second from another brick finds one there; none takes its place for good.
   void find_owners(const std::vector<std::uint32_t>& brick_of, std::vector<std::uint32_t>& owner) const {
-    parallel_for(brick_of.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t face = begin; face < end; ++face) {
-        for (const std::uint32_t corner : work_.triangles[face]) {
-          const std::atomic_ref of_corner(owner[corner]);
-          std::uint32_t known = of_corner.load(std::memory_order_relaxed);
-          if (known == kUnmet) of_corner.compare_exchange_strong(known, brick_of[face], std::memory_order_relaxed);
-          const bool is_own = known == kUnmet || known == brick_of[face];
-          if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);
-        }
+    parallel_for_each(brick_of.size(), kFacesPerTask, [&](std::size_t face) {
+      for (const std::uint32_t corner : work_.triangles[face]) {
+        const std::atomic_ref of_corner(owner[corner]);
+        std::uint32_t known = of_corner.load(std::memory_order_relaxed);
+        if (known == kUnmet) of_corner.compare_exchange_strong(known, brick_of[face], std::memory_order_relaxed);
+        const bool is_own = known == kUnmet || known == brick_of[face];
+        if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);
       }
     });
   }
@@ -325,18 +320,15 @@ std::vector<std::uint8_t> PlaneMerger::SecondPass::same_bricks(const SecondPass&
            bricks.place_of_owner(v) == now.bricks.place_of_owner(v);
   };
   std::vector<std::uint8_t> result(now.bricks.count(), 0);
-  parallel_for(result.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t brick = begin; brick < end; ++brick) {
-      const auto of_brick =
-          std::span(now.bricks.faces)
-              .subspan(now.bricks.begin[brick], now.bricks.begin[brick + 1] - now.bricks.begin[brick]);
-      const std::uint32_t place = now.bricks.places[brick];
-      const bool is_same = place < size_then.size() && size_then[place] == of_brick.size() &&
-                           std::ranges::all_of(of_brick, [&](std::uint32_t face) {
-                             return same[face] != kNone && std::ranges::all_of(now.before[face], is_same_vertex);
-                           });
-      result[brick] = is_same ? 1 : 0;
-    }
+  parallel_for_each(result.size(), [&](std::size_t brick) {
+    const auto of_brick = std::span(now.bricks.faces)
+                              .subspan(now.bricks.begin[brick], now.bricks.begin[brick + 1] - now.bricks.begin[brick]);
+    const std::uint32_t place = now.bricks.places[brick];
+    const bool is_same = place < size_then.size() && size_then[place] == of_brick.size() &&
+                         std::ranges::all_of(of_brick, [&](std::uint32_t face) {
+                           return same[face] != kNone && std::ranges::all_of(now.before[face], is_same_vertex);
+                         });
+    result[brick] = is_same ? 1 : 0;
   });
   return result;
 }

@@ -7,8 +7,8 @@
 
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/patch_merger.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -19,7 +19,6 @@
 #include "core/surface/checked_merge.h"
 #include "core/surface/checked_simplify.h"
 #include "core/surface/component_signs.h"
-#include "core/surface/edge_points.h"
 #include "core/surface/edge_roots.h"
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
@@ -30,6 +29,7 @@
 #include "core/surface/surface_cells.h"
 #include "core/surface/surface_in_scale.h"
 #include "core/surface/surface_measures.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {

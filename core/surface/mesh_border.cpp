@@ -10,7 +10,7 @@
 #include "core/surface/border_components.h"
 #include "core/surface/certificate.h"
 #include "core/surface/embedded_border.h"
-#include "core/surface/fault_places.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/node_set.h"
 #include "core/surface/surface.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/surface/contour.h"
 #include "core/surface/edge_crossing.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_shape.h"
 
 namespace raycone {

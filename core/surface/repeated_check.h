@@ -9,6 +9,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

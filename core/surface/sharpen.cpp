@@ -9,6 +9,7 @@
 #include "core/mesh/disjoint_sets.h"
 #include "core/surface/fault_places.h"
 #include "core/surface/strip_pulls.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 
@@ -209,16 +210,7 @@ void Sharpener::undo() {
 
 void Sharpener::finish() {
   for (std::size_t n = 0; n < faces_.size(); ++n) surface_.sources[faces_[n]] = now_.sources[n];
-  std::size_t left = 0;
-  for (std::size_t face = 0; face < surface_.sources.size(); ++face) {
-    const Triangle t = surface_.mesh.triangles[face];
-    if (is_gone(t)) continue;
-    surface_.sources[left] = surface_.sources[face];
-    surface_.mesh.triangles[left++] = t;
-  }
-  surface_.mesh.triangles.resize(left);
-  surface_.sources.resize(left);
-  surface_.mesh = used_part(surface_.mesh.vertices, std::move(surface_.mesh.triangles));
+  drop_gone(surface_);
 }
 
 std::size_t Sharpener::pulls() const {
@@ -280,11 +272,9 @@ bool Sharpener::has_changed(const Part& part, const State& before) const {
 }
 
 void Sharpener::pull(const std::vector<std::uint32_t>& parts) {
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      Part& part = parts_[parts[n]];
-      part.pulls = StripPulls(*this, part, now_).pull_all();
-    }
+  parallel_for_each(parts.size(), [&](std::size_t n) {
+    Part& part = parts_[parts[n]];
+    part.pulls = StripPulls(*this, part, now_).pull_all();
   });
 }
 

@@ -9,9 +9,9 @@
 
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
-#include "core/surface/contour.h"
 #include "core/surface/face_placement.h"
 #include "core/surface/surface_edit.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/triangle_normals.h"
 
 namespace raycone {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "core/surface/contour.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -92,9 +92,7 @@ std::size_t StripPulls::fill_gaps() {
     Gap gap{faces_joined_to(first, *this, joins), {}, {}, {}};
     if (!is_hopeless(gap.faces)) gaps.push_back(std::move(gap));
   }
-  parallel_for(gaps.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) find_fill(gaps[n]);
-  });
+  parallel_for_each(gaps.size(), [&](std::size_t n) { find_fill(gaps[n]); });
   std::size_t filled = 0;
   for (const Gap& gap : gaps) {
     if (fill(gap)) {

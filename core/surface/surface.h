@@ -10,9 +10,9 @@
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/certificate.h"
-#include "core/surface/contour.h"
 #include "core/surface/edge_roots.h"
 #include "core/surface/node_set.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
-
-// A face that is not there has three equal corners.
-[[nodiscard]] inline bool is_gone(const Triangle& t) { return t[0] == t[1]; }
 
 struct SurfaceEdit {
   struct Place {

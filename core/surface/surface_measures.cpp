@@ -48,18 +48,15 @@ std::vector<double> distances_from_sources(const SurfaceMesh& surface, const Tri
   constexpr std::size_t kFacesPerTask = 1024;
   constexpr double kNone = -1.0;
   std::vector<double> distances(surface.mesh.vertices.size(), kNone);
-  parallel_for(surface.mesh.triangles.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (surface.sources[i] == kHole) continue;
-      for (const std::uint32_t corner : surface.mesh.triangles[i]) {
-        const std::atomic_ref least(distances[corner]);
-        double known = least.load(std::memory_order_relaxed);
-        if (known == 0.0) continue;
-        const double here =
-            distance_at_most(mesh, static_cast<std::uint32_t>(surface.sources[i]), surface.mesh.vertices[corner]);
-        while ((known == kNone || here < known) &&
-               !least.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
-        }
+  parallel_for_each(surface.mesh.triangles.size(), kFacesPerTask, [&](std::size_t i) {
+    if (surface.sources[i] == kHole) return;
+    for (const std::uint32_t corner : surface.mesh.triangles[i]) {
+      const std::atomic_ref least(distances[corner]);
+      double known = least.load(std::memory_order_relaxed);
+      if (known == 0.0) continue;
+      const double here =
+          distance_at_most(mesh, static_cast<std::uint32_t>(surface.sources[i]), surface.mesh.vertices[corner]);
+      while ((known == kNone || here < known) && !least.compare_exchange_weak(known, here, std::memory_order_relaxed)) {
       }
     }
   });

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/surface/contour.h"
 #include "core/surface/dropped_samples.h"
 #include "core/surface/edge_roots.h"
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

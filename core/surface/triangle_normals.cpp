@@ -6,11 +6,9 @@
 namespace raycone {
 
 TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.triangles.size()) {
-  parallel_for(normals_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t triangle = begin; triangle < end; ++triangle) {
-      const Triangle& t = mesh.triangles[triangle];
-      normals_[triangle] = unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    }
+  parallel_for_each(normals_.size(), 1024, [&](std::size_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    normals_[triangle] = unit_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   });
 }
 

@@ -95,9 +95,7 @@ class TypedElements final : public ArrayElements {
     check_range(numbers);
     elements_.resize(numbers.size());
     constexpr std::size_t kGrain = std::size_t{1} << 14;
-    parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) elements_[n] = convert_(numbers[n]);
-    });
+    parallel_for_each(numbers.size(), kGrain, [&](std::size_t n) { elements_[n] = convert_(numbers[n]); });
     return bytes();
   }
 

@@ -61,11 +61,9 @@ class LeafLayer {
 
   // Starts the next layer.
   void clear() {
-    parallel_for(size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        std::fill_n(&values_[n * kLeafVoxels], is_uniform_[n] ? 1 : kLeafVoxels, background_);
-        is_uniform_[n] = 0;
-      }
+    parallel_for_each(size(), 16, [&](std::size_t n) {
+      std::fill_n(&values_[n * kLeafVoxels], is_uniform_[n] ? 1 : kLeafVoxels, background_);
+      is_uniform_[n] = 0;
     });
   }
 

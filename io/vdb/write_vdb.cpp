@@ -184,10 +184,8 @@ void add_layer(Tree& tree, const LeafLayer<Stored>& layer, std::int64_t leaf_z, 
     return to_coord(x, y, leaf_z * kLeafSize);
   };
   std::vector<std::unique_ptr<Leaf>> leaves(layer.size());
-  parallel_for(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      if (!layer.has_one_value(n)) leaves[n] = make_leaf<Leaf>(origin(n), layer.values(n), is_active);
-    }
+  parallel_for_each(leaves.size(), 16, [&](std::size_t n) {
+    if (!layer.has_one_value(n)) leaves[n] = make_leaf<Leaf>(origin(n), layer.values(n), is_active);
   });
   openvdb::tree::ValueAccessor<Tree> accessor(tree);
   for (std::size_t n = 0; n < leaves.size(); ++n)

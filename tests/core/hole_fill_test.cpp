@@ -18,11 +18,10 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
-#include "core/surface/edge_points.h"
-#include "core/surface/fault_places.h"
 #include "core/surface/fill_check.h"
 #include "core/surface/fill_faces.h"
 #include "core/surface/mesh_as_surface.h"
+#include "core/surface/surface_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -14,10 +14,10 @@
 #include "core/surface/checked_simplify.h"
 #include "core/surface/component_signs.h"
 #include "core/surface/face_points.h"
-#include "core/surface/fault_places.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/star_change.h"
 #include "core/surface/surface.h"
+#include "core/surface/surface_mesh.h"
 #include "core/surface/thicken.h"
 #include "tests/support/shapes.h"
 

@@ -9,7 +9,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
-#include "core/surface/fault_places.h"
+#include "core/surface/surface_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -556,7 +556,7 @@ MUTANTS = [
     Mutant("surface_sections_turned", "both sides of a face have its points in one order", [
         ("core/surface/contour.cpp", "(last < next ? n : count - 1 - n)", "n")]),
     Mutant("surface_sections_by_triangles", "flat parts of several triangles are one piece of a section", [
-        ("core/surface/cell_creases.cpp", "    if (bits == 0) unite(first.triangle, uses[begin + 1].triangle);\n", "")]),
+        ("core/surface/cell_creases.cpp", "    if (bits == 0) parts.join(first.face, last.face);\n", "")]),
     Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
         ("core/surface/face_points.cpp", "return cells_of_polygons[cell] != 0;", "return cells_of_polygons[cell] < 9;")]),
     Mutant("nodes_counted_once", "nodes that a mesh went around twice have not changed sides", [

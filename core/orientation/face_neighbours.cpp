@@ -1,4 +1,4 @@
-#include "core/orientation/face_edges.h"
+#include "core/orientation/face_neighbours.h"
 
 #include <algorithm>
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace raycone {
 
-struct FaceEdges::FiledEdge {
+struct FaceNeighbours::FiledEdge {
   std::uint32_t low, high;
   std::uint32_t face_and_direction;
 
@@ -24,7 +24,7 @@ std::size_t corner_of(const Triangle& t, std::uint32_t from) { return t[0] == fr
 
 }  // namespace
 
-FaceEdges::FaceEdges(const std::vector<Triangle>& faces, std::size_t vertices) : neighbours_(faces.size()) {
+FaceNeighbours::FaceNeighbours(const std::vector<Triangle>& faces, std::size_t vertices) : neighbours_(faces.size()) {
   const auto buckets = traversals_of<FiledEdge>(faces, vertices, [](std::size_t face, auto from, auto to) {
     return FiledEdge{std::min(from, to), std::max(from, to),
                      static_cast<std::uint32_t>(face) << 1 | std::uint32_t{from < to}};

@@ -28,10 +28,10 @@ struct FaceNeighbour {
 };
 
 // The edges of faces with three different corners each, of which none is there twice.
-class FaceEdges {
+class FaceNeighbours {
  public:
   // Takes time in proportion to the faces. Uses the threads that ThreadLimit allows.
-  FaceEdges(const std::vector<Triangle>& faces, std::size_t vertices);
+  FaceNeighbours(const std::vector<Triangle>& faces, std::size_t vertices);
 
   // Across the edge from `corner` (0 to 2) of the face to its next one.
   [[nodiscard]] FaceNeighbour neighbour(std::uint32_t face, std::size_t corner) const {

@@ -1,0 +1,28 @@
+// A surface, triangle by triangle of the mesh that it follows.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+inline constexpr std::int32_t kHole = -1;  // in place of a triangle
+
+struct SurfaceMesh {
+  TriangleMesh mesh;
+  std::vector<std::int32_t> sources;  // of each triangle: a triangle of the input, or kHole
+};
+
+// A face that is not there has three equal corners.
+[[nodiscard]] inline bool is_gone(const Triangle& t) { return t[0] == t[1]; }
+
+// Drops the faces that are gone, and the vertices that no face has then.
+void drop_gone(SurfaceMesh& surface);
+
+// A mesh without the vertices that no triangle uses; the others in the order in which triangles come to them.
+[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles);
+
+}  // namespace raycone

@@ -1,25 +1,15 @@
 #include "app/run/volume_input.h"
 
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "app/run/grid_reader.h"
 #include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"
+#include "io/files/read_file.h"
 
 namespace raycone {
-bool is_vdb(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  constexpr std::string_view kMagic(" BDV\0\0\0\0", 8);
-  std::array<char, kMagic.size()> first{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(first.data(), first.size());
-  return file && std::string_view(first.data(), first.size()) == kMagic;
-}
+
+bool is_vdb(const std::string& path) { return file_starts_with(path, std::string_view(" BDV\0\0\0\0", 8)); }
 
 bool holds_values(const std::string& path) {
   if (path == "-") return false;

@@ -35,6 +35,8 @@ inline Vec3 cross_terms(const Vec3& a, const Vec3& b) {
           std::abs(a.x * b.y) + std::abs(a.y * b.x)};
 }
 
+inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+
 // The largest magnitude of a coordinate.
 inline double largest_coordinate(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 

@@ -111,7 +111,7 @@ struct FieldTotals {
 inline constexpr std::int64_t kVdbSlabAlignment = 8;
 
 // Takes the values of a lattice block by block. Blocks are slabs that span the lattice across `slab_axis()`, in
-// increasing order, together all samples. Whatever writes throws OutputError.
+// increasing order, together all samples. Whatever writes throws OutputError. For one thread at a time.
 class LatticeWriter {
  public:
   virtual ~LatticeWriter() = default;
@@ -140,7 +140,7 @@ class LatticeWriter {
 
 // Takes fields at points, in their order. CSV: header "x,y,z,w" with the columns' names, then a row per point; NPY:
 // shape (n,), with several numbers (n, numbers), all in the precision asked for; NPZ: an array of the points and one
-// per field; raw: the numbers of the first point, those of the second, and so on.
+// per field; raw: the numbers of the first point, those of the second, and so on. For one thread at a time.
 class PointWriter {
  public:
   virtual ~PointWriter() = default;

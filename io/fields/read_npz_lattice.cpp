@@ -5,16 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "io/files/file_error.h"
 #include "io/files/input_buffer.h"
 #include "io/files/npy_head.h"
+#include "io/files/read_file.h"
 #include "io/files/zip_reader.h"
 
 namespace raycone {
@@ -81,14 +79,7 @@ std::array<std::int64_t, 3> read_counts(const ZipReader& archive, const std::str
 
 }  // namespace
 
-bool is_npz(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  std::array<char, 4> first{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(first.data(), first.size());
-  return file && std::string_view(first.data(), first.size()) == "PK\x03\x04";
-}
+bool is_npz(const std::string& path) { return file_starts_with(path, "PK\x03\x04"); }
 
 bool holds_arrays(const std::string& path) {
   try {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -26,7 +29,7 @@ void fail_to_read(const std::string& path, int error) {
 namespace {
 
 [[noreturn]] void fail_too_large(const std::string& path, std::uint64_t max_bytes) {
-  throw LimitError(path + ": larger than " + std::to_string(max_bytes) + " bytes");
+  throw LimitError(path + ": larger than " + std::to_string(max_bytes) + " bytes, expected a smaller file");
 }
 
 void add(sha256_ctx& context, std::string_view bytes) {
@@ -66,6 +69,15 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   }
   bytes.resize(size);
   return bytes;
+}
+
+bool file_starts_with(const std::string& path, std::string_view bytes) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::string first(bytes.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(first.data(), static_cast<std::streamsize>(first.size()));
+  return file && first == bytes;
 }
 
 std::string sha256(std::string_view bytes) {

@@ -15,6 +15,9 @@ namespace raycone {
 // file is larger than `max_bytes`.
 [[nodiscard]] std::string read_file(const std::string& path, std::uint64_t max_bytes = UINT64_MAX);
 
+// Whether `path` is a regular file that can be read and begins with these bytes.
+[[nodiscard]] bool file_starts_with(const std::string& path, std::string_view bytes);
+
 // SHA-256 as 64 lower-case hexadecimal digits.
 [[nodiscard]] std::string sha256(std::string_view bytes);
 

@@ -22,7 +22,11 @@ namespace raycone {
 
 [[nodiscard]] inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8: what editors of Windows put first
+
+[[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view bytes) {
+  return bytes.starts_with(kByteOrderMark) ? bytes.substr(kByteOrderMark.size()) : bytes;
+}
 
 // Whether a byte order mark announces UTF-16.
 [[nodiscard]] inline bool is_utf16(std::string_view bytes) {

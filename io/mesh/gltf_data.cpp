@@ -59,8 +59,6 @@ void check_extensions(const tinygltf::Model& model, const std::string& file) {
   }
 }
 
-std::size_t to_size(int number) { return static_cast<std::size_t>(number); }  // checked before the model was made
-
 bool is_index_type(int type) {
   return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;

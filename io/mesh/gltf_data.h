@@ -25,6 +25,9 @@ struct Primitive;
 
 namespace raycone {
 
+// An index or a count of tinygltf's: GltfDocument has checked that none is negative.
+[[nodiscard]] inline std::size_t to_size(int number) { return static_cast<std::size_t>(number); }
+
 class GltfData {
  public:
   // What is passed by reference or pointer must outlive this. Throws InputError, LimitError.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -15,10 +14,6 @@
 #include "io/mesh/read_mesh.h"
 
 namespace raycone {
-
-[[nodiscard]] inline bool is_finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // `count` is not 0.
 [[nodiscard]] inline Warning skipped_faces_warning(std::uint64_t count) {

@@ -52,8 +52,6 @@ struct Omissions {
   std::uint64_t without_nodes = 0;
 };
 
-std::size_t to_size(int index) { return static_cast<std::size_t>(index); }
-
 // Assembles one mesh of the document in its own coordinates.
 class MeshAssembler {
  public:

@@ -91,7 +91,7 @@ class TableLines {
     std::string_view line = pending.substr(0, line_end);
     if (number_ == 1) {
       if (is_utf16(line)) fail("the text is UTF-16, expected UTF-8");
-      if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+      line = without_byte_order_mark(line);
     }
     return line;
   }

@@ -30,7 +30,7 @@ class Boundary {
   // Whether all exterior edges lie in one plane.
   [[nodiscard]] bool is_flat() const { return plane_.has_value(); }
 
-  // The sum of |multiplicities|: no value w is off by more than a fraction of a turn times this.
+  // The sum of |multiplicities|. What w is off by is bounded in proportion to it: doubt_of_factors().
   [[nodiscard]] double total_multiplicity() const { return total_multiplicity_; }
 
   // All edges but those along the rays, whose factor is 1 from everywhere.

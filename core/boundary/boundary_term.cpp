@@ -13,7 +13,8 @@ namespace {
 // product's rounding included; those of a triangle not by more than three times this (docs/method.md, "Rules").
 constexpr double kDoubtPerEdge = 0x1p-41;
 constexpr double kMostFactors = 9.0;  // per triangle: three caps, of three factors each
-static_assert(kDoubtPerEdge * kMostFactors * kMaxTriangles <= Boundary::kMostDoubt);
+// Beside that, half of kMostDoubt is for what is left out: no tolerance is more (ScaledMesh::tolerance()).
+static_assert(kDoubtPerEdge * kMostFactors * kMaxTriangles <= Boundary::kMostDoubt / 2);
 
 }  // namespace
 

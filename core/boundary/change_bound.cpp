@@ -33,13 +33,6 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-double square_of_size(const Box& box) {
-  const Vec3 size = box.upper - box.lower;
-  return dot(size, size);
-}
-
-Box widened(const Box& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-
 // Slices abc, whose side ab is short, across: visit(box, part of the area) for each of so many.
 template <class Visit>
 void slice(const Vec3& a, const Vec3& b, const Vec3& c, double count, double part, const Visit& visit) {
@@ -57,7 +50,8 @@ void slice(const Vec3& a, const Vec3& b, const Vec3& c, double count, double par
 // visit(box, part of the area) for each.
 template <class Visit>
 void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& visit, int cuts = 0) {
-  const double ab = square_of_size(box_of(a, b)), bc = square_of_size(box_of(b, c)), ca = square_of_size(box_of(c, a));
+  const double ab = square_of_diagonal(box_of(a, b)), bc = square_of_diagonal(box_of(b, c)),
+               ca = square_of_diagonal(box_of(c, a));
   const double part = std::ldexp(1.0, -cuts), longest = std::max({ab, bc, ca});
   if (cuts == kMostCuts || !(longest > size * size)) return visit(box_of(a, b, c), part);
   if (bc > ab && bc >= ca) return cut(b, c, a, size, visit, cuts);
@@ -73,10 +67,7 @@ void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& 
 
 double area_of(const TriangleMesh& mesh) {
   double area = 0.0;
-  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-    const auto [a, b, c] = corners(mesh, n);
-    area += safe_norm(cross(b - a, c - a)) / 2;
-  }
+  for (const Triangle& t : mesh.triangles) area += area_of_triangle(mesh, t);
   return area;
 }
 
@@ -103,7 +94,7 @@ ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_ker
 void ChangeBound::add_edges(const std::vector<DirectedEdge>& edges) {
   for (const DirectedEdge& e : edges) {
     const Vec3 along = e.to - e.from;
-    const double length = std::sqrt(dot(along, along));
+    const double length = norm(along);
     const double piece = piece_ / kFiner;
     const double count = length > piece ? std::min(std::ceil(length / piece), kMostPieces) : 1.0;
     Vec3 from = e.from;
@@ -120,7 +111,7 @@ void ChangeBound::add_narrow(const Caps& caps) {
   for (std::size_t n = 0; n < caps.narrow; ++n) {
     const auto [a, b, c] = corners(caps.mesh, n);
     const Vec3 normal = cross(b - a, c - a);
-    const double twice_area = safe_norm(normal) + kAreaError * square_of_size(box_of(a, b, c));
+    const double twice_area = safe_norm(normal) + kAreaError * square_of_diagonal(box_of(a, b, c));
     cut(a, b, c, piece_, [this, of_cap = twice_area / (4 * std::numbers::pi)](const Box& box, double part) {
       sources_.push_back({widened(box, place_error_), 0.0, of_cap * part, {}});
     });
@@ -141,7 +132,7 @@ void ChangeBound::add_wide(const Caps& caps) {
 ChangeBound::Source ChangeBound::seen_from_afar(const Source& cluster) {
   Source moved = cluster;
   moved.length = safe_norm(cluster.along) + kBoundError * cluster.length;
-  moved.area += std::sqrt(square_of_size(cluster.box)) * cluster.length;
+  moved.area += std::sqrt(square_of_diagonal(cluster.box)) * cluster.length;
   // At the nearest distance, twice the diagonal, the area adds half of what the length did.
   return moved.length < cluster.length / 2 ? moved : cluster;
 }
@@ -184,7 +175,7 @@ void ChangeBound::build(std::uint32_t node, const std::vector<std::span<const So
         sum = {hull(sum.box, source.box), sum.length + source.length, sum.area + source.area, sum.along + source.along};
       }
       if (parts[n].size() > 1) {
-        far_square = kFar * square_of_size(sum.box);
+        far_square = kFar * square_of_diagonal(sum.box);
         sum = seen_from_afar(sum);
         child = static_cast<std::uint32_t>(nodes_.size());
         nodes_.emplace_back();

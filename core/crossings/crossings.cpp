@@ -69,7 +69,7 @@ Interval meeting(const Vec3& p, const Vec3& q, const Row& row) {
   if (std::isinf(step[axis])) return whole;
   constexpr double kRounding = 0x1p-49, kUnderflow = 0x1p-1000;
   const double x = p.x + (at - p[axis]) / step[axis] * step.x;
-  const Interval near = widened({x, x}, kRounding * (std::abs(p.x) + std::abs(q.x)) + kUnderflow);
+  const Interval near = widened(Interval{x, x}, kRounding * (std::abs(p.x) + std::abs(q.x)) + kUnderflow);
   return near.empty() ? whole : near;  // NaN: what overflows
 }
 
@@ -121,8 +121,8 @@ TrianglePlane::TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c) {
     extent += upper - lower;
     if (axis == 0) largest = std::max(std::abs(lower), std::abs(upper));
   }
-  constexpr double kUnderflow = 0x1p-1070;
-  error = 1.01 * u * (8 * reach / nx + 2 * largest) + kUnderflow / nx * extent + kNoUnderflow;
+  constexpr double kUnderflow = 0x1p-1070, kRest = 0x1p-900;  // what underflows before and after the division
+  error = 1.01 * u * (8 * reach / nx + 2 * largest) + kUnderflow / nx * extent + kRest;
 }
 
 TriangleCrossing triangle_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Row& row,

@@ -63,6 +63,7 @@ class ProjectedGrid::Coordinates {
         upper_x_(_mm_set_sd(grid.upper_.x)),
         codes_per_unit_(_mm_set_pd(grid.codes_per_z_, grid.codes_per_y_)) {}
 
+  static_assert(offsetof(Vec3, z) == offsetof(Vec3, y) + sizeof(double));
   [[nodiscard]] __m128d yz(const Vec3& q) const { return in_units(_mm_sub_pd(_mm_loadu_pd(&q.y), centre_)); }
   [[nodiscard]] __m128d x(const Vec3& q) const { return in_units(_mm_sub_sd(_mm_set_sd(q.x), centre_x_)); }
 

@@ -53,10 +53,7 @@ std::vector<std::uint32_t> ordered(const TriangleMesh& mesh, int axis) {
           emit(bins.bucket(extent_of(mesh, mesh.triangles[i], axis)), static_cast<std::uint32_t>(i));
         }
       });
-  std::vector<std::uint32_t> all;
-  all.reserve(mesh.triangles.size());
-  for (std::size_t n = 0; n < buckets.count(); ++n) all.insert(all.end(), buckets[n].begin(), buckets[n].end());
-  return all;
+  return {buckets.all().begin(), buckets.all().end()};
 }
 
 }  // namespace

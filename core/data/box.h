@@ -45,6 +45,17 @@ inline double longest_side(const Box& box) {
   return std::max({size.x, size.y, size.z});
 }
 
+inline double square_of_diagonal(const Box& box) {
+  const Vec3 size = box.upper - box.lower;
+  return dot(size, size);
+}
+
+// Larger by as much on every side.
+inline Box widened(const Box& box, double by) {
+  const Vec3 margin{by, by, by};
+  return {box.lower - margin, box.upper + margin};
+}
+
 // The largest magnitude of a coordinate of its points.
 inline double largest_coordinate(const Box& box) {
   return std::max(largest_coordinate(box.lower), largest_coordinate(box.upper));

@@ -1,6 +1,8 @@
 // What an evaluation can tell about each value.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -12,6 +14,19 @@ struct Diagnostics {
   std::span<std::int64_t> degenerate;  // how many edge sides were ties, which the symbolic perturbation decided
   std::span<std::uint8_t> on_surface;  // 1 on the surface; the value is that of the perturbed query there
   std::span<double> error_bound;       // rigorous, of |value - w|, turns (docs/method.md, "Error bound"); 0 if closed
+
+  // Of the samples [begin, begin + count).
+  [[nodiscard]] Diagnostics part(std::size_t begin, std::size_t count) const {
+    return {crossings.subspan(begin, count), degenerate.subspan(begin, count), on_surface.subspan(begin, count),
+            error_bound.subspan(begin, count)};
+  }
+
+  void set_to_zero() const {
+    std::ranges::fill(crossings, 0);
+    std::ranges::fill(degenerate, 0);
+    std::ranges::fill(on_surface, std::uint8_t{0});
+    std::ranges::fill(error_bound, 0.0);
+  }
 };
 
 }  // namespace raycone

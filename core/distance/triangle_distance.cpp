@@ -21,7 +21,7 @@ constexpr double kSlender = 4e-8;
 
 double square(double x) { return x * x; }
 
-// 0 where the inverse could overflow: what is that short is taken for a point.
+// 0 where the square has lost bits: what is that short is taken for a point.
 double inverse_or_zero(double x) { return x > 1e-290 ? 1.0 / x : 0.0; }
 
 // p - a - v ab - w ac, off by some u of itself and u^2 of its terms.

@@ -30,7 +30,7 @@ CutBlocks::Columns CutBlocks::by_column(std::span<const FlatPiece> pieces) const
   const auto overlaps = [&](std::size_t axis, double lower, double upper) {
     return lower <= rows_.along(axis).back() && upper >= rows_.along(axis).front();
   };
-  const auto [x_count, y_count, z_count] = boxes_.counts();
+  const std::size_t y_count = boxes_.counts()[1], z_count = boxes_.counts()[2];
   Columns columns(y_count * z_count);
   for (std::uint32_t number = 0; number < pieces.size(); ++number) {
     const Box& box = pieces[number].box();

@@ -17,12 +17,6 @@
 namespace raycone {
 namespace {
 
-// Diagnostics of the samples [begin, begin + count).
-Diagnostics part(const Diagnostics& all, std::size_t begin, std::size_t count) {
-  return {all.crossings.subspan(begin, count), all.degenerate.subspan(begin, count),
-          all.on_surface.subspan(begin, count), all.error_bound.subspan(begin, count)};
-}
-
 // A radix sort by position along a curve, through the projections or through space, that moves the points themselves,
 // so that none has to be fetched from afar in the end.
 class CoherentOrder {
@@ -188,11 +182,7 @@ class MeetingRays {
 void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
   const std::size_t count = end - begin;
   std::ranges::fill(values.subspan(begin, count), 0.0);
-  if (!diagnostics) return;
-  std::ranges::fill(diagnostics->crossings.subspan(begin, count), 0);
-  std::ranges::fill(diagnostics->degenerate.subspan(begin, count), 0);
-  std::ranges::fill(diagnostics->on_surface.subspan(begin, count), std::uint8_t{0});
-  std::ranges::fill(diagnostics->error_bound.subspan(begin, count), 0.0);
+  if (diagnostics) diagnostics->part(begin, count).set_to_zero();
 }
 
 Tally evaluate_in_order(const ScaledMesh& mesh, std::span<const Vec3> points, std::span<const std::uint32_t> order,
@@ -349,7 +339,7 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   const std::size_t batch = closed ? kIndexable : CoherentOrder::batch(scaled);
   for (std::size_t begin = 0; begin < points.size(); begin += batch) {
     const std::size_t count = std::min(batch, points.size() - begin);
-    const Diagnostics of_batch = diagnostics ? part(*diagnostics, begin, count) : Diagnostics{};
+    const Diagnostics of_batch = diagnostics ? diagnostics->part(begin, count) : Diagnostics{};
     total +=
         (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), values.subspan(begin, count),
                                                     done, diagnostics ? &of_batch : nullptr, settling);

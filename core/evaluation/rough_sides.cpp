@@ -20,7 +20,7 @@ constexpr double kFiner = 0.7;     // in boxes of twice the side: all boxes in t
 constexpr double kLook = 5e3, kListed = 10.0;
 constexpr std::size_t kLeastSide = 8;  // samples: of the parts of boxes
 // Samples. A lattice may have few blocks, and of these one or two may take most of the time.
-constexpr std::size_t kForOneThread = 0x1p15;
+constexpr std::size_t kForOneThread = std::size_t{1} << 15;
 
 double roughness(const SampleBox& box) {
   double each = kRoughly;

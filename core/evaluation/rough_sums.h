@@ -1,4 +1,4 @@
-// Sums of solid angles at samples of a lattice, as roughly as they do for who asks on which side of something they are.
+// Rough sums of solid angles at samples of a lattice: good enough to tell most samples' sides of a threshold.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class RoughSums {
 
   // A box, with what is not smooth in a box `around` it; of all triangles without. Each part that sums are made of, a
   // group of triangles or one, is off by `each` or so at most. Small boxes may be evaluated, larger ones only divided.
-  static constexpr std::size_t kLargest = 0x1p12;  // samples
+  static constexpr std::size_t kLargest = std::size_t{1} << 12;  // samples
   [[nodiscard]] RoughBox look_at(const SampleBox& samples, double each, const RoughBox* around) const;
 
   // What evaluate() takes, about, in units of a triangle's solid angle at a sample.

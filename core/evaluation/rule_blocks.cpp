@@ -282,6 +282,7 @@ void RuleBlocks::interpolate(const Candidate& candidate, std::vector<SampleBox>&
   const SampleBox& box = candidate.block.samples;
   double largest = candidate.largest;
   for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
+  // Interpolation rounds some 30 times, relative to growth() times the largest value: growth() is far below 8000.
   const double doubt = mesh_.doubt() + 32 * kSumsRound * (1 + largest);
   const double needed = candidate.nodes->bend() + candidate.nodes->growth() * doubt;
   LayerValues layer;

@@ -96,11 +96,8 @@ namespace {
 // Larger than the mesh's, as points that are drawn for it often are.
 Box box_for_points(const TriangleMesh& mesh) {
   constexpr double kMargin = 0x1p-4;
-  Box box = bounding_box(mesh);
-  const double margin = kMargin * longest_side(box);
-  box.lower = box.lower - Vec3{margin, margin, margin};
-  box.upper = box.upper + Vec3{margin, margin, margin};
-  return box;
+  const Box box = bounding_box(mesh);
+  return widened(box, kMargin * longest_side(box));
 }
 
 }  // namespace
@@ -193,7 +190,7 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
 double ScaledMesh::doubt_of_far_field() const {
   const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
   if (!wanted || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return 0.0;
-  return std::min(FarField::doubt(kFarShare * tolerance(), most_sources()), Boundary::kMostDoubt);
+  return FarField::doubt(kFarShare * tolerance(), most_sources());
 }
 
 double ScaledMesh::doubt_of_blocks() const {

@@ -44,6 +44,8 @@ struct BlocksOfPoints {
   PointBlocks sums;
 };
 
+// A mesh in a scale, with all that evaluators prepare of it: boundary and caps, the grid of rays, far field and blocks.
+// The last ones are built when they are first needed. Thread-safe, but for terms().
 class ScaledMesh {
  public:
   ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options);
@@ -115,6 +117,7 @@ class ScaledMesh {
   // sure to half a turn.
   [[nodiscard]] bool has_blocks() const {
     return term_ && is_in_scale_ && options_.accuracy.tolerance >= kLeastToleranceOfBlocks &&
+           most_sources() <= static_cast<double>(SharedEdges::kMostTriangles) &&
            LatticeBlocks::doubt(tolerance(), most_sources()) <= Boundary::kMostDoubt;
   }
 
@@ -159,7 +162,7 @@ class ScaledMesh {
   [[nodiscard]] double doubt_of_far_field() const;
   // That of the accuracy, where it is of use: more would not be settled at half-integers.
   [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
-  // What so many samples take; null for the direct sum.
+  // The far field for so many more samples; null: they are summed directly.
   [[nodiscard]] const FarField* far_field_for(std::size_t samples) const;
   [[nodiscard]] std::unique_ptr<const FarField> make_far_field() const;
   // None where another thread is making it.

@@ -22,11 +22,7 @@ bool set_to_zero_if_empty(const TriangleMesh& mesh, std::span<double> values, st
   if (!mesh.triangles.empty()) return false;
   std::ranges::fill(values, 0.0);
   if (done) done->fetch_add(values.size(), std::memory_order_relaxed);
-  if (!diagnostics) return true;
-  std::ranges::fill(diagnostics->crossings, 0);
-  std::ranges::fill(diagnostics->degenerate, 0);
-  std::ranges::fill(diagnostics->on_surface, std::uint8_t{0});
-  std::ranges::fill(diagnostics->error_bound, 0.0);
+  if (diagnostics) diagnostics->set_to_zero();
   return true;
 }
 

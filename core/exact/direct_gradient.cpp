@@ -7,7 +7,7 @@
 namespace raycone {
 namespace {
 
-const Quad kFullAngle = 16 * atanq(1);  // 4 pi
+const Quad kFullSolidAngle = 16 * atanq(1);  // 4 pi
 
 // The integral of dl x r / |r|^3 over the side: (1 / d^2) (d x a) times the difference of the cosines at its ends, d
 // being the distance of q from its line. Where q is beyond an end the cosines are about the same; then their difference
@@ -21,10 +21,12 @@ void add_side(const Vec3& from, const Vec3& to, const Vec3& q, DirectGradient& s
   const QuadVec3 normal = cross_of_differences(first, second, q);
   const Quad square = dot(normal, normal);
   if (square == 0) return;
-  const Quad at_a = dot(a, step), at_b = dot(b, step), cos_a = at_a / sqrtq(aa), cos_b = at_b / sqrtq(bb);
+  const Quad at_a = dot(a, step), at_b = dot(b, step);
+  if (at_a == 0 && at_b == 0) return;  // so far away that both ends are in one place
+  const Quad cos_a = at_a / sqrtq(aa), cos_b = at_b / sqrtq(bb);
   const bool is_beyond = (at_a > 0) == (at_b > 0);
   const Quad cosines_by_square = is_beyond ? (at_a + at_b) / (aa * bb * (cos_a + cos_b)) : (cos_b - cos_a) / square;
-  const Quad factor = (swapped ? -1 : 1) * cosines_by_square / kFullAngle;
+  const Quad factor = (swapped ? -1 : 1) * cosines_by_square / kFullSolidAngle;
   sum.value.x += factor * normal.x;
   sum.value.y += factor * normal.y;
   sum.value.z += factor * normal.z;

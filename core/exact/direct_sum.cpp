@@ -28,7 +28,7 @@ mp_bitcnt_t bits_of(const Corners& corners) {
 }
 
 // Determinants of two and three of B-bit integers are 0 or at least 1, and below 6 * 2^(2 B) and 6 * 2^(3 B). A step of
-// 2^-(2 B + kMargin) units along x therefore changes no sign but that of 0, nor any angle by more than 2^-kSmall; nor
+// 2^-(2 B + kMargin) units along x therefore changes no sign but that of 0, nor any angle by more than kSmall; nor
 // does a step along y, as much smaller again, beside one along x, nor one along z beside that.
 constexpr mp_bitcnt_t kMargin = 150;
 constexpr Quad kSmall = 0x1p-100;
@@ -89,15 +89,18 @@ QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, cons
 }  // namespace
 
 QuadWithin perturbed_direct_sum(const TriangleMesh& mesh, const Vec3& q) {
-  constexpr Quad kSharp = 1e-20;
+  constexpr Quad kSharp = 1e-20, kRounding = 0x1p-113;
   QuadWithin sum{0, 0};
+  Quad magnitudes = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     QuadWithin term = half_solid_angle(a, b, c, {q.x, q.y, q.z});
     if (!(term.error < kSharp)) term = perturbed_half_solid_angle(a, b, c, q);
     sum.value += term.value;
     sum.error += term.error;
+    magnitudes += absolute(term.value);
   }
+  sum.error += static_cast<Quad>(mesh.triangles.size() + 2) * kRounding * magnitudes;  // of the sum itself
   return {sum.value / (2 * kPi), sum.error / (2 * kPi)};
 }
 

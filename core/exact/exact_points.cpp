@@ -60,6 +60,7 @@ int sure_turn(double most, double ab_x, double ab_y, double ac_x, double ac_y) {
   const double value = ab_x * ac_y - ab_y * ac_x;
   const double sides = std::abs(ab_x) + std::abs(ab_y) + std::abs(ac_x) + std::abs(ac_y);
   const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;
+  if (!std::isfinite(value)) return 0;
   return static_cast<int>(value > trust) - static_cast<int>(value < -trust);
 }
 
@@ -82,6 +83,7 @@ int sure_side(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   const double a = sum_of(absolute(first)), b = sum_of(absolute(second)), c = sum_of(absolute(to));
   const double off = 0x1p-46 * most;
   const double trust = off * (a * b + b * c + c * a + off * (a + b + c + off)) + 0x1p-1000;
+  if (!std::isfinite(value)) return 0;  // of three products one may have overflowed, and not the largest
   return static_cast<int>(value > trust) - static_cast<int>(value < -trust);
 }
 

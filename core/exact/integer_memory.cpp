@@ -15,8 +15,8 @@
 namespace raycone {
 namespace {
 
-// For the numbers of one expression in each thread, some dozens. Who keeps numbers for longer allocates a place for
-// them first, and learns there that memory is short.
+// For the numbers of one expression in each thread, some dozens. Numbers that are kept for longer live in containers,
+// whose own allocation fails first where memory is short.
 class Reserve {
  public:
   // Aborts where it has no room.

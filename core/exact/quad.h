@@ -1,6 +1,8 @@
 // 113-bit floating point, some hundred times slower than doubles.
 #pragma once
 
+#include "core/data/vec3.h"
+
 namespace raycone {
 
 using Quad = __float128;

@@ -17,7 +17,7 @@ constexpr double kExpansion = 1.5, kTerm = 0.06;
 double expansion_cost(int degree) { return kExpansion + kTerm * (degree + 1) * (degree + 2); }
 
 // Of `triangles`, ascending: nodes whose triangles are all among them as expansions of the degree that degree_of(node)
-// says, where that is above 0 and pays.
+// says, where it says one and that pays; 0: they add nothing that counts.
 template <class DegreeOf>
 Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, double triangle_cost,
             const DegreeOf& degree_of) {
@@ -32,10 +32,11 @@ Cover cover(const SourceTree& tree, std::span<const std::uint32_t> triangles, do
     }
     const auto end = std::lower_bound(at, triangles.end(), node.end);
     if (static_cast<std::size_t>(end - at) == node.triangles()) {
-      const int degree = degree_of(node);
-      if (degree > 0 && expansion_cost(degree) < triangle_cost * static_cast<double>(node.triangles())) {
-        result.expansions.push_back({static_cast<std::uint32_t>(n), degree});
-        result.cost += expansion_cost(degree);
+      const std::optional<int> degree = degree_of(node);
+      const double cost = degree.value_or(0) > 0 ? expansion_cost(*degree) : 0.0;
+      if (degree && cost < triangle_cost * static_cast<double>(node.triangles())) {
+        if (*degree > 0) result.expansions.push_back({static_cast<std::uint32_t>(n), *degree});
+        result.cost += cost;
         at = end;
         n = node.next;
         continue;
@@ -61,24 +62,18 @@ Cover cover_in(const SourceTree& tree, std::span<const std::uint32_t> triangles,
   constexpr double kSlack = 1 - 0x1p-18;
   const double per_area = kSlack * tolerance / 2 / std::max(tree.area(), 0x1p-1000);
   const double per_triangle = tolerance / 2 / static_cast<double>(tree.triangles().size());
-  return cover(tree, triangles, triangle_cost, [&](const SourceNode& node) {
+  return cover(tree, triangles, triangle_cost, [&](const SourceNode& node) -> std::optional<int> {
     const double distance = distance_from(box, node.centre);
-    if (node.order == 0 || distance <= node.radius) return 0;
+    if (distance <= node.radius) return std::nullopt;
     const double budget = per_area * node.area + per_triangle * static_cast<double>(node.triangles());
-    int degree = node.order + 1;
-    while (degree > 1 && SourceTree::error(node, degree - 1, distance) <= budget) --degree;
-    return degree <= node.order ? degree : 0;
+    const std::optional<SourceTree::Cut> cut = SourceTree::least_cut(node, distance, budget);
+    return cut ? std::optional(cut->degree) : std::nullopt;
   });
 }
 
 namespace {
 
 constexpr double kInverse = (1 + 0x1p-30) / (4 * std::numbers::pi);  // of 4 pi
-
-double square_of_diagonal(const Box& box) {
-  const Vec3 sides = box.upper - box.lower;
-  return dot(sides, sides);
-}
 
 // Makes one rough cover.
 class RoughWalk {

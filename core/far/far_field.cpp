@@ -39,7 +39,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const Tri
       cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()) {
   SolidFaces faces = solid_faces(caps ? *caps : mesh);
   faces_repeat_ = faces.has_repeated_faces;
-  doubt_ = std::min(doubt(tolerance, static_cast<double>(faces.triangles.size())), Boundary::kMostDoubt);
+  doubt_ = doubt(tolerance, static_cast<double>(faces.triangles.size()));
   tree_ = &own_tree_.emplace(std::move(faces.triangles), tolerance, level, kDetail);
   set_costs(bounding_box(mesh), tolerance);
 }
@@ -51,7 +51,7 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const Tri
       has_caps_(caps != nullptr),
       cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()),
       tree_(&tree) {
-  doubt_ = std::min(doubt(tolerance, static_cast<double>(tree.triangles().size())), Boundary::kMostDoubt);
+  doubt_ = doubt(tolerance, static_cast<double>(tree.triangles().size()));
   set_costs(bounding_box(mesh), tolerance);
 }
 

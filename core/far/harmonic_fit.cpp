@@ -289,7 +289,9 @@ const HarmonicFit& HarmonicFit::instance() {
 void HarmonicFit::set_nodes() {
   std::vector<double> along;
   for (std::size_t n = 1; n <= kNodesAlong / 2; ++n) {
-    along.push_back(std::cos(static_cast<double>(2 * n - 1) * std::numbers::pi / (2.0 * kNodesAlong)));
+    // In 64 bits: cosines of doubles are not the same with every C library.
+    const long double angle = static_cast<long double>(2 * n - 1) * std::numbers::pi_v<long double> / (2 * kNodesAlong);
+    along.push_back(static_cast<double>(std::cos(angle)));
   }
   std::size_t count = 0;
   for (int face = 0; face < 3; ++face) {

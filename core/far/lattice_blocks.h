@@ -36,6 +36,8 @@ class LatticeBlocks {
   // patches of a surface.
   enum class Near { kTriangles, kBoundary };
 
+  // Of triangles in scale, with coordinates of at most 1, and a positive tolerance. Throws std::length_error for more
+  // than SourceTree takes, or with kBoundary SharedEdges. Needs DefaultFloatingPoint.
   LatticeBlocks(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Near near = Near::kTriangles);
 
   // The sums of samples [x, x + sums.size()) of the row (y, z).

@@ -72,7 +72,7 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
 SampleBlock LatticeBlocksWalk::lattice() const {
   const std::size_t ends = axes_of_ == AxesOf::kCells ? 1 : 0;
   const std::array<std::size_t, 3> last{axes_[0].size() - ends, axes_[1].size() - ends, axes_[2].size() - ends};
-  return {0, {0, 0, 0}, last, {}, {}, 0.0, nullptr, 0.0};
+  return {.first = {0, 0, 0}, .last = last};
 }
 
 double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) const {
@@ -82,7 +82,8 @@ double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) con
 // The block cut in two along its longer axes. Sub-blocks of cells are the same whatever the blocks, so they stay whole.
 std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) const {
   const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
-  std::vector<SampleBlock> pieces{{block.level + 1, block.first, block.last, {}, {}, 0.0, block.field, block.spent}};
+  std::vector<SampleBlock> pieces{
+      {.level = block.level + 1, .first = block.first, .last = block.last, .field = block.field, .spent = block.spent}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t least = axes_of_ == AxesOf::kCells ? 2 * kSubBlock[axis] : 2;
     if (block.count(axis) < least || length(block, axis) <= 0.6 * longest) continue;

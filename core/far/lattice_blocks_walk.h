@@ -34,13 +34,13 @@ inline constexpr std::array<std::size_t, 3> kSubBlock{16, 16, 8};
 
 // Samples, or cells, [first, last) along each axis.
 struct SampleBlock {
-  std::size_t level;  // 0: the whole lattice
+  std::size_t level = 0;  // 0: the whole lattice
   std::array<std::size_t, 3> first, last;
-  Cube cube;                        // around them
-  std::vector<std::uint32_t> near;  // triangles, ascending
-  double near_cost;                 // of their sum at a sample, in units of a triangle's
-  std::shared_ptr<const FieldOnCube> field;
-  double spent = 0.0;  // of the tolerance: by how much the field is off at most
+  Cube cube{};                                 // around them
+  std::vector<std::uint32_t> near{};           // triangles, ascending
+  double near_cost = 0.0;                      // of their sum at a sample, in units of a triangle's
+  std::shared_ptr<const FieldOnCube> field{};  // none where nothing is far
+  double spent = 0.0;                          // of the tolerance: by how much the field is off at most
 
   [[nodiscard]] std::size_t count(std::size_t axis) const { return last[axis] - first[axis]; }
   [[nodiscard]] double size() const {

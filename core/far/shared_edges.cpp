@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -34,7 +35,7 @@ std::vector<std::uint32_t> numbered(std::span<const SolidTriangle> triangles, st
 }  // namespace
 
 SharedEdges::SharedEdges(std::span<const SolidTriangle> triangles) {
-  if (triangles.size() >= std::size_t{1} << 30) throw std::length_error("raycone: 2^30 or more triangles share edges");
+  if (triangles.size() > kMostTriangles) throw std::length_error("raycone: 2^30 or more triangles share edges");
   const std::vector<std::uint32_t> corners = numbered(triangles, vertices_);
   struct Place {
     std::uint32_t low, high, side;
@@ -56,17 +57,39 @@ SharedEdges::SharedEdges(std::span<const SolidTriangle> triangles) {
   }
 }
 
-SharedEdges::Boundary::Boundary(const SharedEdges& edges)
-    : all_(edges), multiplicities_(edges.edges_.size()), leaving_(edges.vertices_.size(), kNone) {}
+// To fill it takes as long as the boundaries of many sets, where there are millions of edges.
+SharedEdges::Scratch SharedEdges::take_scratch() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!spare_.empty()) {
+      Scratch scratch = std::move(spare_.back());
+      spare_.pop_back();
+      return scratch;
+    }
+  }
+  return {std::vector<std::int32_t>(edges_.size()), std::vector<std::uint32_t>(vertices_.size(), kNone)};
+}
+
+void SharedEdges::give_back(Scratch scratch) const noexcept {
+  const std::lock_guard lock(mutex_);
+  try {
+    spare_.push_back(std::move(scratch));
+  } catch (const std::bad_alloc&) {
+    return;  // the next one is filled again
+  }
+}
 
 std::optional<std::span<const ChainStep>> SharedEdges::Boundary::of(std::span<const std::uint32_t> triangles,
                                                                     std::size_t most) {
-  if (set_multiplicities(triangles) > most) {
-    for (const std::uint32_t edge : touched_) multiplicities_[edge] = 0;
-    return std::nullopt;
+  is_at_work_ = true;
+  const bool are_few = set_multiplicities(triangles) <= most;
+  if (are_few) {
+    set_chains();
+  } else {
+    for (const std::uint32_t edge : touched_) scratch_.multiplicities[edge] = 0;
   }
-  set_chains();
-  return steps_;
+  is_at_work_ = false;
+  return are_few ? std::optional(std::span<const ChainStep>(steps_)) : std::nullopt;
 }
 
 std::size_t SharedEdges::Boundary::set_multiplicities(std::span<const std::uint32_t> triangles) {
@@ -76,7 +99,7 @@ std::size_t SharedEdges::Boundary::set_multiplicities(std::span<const std::uint3
     for (std::size_t i = 3 * std::size_t{n}; i < 3 * std::size_t{n} + 3; ++i) {
       const Side side = all_.sides_[i];
       if (side.edge == kNone) continue;
-      std::int32_t& multiplicity = multiplicities_[side.edge];
+      std::int32_t& multiplicity = scratch_.multiplicities[side.edge];
       if (multiplicity == 0) touched_.push_back(side.edge);  // perhaps not for the first time
       left -= std::abs(multiplicity);
       multiplicity += side.reversed ? -1 : 1;
@@ -89,23 +112,23 @@ std::size_t SharedEdges::Boundary::set_multiplicities(std::span<const std::uint3
 // All multiplicities are 0 afterwards.
 void SharedEdges::Boundary::set_chains() {
   steps_.clear();
-  std::erase_if(touched_, [&](std::uint32_t edge) { return multiplicities_[edge] == 0; });
+  std::erase_if(touched_, [&](std::uint32_t edge) { return scratch_.multiplicities[edge] == 0; });
   for (const std::uint32_t edge : touched_) {
-    leaving_[multiplicities_[edge] > 0 ? all_.edges_[edge].from : all_.edges_[edge].to] = edge;
+    scratch_.leaving[scratch_.multiplicities[edge] > 0 ? all_.edges_[edge].from : all_.edges_[edge].to] = edge;
   }
   for (const std::uint32_t edge : touched_) {
-    if (multiplicities_[edge] != 0) add_chain(edge);
+    if (scratch_.multiplicities[edge] != 0) add_chain(edge);
   }
   for (const std::uint32_t edge : touched_) {
-    leaving_[all_.edges_[edge].from] = leaving_[all_.edges_[edge].to] = kNone;
+    scratch_.leaving[all_.edges_[edge].from] = scratch_.leaving[all_.edges_[edge].to] = kNone;
   }
 }
 
 // As long as there is an edge that has not been added.
 void SharedEdges::Boundary::add_chain(std::uint32_t edge) {
   bool begins = true;
-  while (edge != kNone && multiplicities_[edge] != 0) {
-    std::int32_t& multiplicity = multiplicities_[edge];
+  while (edge != kNone && scratch_.multiplicities[edge] != 0) {
+    std::int32_t& multiplicity = scratch_.multiplicities[edge];
     auto [from, to] = all_.edges_[edge];
     if (multiplicity < 0) std::swap(from, to);
     for (; multiplicity != 0; multiplicity += multiplicity < 0 ? 1 : -1) {
@@ -114,7 +137,7 @@ void SharedEdges::Boundary::add_chain(std::uint32_t edge) {
       begins = true;  // a second copy begins where this one did
     }
     begins = false;
-    edge = leaving_[to];
+    edge = scratch_.leaving[to];
   }
 }
 

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/boundary/chain.h"
@@ -14,15 +16,28 @@ namespace raycone {
 
 // Which of some triangles share edges. Thread-safe once made.
 class SharedEdges {
+  // What finding a boundary takes for each edge and vertex. Between two sets it is as it was at first.
+  struct Scratch {
+    std::vector<std::int32_t> multiplicities;  // of edges: 0
+    std::vector<std::uint32_t> leaving;        // an edge of the boundary, by the vertex that it leaves: kNone
+  };
+
  public:
-  // Throws std::length_error from 2^30 triangles on. Does not depend on their addresses.
+  static constexpr std::size_t kMostTriangles = (std::size_t{1} << 30) - 1;
+
+  // Of kMostTriangles at most; throws std::length_error. Does not depend on their addresses.
   explicit SharedEdges(std::span<const SolidTriangle> triangles);
 
-  // Finds the boundaries of sets, one after the other.
+  // Finds the boundaries of sets, one after the other. For one thread.
   class Boundary {
    public:
-    // `edges` must outlive this. Takes memory for each of its edges.
-    explicit Boundary(const SharedEdges& edges);
+    // `edges` must outlive this. Takes memory for each of its edges, which the next one uses again.
+    explicit Boundary(const SharedEdges& edges) : all_(edges), scratch_(edges.take_scratch()) {}
+    ~Boundary() {
+      if (!is_at_work_) all_.give_back(std::move(scratch_));
+    }
+    Boundary(const Boundary&) = delete;
+    Boundary& operator=(const Boundary&) = delete;
 
     // Of the triangles with these numbers, each of them once: edges that do not cancel, as often as they are left, but
     // for those along the rays, whose factor is 1 from everywhere. Valid until the next call. Nothing where it has more
@@ -37,9 +52,9 @@ class SharedEdges {
     void add_chain(std::uint32_t edge);
 
     const SharedEdges& all_;
-    std::vector<std::int32_t> multiplicities_;  // of edges
-    std::vector<std::uint32_t> leaving_;        // an edge of the boundary, by the vertex that it leaves
-    std::vector<std::uint32_t> touched_;        // edges of the triangles, some of them several times
+    Scratch scratch_;
+    bool is_at_work_ = false;             // or was, when an exception came
+    std::vector<std::uint32_t> touched_;  // edges of the triangles, some of them several times
     std::vector<ChainStep> steps_;
   };
 
@@ -54,9 +69,14 @@ class SharedEdges {
   };
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+  [[nodiscard]] Scratch take_scratch() const;
+  void give_back(Scratch scratch) const noexcept;
+
   std::vector<Vec3> vertices_;
   std::vector<Edge> edges_;
   std::vector<Side> sides_;  // three of each triangle; kNone: along the rays
+  mutable std::mutex mutex_;
+  mutable std::vector<Scratch> spare_;  // of boundaries that are gone
 };
 
 }  // namespace raycone

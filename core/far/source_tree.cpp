@@ -184,10 +184,11 @@ void SourceTree::measure(SourceNode& node) const {
   }
   node.radius *= 1 + kRounding;
   node.square_of_small = square_of_small(node);
-  node.square_of_distance.fill(kInfinity);
+  node.square_of_distance.fill(std::numeric_limits<double>::quiet_NaN());
   if (!(node.radius > kSmallest)) return;
   node.unit = std::ldexp(1.0, std::ilogb(node.radius) + 1);
   node.order = worthwhile_order(node.triangles(), detail_.order);
+  if (node.order > 0) node.square_of_distance.fill(kInfinity);
 }
 
 // From the leaves up, in pieces that threads take; the nodes above the pieces at last.
@@ -245,18 +246,6 @@ void SourceTree::finish(SourceNode& node, const Multipole& multipole) {
     if (ratios[i] > 0) least = std::min(least, node.unit / ratios[i] * (1 + kRounding));
     node.square_of_distance[i] = least * least * (1 + kRounding);
   }
-}
-
-double SourceTree::error(const SourceNode& node, int p, double distance) {
-  const double rho = node.unit / distance * (1 + kRounding);
-  const double area = node.area / node.unit / node.unit;
-  double sum = beyond_multipoles(area, node.radius / node.unit, node.bounds.order, rho), power = rho;
-  for (int n = 1; n <= node.bounds.order; ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    power *= rho;
-    sum += power * (n <= p ? node.bounds.evaluation[i] : node.bounds.size[i]);
-  }
-  return sum * (1 + kRounding);
 }
 
 std::optional<SourceTree::Cut> SourceTree::least_cut(const SourceNode& node, double distance, double most) {

@@ -58,10 +58,8 @@ class SourceTree {
   [[nodiscard]] const double* coefficients() const { return coefficients_.get(); }  // set_coefficients()
   [[nodiscard]] double area() const { return nodes_.empty() ? 0.0 : nodes_.front().area; }
 
-  // How far the expansion of `node` cut off behind degree p is off at most at a distance from its centre.
-  [[nodiscard]] static double error(const SourceNode& node, int p, double distance);
-
-  // The least degree behind which it is off by no more than `most`, none above the node's order, and that error; 0: the
+  // How far the expansion of `node` cut off behind some degree is off at most at a distance from its centre: the least
+  // degree behind which it is off by no more than `most`, none above the node's order, and that error; 0: the
   // node need not be summed at all. Nothing for a node without expansion.
   struct Cut {
     int degree;

@@ -9,15 +9,13 @@ namespace {
 
 constexpr double kRoundsDown = 1 - 0x1p-40, kRoundsUp = 1 + 0x1p-40;
 
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // How far the box is, at least, from all of the corners' triangle in a direction; 0 where it is not known to be in
 // front of it. What differences, products and sums round is below the share that is taken off (docs/method.md, "Rules
 // on lattices"), whatever the direction.
 double gap_along(const Vec3& direction, const std::array<Vec3, 3>& corners, const Box& box) {
   constexpr double kLeast = 0x1p-400;  // squares of less lose bits
   constexpr double kGapRounds = 0x1p-45;
-  const double length = length_of(direction);
+  const double length = norm(direction);
   if (!(length >= kLeast)) return 0.0;
   const Vec3 half = 0.5 * (box.upper - box.lower), centre = middle(box);
   const double reach = std::abs(direction.x) * half.x + std::abs(direction.y) * half.y + std::abs(direction.z) * half.z;

@@ -64,6 +64,24 @@ TEST(ExactPoints, IsOnTheSidesThatIntegersSay) {
   EXPECT_GT(ties, 1000);
 }
 
+// Powers of two change no sign, though products overflow or underflow: of some alone, of sums of them, of all.
+TEST(ExactPoints, IsOnTheSameSidesAtAnyScale) {
+  test::Random random(3);
+  for (int n = 0; n < 4000; ++n) {
+    const double scale = std::ldexp(1.0, n % 2 == 0 ? 338 + n % 7 : n % 4 == 1 ? 508 + n % 7 : -350 - n % 40);
+    std::array<Vec3, 4> points;
+    for (Vec3& p : points) p = lattice_point(random, 2);
+    const Vec3 ab = points[1] - points[0], ac = points[2] - points[0];
+    const int expected = sign(whole(dot(cross(ab, ac), points[3] - points[0])));
+    const int turn = sign(whole(ab.x) * whole(ac.y) - whole(ab.y) * whole(ac.x));
+    for (Vec3& p : points) p = scale * p;
+    ExactPoints exact(with_vertices({points[0], points[1], points[2], points[3], {7, 0, 0}}));
+    ASSERT_EQ(exact.side({points[0], points[1], points[2]}, exact.add(points[3])), expected) << scale;
+    ASSERT_EQ(exact.turn(2, points[0], points[1], exact.add(points[2])), turn) << scale;
+    ASSERT_EQ(exact.turn(2, exact.add(points[0]), exact.add(points[1]), exact.add(points[2])), turn) << scale;
+  }
+}
+
 // A point between corners that doubles cannot hold: on the lines and planes that it is made of, and beside others by
 // less than doubles tell.
 TEST(ExactPoints, HoldsWhatDoublesCannot) {

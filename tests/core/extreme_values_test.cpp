@@ -87,6 +87,25 @@ TEST(ExtremeValues, AreRightForCoordinatesOfAllMagnitudes) {
   }
 }
 
+// Of triangles near 1, so that they are in scale, and queries at any distance.
+TEST(ExtremeValues, FarFieldsKeepTheirTolerance) {
+  constexpr double kTolerance = 1e-6;
+  Random random(3);
+  for (const int triangles : {1, 2, 40, 400}) {
+    const TriangleMesh mesh = weld(test::soup(random, triangles), {});
+    std::vector<Vec3> queries = queries_about(mesh, random, 60);
+    for (const double far : {1e100, 1e160, 1e200, 1e308}) queries.push_back({far, 0.5, 0.5});
+    for (const Summation summation : {Summation::kFarField, Summation::kBlocks}) {
+      std::vector<double> values(queries.size());
+      WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {kTolerance, 1e6}}).evaluate(queries, values);
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        const auto exact = static_cast<double>(perturbed_direct_sum(mesh, queries[i]).value);
+        EXPECT_NEAR(values[i], exact, kTolerance) << queries[i].x << ' ' << queries[i].y << ' ' << queries[i].z;
+      }
+    }
+  }
+}
+
 // Magnitudes that two numbers share, as those of a small part beside a huge one do.
 TEST(ExtremeValues, AreRightForTrianglesWithOneMinuteSide) {
   Random random(2);

@@ -218,6 +218,23 @@ TEST(Gradient, OfATinyMeshFarAwayIsNothing) {
   }
 }
 
+// From far away the ends of an edge are in one place, even in 113 bits.
+TEST(Gradient, FarAwayIsNothingAndNotNothingOverNothing) {
+  const TriangleMesh mesh = weld(test::open_box(), {});
+  for (const double far : {1e20, 1e34, 1e35, 1e60, 1e150, 1e300}) {
+    for (const Vec3& direction : {Vec3{1, 1, 1}, Vec3{-1, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, -0.2, 0.7}}) {
+      const Vec3 q = far * direction;
+      const Vec3 gradient = gradients_of(mesh, {q}).front();
+      const DirectGradient expected = direct_gradient(mesh, q);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto component_of = static_cast<double>(component(expected.value, axis));
+        EXPECT_TRUE(std::isfinite(component_of)) << far;
+        EXPECT_NEAR(gradient[axis], component_of, 1e-12 * static_cast<double>(expected.magnitude)) << far;
+      }
+    }
+  }
+}
+
 TEST(Gradient, ScalesWithTheMeshAtAllMagnitudes) {
   const TriangleMesh mesh = welded_soup(2);
   const std::vector<Vec3> points{{0.3, 0.4, 0.6}, {-2, 5, 1}};

@@ -131,6 +131,46 @@ TEST(HarmonicPolynomialTest, APartOfTheCubeHasTheSameValues) {
   for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(whole[i], same[i], 1e-15);
 }
 
+// From block to block, down to the smallest ones. The first cube sticks out as far as any does: its block is 0.6 times
+// as long along one axis as along the others, which are divided. The others are octants, a little larger.
+TEST(HarmonicPolynomialTest, PartsOfPartsRoundLessThanFits) {
+  Random random(7);
+  const MatrixKernel multiply = matrix_kernel(SimdLevel::kBest);
+  double largest = 0.0;  // relative to the largest value at the nodes
+  for (int n = 0; n < 40; ++n) {
+    const Dipole dipole = dipole_at(random, 1.6 + 0.1 * (n % 10));
+    const Coefficients polynomial = fit_of(dipole);
+    double most = 0.0;
+    for (std::size_t i = 0; i < HarmonicFit::kNodes; ++i) {
+      most = std::max(most, std::abs(dipole(HarmonicFit::instance().node(i))));
+    }
+    Coefficients part = polynomial;
+    Cube cube = kUnit;
+    GridValues grid(multiply), grid_of_part(multiply);
+    for (int level = 1; level <= 16; ++level) {
+      const auto side = [&] { return random() % 2 == 0 ? -0.5 : 0.5; };
+      const bool sticks_out = level == 1 && n % 2 == 0;
+      const Vec3 to_middle = cube.half * Vec3{side(), side(), sticks_out ? 0.0 : side()};
+      const Cube next{cube.centre + to_middle, cube.half * (sticks_out ? 0.6 : 0.5) * (1.0 + 0x1.3p-9)};
+      part = on_cube(part, cube, next, multiply);
+      cube = next;
+      std::vector<double> xs, ys, zs;
+      for (const double at : {-0.8, -0.3, 0.2, 0.8}) {
+        const Vec3 p = cube.centre + cube.half * Vec3{at, at, at};
+        xs.push_back(p.x), ys.push_back(p.y), zs.push_back(p.z);
+      }
+      const auto whole = grid.evaluate(polynomial, kDegree, kUnit, xs, ys, zs);
+      const auto same = grid_of_part.evaluate(part, kDegree, cube, xs, ys, zs);
+      for (std::size_t i = 0; i < whole.size(); ++i) {
+        if (i % GridValues::row_size(xs.size()) < xs.size())
+          largest = std::max(largest, std::abs(whole[i] - same[i]) / most);
+      }
+    }
+  }
+  EXPECT_LT(largest, HarmonicFit::kRounding / 10);
+  EXPECT_GT(largest, 1e-17) << "or nothing was compared";
+}
+
 TEST(HarmonicPolynomialTest, TruncationIsWithinItsBudget) {
   Random random(4);
   const Coefficients polynomial = fit_of(dipole_at(random, 3.0));

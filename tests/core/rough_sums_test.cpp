@@ -11,6 +11,7 @@
 
 #include "core/boundary/solid_angles.h"
 #include "core/far/lattice_blocks.h"
+#include "tests/support/expansion_error.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -196,15 +197,15 @@ TEST(RoughSumsTest, LeastCutIsTheLeastThatErrsByNoMore) {
     for (const double most : {1e-1, 1e-4, 1e-8, 1e-13}) {
       const auto cut = SourceTree::least_cut(root, distance, most);
       if (!cut) {
-        EXPECT_GT(SourceTree::error(root, root.order, distance), most * (1 - 1e-9));
+        EXPECT_GT(test::expansion_error(root, root.order, distance), most * (1 - 1e-9));
         ++none;
         continue;
       }
       ++(cut->degree == 0 ? nothing : cut_off);
       EXPECT_LE(cut->error, most);
-      EXPECT_NEAR(cut->error, SourceTree::error(root, cut->degree, distance), 1e-9 * cut->error);
+      EXPECT_NEAR(cut->error, test::expansion_error(root, cut->degree, distance), 1e-9 * cut->error);
       if (cut->degree > 0) {
-        EXPECT_GT(SourceTree::error(root, cut->degree - 1, distance), most * (1 - 1e-9));
+        EXPECT_GT(test::expansion_error(root, cut->degree - 1, distance), most * (1 - 1e-9));
       }
     }
   }

@@ -13,6 +13,7 @@
 #include "core/far/far_kernel.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/direct_winding_number.h"
+#include "tests/support/expansion_error.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -82,7 +83,7 @@ double check_every_degree(const SourceTree& tree, test::Random& random) {
       kernel.add_multipole(tree, number, p, samples, values);
       for (std::size_t i = 0; i < samples.count; ++i) {
         const double error = std::abs(values[i] - test::direct_winding_number(mesh, samples.query(i)));
-        const double bound = SourceTree::error(node, p, distances[i] * (1 - 1e-12));
+        const double bound = test::expansion_error(node, p, distances[i] * (1 - 1e-12));
         EXPECT_LE(error, bound + kOracle) << number << ' ' << p << ' ' << distances[i];
         if (error > 1e-10) closest = std::max(closest, error / bound);
       }
@@ -288,6 +289,26 @@ TEST(SourceTree, DecidesTiesOnTrianglesAsASumOverAllDoes) {
     // 1e-10 is the tolerance; 300 factors round by less.
     for (std::size_t i = 0; i < samples.count; ++i)
       EXPECT_NEAR(value(result.near, i) + result.far[i], value(all, i), 2e-10);
+  }
+}
+
+// It has no coefficients to be read, not even where the square of the distance is infinite.
+TEST(SourceTree, ANodeWithoutExpansionIsNeverFar) {
+  const DefaultFloatingPoint guard;
+  test::Random random(8);
+  const SourceTree tree = tree_of(small_triangles(random, 1, 0.3), 1e-6, kDetails[1]);
+  ASSERT_EQ(tree.nodes().front().order, 0);
+  for (const double distance : {2.0, 1e100, 1e200, 1e300}) {
+    SampleTile samples;
+    samples.clear();
+    samples.add({distance, 0.1, 0.2});
+    samples.fill_up();
+    for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+      FarTile result;
+      far_kernel(level).sum(tree, samples, result);
+      EXPECT_EQ(result.far_terms, 0U) << distance;
+      EXPECT_EQ(result.near_terms, 1U) << distance;
+    }
   }
 }
 

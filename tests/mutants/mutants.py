@@ -399,7 +399,7 @@ MUTANTS = [
     Mutant("planes_left_out", "a needle's plane is left out only where its closest point is surely outside", [
         ("core/distance/accurate_distance.cpp", "up > 1.0 + off", "up > 0.5 + off")]),
     Mutant("loops_cancel_wholly", "pieces that lead there and back cancel but for how far they are apart", [
-        ("core/boundary/change_bound.cpp", "moved.area += std::sqrt(square_of_size(cluster.box)) * cluster.length;",
+        ("core/boundary/change_bound.cpp", "moved.area += std::sqrt(square_of_diagonal(cluster.box)) * cluster.length;",
          "moved.area += 0.0;")]),
     Mutant("cracks_change_nothing", "a cap bounds the gradient by 2 A / (4 pi d^3)", [
         ("core/boundary/change_kernel.cpp", "hn::IfThenElseZero(taken, hn::Add(of_length, of_area))",

@@ -82,6 +82,7 @@ bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& insid
 // `most`: how far pulls may be, so that the surface moves by `options.simplify` at most.
 void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, double most,
               const SurfaceOptions& options) {
+  const bool had_holes = has_holes(made.surface);
   made.bound_too_small = !(most > 0.0);
   made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside, most, options.rounds);
   if (!made.simplified) return;
@@ -89,7 +90,7 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
   const DistanceEvaluator distance(mesh);
   const SourceSettler settler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0));
   settler.settle(made.surface);
-  settler.forget_far_sources(made.surface, options.simplify);
+  if (had_holes) settler.forget_far_sources(made.surface, options.simplify);
 }
 
 // What there is to know of the mesh and the lattice.

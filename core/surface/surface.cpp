@@ -220,12 +220,13 @@ class SurfaceMaker {
 
   void simplify_within_bound(FinishedSurface& made, const SurfaceMargins& margins) {
     const double most = bounds(margins).farthest_pull();
+    const bool had_holes = has_holes(made.surface);
     made.bound_too_small = !(most > 0.0);
     if (!made.bound_too_small) enter("simplifying");
     made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside_, most, options_.rounds);
     if (!made.simplified) return;
     settler_.settle(made.surface);
-    settler_.forget_far_sources(made.surface, options_.thickness + options_.simplify);
+    if (had_holes) settler_.forget_far_sources(made.surface, options_.thickness + options_.simplify);
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of

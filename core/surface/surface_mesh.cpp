@@ -1,9 +1,14 @@
 #include "core/surface/surface_mesh.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 namespace raycone {
+
+bool has_holes(const SurfaceMesh& surface) {
+  return std::ranges::find(surface.sources, kHole) != surface.sources.end();
+}
 
 void drop_gone(SurfaceMesh& surface) {
   std::size_t left = 0;

@@ -16,6 +16,8 @@ struct SurfaceMesh {
   std::vector<std::int32_t> sources;  // of each triangle: a triangle of the input, or kHole
 };
 
+[[nodiscard]] bool has_holes(const SurfaceMesh& surface);
+
 // A face that is not there has three equal corners.
 [[nodiscard]] inline bool is_gone(const Triangle& t) { return t[0] == t[1]; }
 

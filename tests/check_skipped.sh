@@ -22,8 +22,10 @@ allow() {
 SharedMeshes\..*|SharedIntersections\..*|ReadGltf\.SharedMeshes.*|RuleBlocks\.HoldOnRealOpenMeshes
 END
 )"
+# Only root may become another user.
+[ "$(id -u)" -eq 0 ] || allow 'faults_threads'
 # Sanitizers reserve terabytes of addresses, and die where memory runs out.
-[ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory|ulimit'
+[ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'faults_memory|faults_threads|ulimit'
 # They must be loaded before libfaketime, and trace themselves.
 [ -z "$(setting RAYCONE_SANITIZE)" ] || allow 'clock|system_calls'
 # Containers may forbid to trace.

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "app/process/limits.h"
 #include "app/process/usage_error.h"
 #include "app/run/mesh_list.h"
 #include "io/files/file_error.h"
-#include "io/files/read_file.h"
 #include "io/files/unpack.h"
 #include "io/mesh/read_mesh.h"
 
@@ -41,10 +42,17 @@ std::string own_name(const std::string& path) {
   return directory.parent_path().filename().string() + '/';
 }
 
+// How many meshes this process can keep in mind: links make trees of directories as large as they like.
+std::size_t most_meshes() {
+  constexpr std::uint64_t kBytesOfMesh = 1024;  // its names and all that is kept of its result, about
+  return static_cast<std::size_t>(available_memory() / kBytesOfMesh);
+}
+
 // What a directory holds that may be a mesh, by names relative to it.
 class DirectorySearch {
  public:
-  explicit DirectorySearch(std::string root) : root_(std::move(root)) {}
+  // Throws LimitError when there are more than `most`.
+  DirectorySearch(std::string root, std::size_t most) : root_(std::move(root)), most_(most) {}
 
   std::vector<BatchMesh> meshes() && {
     visit_directory("");
@@ -83,10 +91,15 @@ class DirectorySearch {
   }
 
   void add(const std::string& name) {
+    if (meshes_.size() >= most_) {
+      throw LimitError(root_ + ": more than " + std::to_string(most_) +
+                       " meshes, links to directories followed, for the memory that there is; see --shard");
+    }
     meshes_.push_back({path_of(name), name.empty() ? own_name(path_of("") + '/') : name, "", stamp_of(path_of(name))});
   }
 
   std::string root_;
+  std::size_t most_;
   std::vector<DirectoryIdentity> ancestors_;
   std::vector<BatchMesh> meshes_;
 };
@@ -95,7 +108,7 @@ class DirectorySearch {
 void add_path(const std::string& path, FoundMeshes& found) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
-    const std::vector<BatchMesh> meshes = DirectorySearch(path).meshes();
+    const std::vector<BatchMesh> meshes = DirectorySearch(path, most_meshes()).meshes();
     found.meshes.insert(found.meshes.end(), meshes.begin(), meshes.end());
     found.directories.push_back(path);
   } else {
@@ -121,7 +134,7 @@ void add_operand(const std::string& operand, bool nul_separated_lists, FoundMesh
   if (operand.starts_with('@') || operand == "-") {
     const std::string list = operand == "-" ? operand : operand.substr(1);
     constexpr const char* kHint = "; -0 reads lists whose paths end with NUL";
-    for (const std::string& path : paths_in_list(read_file(list), list, nul_separated_lists, kHint)) {
+    for (const std::string& path : paths_in_list(read_list(list), list, nul_separated_lists, kHint)) {
       add_path(path == "-" ? "./-" : path, found);  // a file, not standard input
     }
   } else {
@@ -135,11 +148,13 @@ std::string output_name(const std::string& name, const MeshSearch& search) {
   return fs::path(without_packing_extension(name)).replace_extension(search.extension).string();
 }
 
-// "a, b and c".
+// "a, b and c", or "a, b, c and 7 more".
 std::string enumerated(const std::vector<const BatchMesh*>& meshes) {
+  constexpr std::size_t kMostNamed = 3;
+  const std::size_t named = std::min(meshes.size(), kMostNamed);
   std::string text = meshes.front()->path;
-  for (std::size_t i = 1; i < meshes.size(); ++i) text += (i + 1 < meshes.size() ? ", " : " and ") + meshes[i]->path;
-  return text;
+  for (std::size_t i = 1; i < named; ++i) text += (i + 1 < meshes.size() ? ", " : " and ") + meshes[i]->path;
+  return named < meshes.size() ? text + " and " + std::to_string(meshes.size() - named) + " more" : text;
 }
 
 bool have_one_name(const std::vector<const BatchMesh*>& meshes) {
@@ -161,14 +176,16 @@ void refuse_collisions(const std::vector<BatchMesh>& meshes) {
   std::erase_if(by_output, [](const auto& output) { return output.second.size() == 1; });
   if (by_output.empty()) return;
   std::string text;
-  bool full_names_help = false;
+  bool full_names_help = false, directories_help = false;
   std::size_t listed = 0;
   for (const auto& [output, same] : by_output) {
-    full_names_help = full_names_help || !have_one_name(same);
+    (have_one_name(same) ? directories_help : full_names_help) = true;
     if (listed++ < kMostListed) text += (text.empty() ? "" : "; ") + collision_text(same);
   }
   if (listed > kMostListed) text += "; and " + std::to_string(listed - kMostListed) + " more";
-  throw UsageError(text + (full_names_help ? "; --full-names keeps them apart" : ""));
+  if (full_names_help) text += "; --full-names keeps them apart";
+  if (directories_help) text += "; names are unique within a directory that is searched: give that in place of files";
+  throw UsageError(text);
 }
 
 bool same_file(const BatchMesh& a, const BatchMesh& b) {

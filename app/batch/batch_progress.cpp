@@ -2,11 +2,11 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "app/process/messages.h"
+#include "app/process/terminal.h"
 #include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
@@ -26,13 +26,16 @@ void BatchProgress::show() {
 }
 
 void BatchProgress::rewrite() {
-  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  constexpr std::chrono::milliseconds kBetween{100};  // what changes sooner nobody reads
+  const Clock::time_point now = Clock::now();
+  if (drawn_ && now - last_line_ < kBetween) return;
+  last_line_ = now;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string line = std::to_string(done_) + '/' + counted(meshes_, "mesh");
   if (elapsed > 0.0) line += "  " + readable_count(static_cast<double>(done_) / elapsed, "meshes/s");
   if (part_ > 0.0) line += "  " + readable_time(elapsed * (1.0 - part_) / part_) + " left";
   if (failed_ > 0) line += "  " + std::to_string(failed_) + " failed";
-  std::fprintf(stderr, "\r\033[K%s", line.c_str());
-  std::fflush(stderr);
+  rewrite_line(line);
   drawn_ = true;
 }
 
@@ -47,7 +50,7 @@ void BatchProgress::write_line() {
 }
 
 void BatchProgress::erase() {
-  if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
+  if (std::exchange(drawn_, false)) erase_line();
 }
 
 BatchProgress::Style progress_style(ProgressMode mode, bool quiet) {

@@ -19,10 +19,12 @@
 #include "app/batch/svg_plot.h"
 #include "app/process/limits.h"
 #include "app/process/messages.h"
+#include "app/process/progress.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
 #include "app/run/written_files.h"
 #include "app/text/html.h"
+#include "app/text/readable_count.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
@@ -202,6 +204,12 @@ std::string provenance(const BatchRecords& records) {
 
 // --- Summary
 
+// "1.25 ms", "99 s", "1:00:00".
+std::string readable_duration(double seconds) {
+  constexpr double kLong = 120.0;
+  return seconds < kLong ? readable_quantity(seconds, Quantity::kSeconds) : readable_time(seconds);
+}
+
 std::string tile(const std::string& value, const std::string& name, bool bad = false) {
   return std::string("<div class=\"tile") + (bad ? " bad" : "") + "\"><b>" + html_text(value) + "</b>" +
          html_text(name) + "</div>\n";
@@ -217,7 +225,7 @@ std::string tiles(const BatchRecords& records) {
   const double samples = sum(collect(records, samples_of));
   const double seconds = sum(collect(records, [](const MeshFigures& f) { return f.seconds(); }));
   html += tile(readable_quantity(samples, Quantity::kCount), "samples");
-  html += tile(readable_quantity(seconds, Quantity::kSeconds), "in all meshes together");
+  html += tile(readable_duration(seconds), "in all meshes together");
   if (seconds > 0.0) html += tile(readable_quantity(samples / seconds, Quantity::kCount), "samples per second");
   return html + "</div>\n";
 }
@@ -266,16 +274,12 @@ std::string number_cell(double value, const std::string& text) {
   return std::string("<td class=\"n\" data-v=\"") + exact + "\">" + html_text(text) + "</td>";
 }
 
-// In groups of three, by narrow blanks where lines do not break: "1 234 567".
-std::string grouped(std::uint64_t count) {
-  std::string text = std::to_string(count);
-  for (std::size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, "\xE2\x80\xAF");
-  return text;
+std::string count_cell(std::uint64_t count) {
+  constexpr const char* kNarrowBlank = "\xE2\x80\xAF";  // where lines do not break
+  return number_cell(static_cast<double>(count), grouped(count, kNarrowBlank));
 }
 
-std::string count_cell(std::uint64_t count) { return number_cell(static_cast<double>(count), grouped(count)); }
-
-std::string time_cell(double seconds) { return number_cell(seconds, readable_quantity(seconds, Quantity::kSeconds)); }
+std::string time_cell(double seconds) { return number_cell(seconds, readable_duration(seconds)); }
 
 std::string figure_cells(const MeshFigures& f) {
   return count_cell(f.faces) + count_cell(f.exterior_edges) + count_cell(f.samples) + time_cell(f.read_s) +

@@ -1,19 +1,23 @@
 #include "app/batch/results_files.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <regex>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "app/batch/file_stamp.h"
+#include "app/process/limits.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
 #include "io/files/read_file.h"
@@ -23,13 +27,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool signal_waits() {
+  sigset_t waiting;
+  sigemptyset(&waiting);
+  return sigpending(&waiting) == 0 && sigisemptyset(&waiting) == 0;
+}
+
 // Held while a results file of `directory` changes: runs of one batch, should there be several, change the same one.
-// Where the file system has no locks, runs of different shards still do not get in each other's way.
+// Where the file system has no locks, runs of different shards still do not get in each other's way. Throws OutputError
+// where another process does not let go, or a signal that a supervisor holds back waits meanwhile.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::string& directory)
       : descriptor_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    constexpr std::chrono::milliseconds kPause{5};
+    constexpr std::chrono::minutes kMost{5};
+    const auto given_up = std::chrono::steady_clock::now() + kMost;
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EINTR) continue;
+      if (errno != EWOULDBLOCK) return;  // there are no locks
+      if (signal_waits() || std::chrono::steady_clock::now() >= given_up) {
+        close(descriptor_);
+        throw OutputError(directory + ": is locked by another process, expected one that lets go");
+      }
+      std::this_thread::sleep_for(kPause);
     }
   }
   ~DirectoryLock() {
@@ -51,20 +72,24 @@ std::string suffix_of(const std::optional<Shard>& shard) {
   return shard ? "-" + std::to_string(shard->index) + "-of-" + std::to_string(shard->count) : "";
 }
 
-// Whose rows those are.
-std::optional<Shard> shard_of(const std::string& name) {
-  static const std::regex pattern("results-([0-9]+)-of-([0-9]+)\\.csv");
+// Of results.csv, and of that of a shard, whose numbers are written as suffix_of() does.
+std::smatch match_of_table(const std::string& name) {
+  static const std::regex pattern("results(-([1-9][0-9]{0,18})-of-([1-9][0-9]{0,18}))?\\.csv");
   std::smatch match;
-  if (!std::regex_match(name, match, pattern)) return std::nullopt;
-  return Shard{std::stoull(match[1]), std::stoull(match[2])};
+  std::regex_match(name, match, pattern);
+  return match;
+}
+
+// Whose rows those are, of a name that holds_rows().
+std::optional<Shard> shard_of(const std::string& name) {
+  const std::smatch match = match_of_table(name);
+  if (!match[1].matched) return std::nullopt;
+  return Shard{std::stoull(match[2]), std::stoull(match[3])};
 }
 
 }  // namespace
 
-bool holds_rows(const std::string& name) {
-  static const std::regex pattern("results(-[0-9]{1,19}-of-[0-9]{1,19})?\\.csv");
-  return std::regex_match(name, pattern);
-}
+bool holds_rows(const std::string& name) { return !match_of_table(name).empty(); }
 
 std::vector<std::string> names_in(const std::string& directory) {
   std::vector<std::string> names;
@@ -111,22 +136,51 @@ std::string CsvLog::text() const {
   if (status.type() == fs::file_type::not_found) return "";
   // A pipe would keep us waiting.
   if (fs::is_other(status)) throw InputError(path_ + ": is a pipe or device, expected a file");
-  return read_file(path_);
+  constexpr std::uint64_t kOfMemory = 8;  // what becomes of a table takes some times its bytes
+  return read_file(path_, available_memory() / kOfMemory);
+}
+
+// What is behind the last complete line must be what a killed writer left of one. Where rows are in it, that line is
+// damaged: nobody shall take them for a part of it.
+void CsvLog::check_rest(std::string_view rest, std::size_t line) const {
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find('\n'));
+    if (one.size() == rest.size()) return;
+    rest.remove_prefix(one.size() + 1);
+    const std::vector<CsvRecord> records = parse_csv(std::string(one) + '\n').records;
+    if (!records.empty() && is_row(records.front())) {
+      throw InputError(path_ + ':' + std::to_string(line) + ": a quotation mark without its end, expected a row");
+    }
+  }
+}
+
+// With as many columns as this or an earlier version writes.
+bool CsvLog::is_row(const CsvRecord& record) const {
+  const auto has_size = [&](const CsvRecord& columns) { return columns.size() == record.size(); };
+  return has_size(columns_) || std::ranges::any_of(former_columns_, has_size);
+}
+
+CsvText CsvLog::parsed(std::string_view text) const {
+  CsvText table = parse_csv(text);
+  const std::string_view whole = text.substr(0, table.complete);
+  check_rest(text.substr(table.complete), 1 + static_cast<std::size_t>(std::ranges::count(whole, '\n')));
+  return table;
 }
 
 std::vector<CsvRecord> CsvLog::read() const {
   const std::string all = text();
   const std::string header = csv_line(columns_);
-  for (const CsvRecord& columns : former_columns_) {
-    const std::string former = csv_line(columns);
-    if (all.starts_with(former)) return parse_csv(std::string_view(all).substr(former.size())).records;
-  }
-  if (header.starts_with(all)) return {};  // empty, or a header that was never completed
-  if (!all.starts_with(header)) {
+  const bool is_table = all.starts_with(header) || std::ranges::any_of(former_columns_, [&](const CsvRecord& columns) {
+                          return all.starts_with(csv_line(columns));
+                        });
+  if (!is_table && header.starts_with(all)) return {};  // empty, or a header that was never completed
+  if (!is_table) {
     const std::string expected = header.substr(0, header.find_last_not_of("\r\n") + 1);
     throw InputError(path_ + ":1: not written by raycone batch, expected " + expected);
   }
-  return parse_csv(std::string_view(all).substr(header.size())).records;
+  std::vector<CsvRecord> rows = parsed(all).records;
+  rows.erase(rows.begin());  // the header
+  return rows;
 }
 
 // Where the last write(2) was cut short, because its process was killed, its line is cut off. That needs a look at the
@@ -134,7 +188,7 @@ std::vector<CsvRecord> CsvLog::read() const {
 off_t CsvLog::drop_incomplete_line(int descriptor) const {
   const off_t size = lseek(descriptor, 0, SEEK_END);
   if (size == complete_) return size;
-  const auto complete = static_cast<off_t>(parse_csv(read_file(path_)).complete);
+  const auto complete = static_cast<off_t>(parsed(text()).complete);
   if (ftruncate(descriptor, complete) != 0) fail_writing(path_, errno);
   return complete;
 }

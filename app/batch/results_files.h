@@ -27,7 +27,7 @@ class CsvLog {
   CsvLog(std::string path, CsvRecord columns, std::vector<CsvRecord> former_columns)
       : path_(std::move(path)), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
 
-  // Nothing where there is no file. Throws InputError where it is no such table.
+  // Nothing where there is no file. Throws InputError where it is no such table, or a quotation mark in it hides rows.
   [[nodiscard]] std::vector<CsvRecord> read() const;
   // Nanoseconds since 1970; 0 where there is no file.
   [[nodiscard]] std::int64_t modified() const;
@@ -37,6 +37,9 @@ class CsvLog {
 
  private:
   [[nodiscard]] std::string text() const;
+  [[nodiscard]] CsvText parsed(std::string_view text) const;
+  void check_rest(std::string_view rest, std::size_t line) const;
+  [[nodiscard]] bool is_row(const CsvRecord& record) const;
   off_t drop_incomplete_line(int descriptor) const;
   void sync() const;
 

@@ -201,9 +201,10 @@ class BatchRun {
     remove_debris();
     remove_gone();
     forget_rows();
+    const std::vector<SupervisedJob> jobs = make_jobs();
     const int signal = timed(outcome_.seconds, [&] {
       return supervise(
-          jobs(), limits, signals,
+          jobs, limits, signals,
           [this](std::size_t job, JobResult result, double part) { return take(job, std::move(result), part); },
           [this, &marker] {
             progress_.show();
@@ -273,14 +274,16 @@ class BatchRun {
     return directories;
   }
 
-  [[nodiscard]] const std::vector<SupervisedJob>& jobs() {
+  // Also makes the directories that outputs go to.
+  [[nodiscard]] std::vector<SupervisedJob> make_jobs() const {
+    std::vector<SupervisedJob> jobs;
     for (const PlannedMesh& planned : plan_.todo) {
       const std::string output = path_of_output(planned.mesh);
       std::error_code error;  // where it matters, the worker will notice and say so
       if (options_.writes) fs::create_directories(fs::path(output).parent_path(), error);
-      jobs_.push_back({planned.mesh.path, output, planned.mesh.stamp, directories_of(planned.mesh)});
+      jobs.push_back({planned.mesh.path, output, planned.mesh.stamp, directories_of(planned.mesh)});
     }
-    return jobs_;
+    return jobs;
   }
 
   // Whether to go on.
@@ -290,7 +293,7 @@ class BatchRun {
     BatchRecord record = record_of(mesh, std::move(result));
     results_.append(record);
     const bool failed = record.row.status != MeshStatus::kOk;
-    progress_.erase();
+    if (failed || !warnings.empty()) progress_.erase();
     if (failed) print_message(record.row.message);
     for (const std::string& warning : warnings) warn(command_, mesh.path + ": " + warning);
     progress_.add(failed, part);
@@ -329,7 +332,6 @@ class BatchRun {
   ResultsFiles results_;
   BatchProgress progress_;
   Starts starts_;  // of all that is to be done
-  std::vector<SupervisedJob> jobs_;
   BatchOutcome outcome_;
 };
 

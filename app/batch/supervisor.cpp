@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -20,7 +19,7 @@
 #include "app/batch/command_message.h"
 #include "app/batch/worker_process.h"
 #include "app/process/exit_code.h"
-#include "app/process/limits.h"
+#include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
 #include "io/files/file_time.h"
@@ -183,15 +182,14 @@ class Supervisor {
       if (!reusable) replace(slot);
       hash(slot, std::move(*result));
     } else if (slot.worker->ended()) {
+      const std::string& mesh = jobs_[slot.running->mesh].mesh;
+      const bool is_damaged = slot.worker->is_damaged();
       const int wait_status = replace(slot);
-      hash(slot, killed(slot, crash(jobs_[slot.running->mesh].mesh, wait_status)));
+      hash(slot, killed(slot, is_damaged ? damaged(mesh) : crash(mesh, wait_status)));
     } else if (Clock::now() >= slot.deadline) {
       replace(slot);
-      char limit[32];
-      std::snprintf(limit, sizeof limit, "%g", options_.timeout);
       hash(slot, killed(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
-                                     jobs_[slot.running->mesh].mesh + ": not finished within " + limit +
-                                         (options_.timeout == 1.0 ? " second" : " seconds") + " (--timeout)")));
+                                     timeout_text(jobs_[slot.running->mesh].mesh, options_.timeout))));
     }
   }
 
@@ -251,14 +249,26 @@ class Supervisor {
     return status;
   }
 
+  static JobResult damaged(const std::string& mesh) {
+    return failed(MeshStatus::kCrashed, static_cast<int>(ExitCode::kInternal),
+                  mesh + ": the answer of its process is damaged, please report");
+  }
+
   [[nodiscard]] JobResult crash(const std::string& mesh, int wait_status) const {
     constexpr int kSignalBase = 128;  // as in shells
-    const auto internal = static_cast<int>(ExitCode::kInternal);
+    const auto internal = static_cast<int>(ExitCode::kInternal), limit = static_cast<int>(ExitCode::kLimit);
     const int exit_status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 0;
-    if (exit_status == static_cast<int>(ExitCode::kLimit) || exit_status == kNotStarted) {
-      return failed(
-          MeshStatus::kMemory, static_cast<int>(ExitCode::kLimit),
-          mesh + ": out of memory, the limit is " + readable_bytes(static_cast<double>(options_.memory_limit)));
+    if (exit_status == limit) {
+      return failed(MeshStatus::kMemory, limit, out_of_memory_text(mesh, options_.memory_limit));
+    }
+    if (exit_status == kNotStarted) {
+      return failed(MeshStatus::kMemory, limit,
+                    mesh + ": its process could not start, for lack of memory (the limit is " +
+                        readable_bytes(static_cast<double>(options_.memory_limit)) + ") or of a library of raycone");
+    }
+    if (exit_status == kNotExecuted) {
+      return failed(MeshStatus::kCrashed, internal,
+                    mesh + ": its process could not start, expected raycone's program where it was, to be executed");
     }
     if (!WIFSIGNALED(wait_status)) {
       return failed(MeshStatus::kCrashed, internal, mesh + ": its process ended unexpectedly, please report");

@@ -8,9 +8,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <exception>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "app/batch/worker.h"
@@ -29,7 +31,7 @@ namespace {
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   execv("/proc/self/exe", words);
-  _exit(kNotStarted);
+  _exit(errno == ENOMEM || errno == EAGAIN ? kNotStarted : kNotExecuted);
 }
 
 }  // namespace
@@ -79,7 +81,7 @@ std::optional<JobResult> WorkerProcess::receive() {
     if (const std::optional<Message> message = reader_.next()) return result_from(*message);
   } catch (const std::exception&) {
     kill(process_, SIGKILL);
-    ended_ = true;
+    ended_ = is_damaged_ = true;
   }
   return std::nullopt;
 }
@@ -89,10 +91,17 @@ int WorkerProcess::end() {
   if (process < 0) return 0;
   // One that closed its socket is ending by itself, and how is of interest.
   if (!ended_) kill(process, SIGKILL);
+  // One that hangs in the kernel, as on a file system that does not answer, cannot be killed: others go on without.
+  constexpr int kPauses = 5000;
+  constexpr std::chrono::milliseconds kPause{1};
   int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  for (int n = 0; n < kPauses; ++n) {
+    const pid_t ended = waitpid(process, &status, WNOHANG);
+    if (ended == process) return status;
+    if (ended < 0 && errno != EINTR) return 0;
+    std::this_thread::sleep_for(kPause);
   }
-  return status;
+  return SIGKILL;
 }
 
 }  // namespace raycone

@@ -28,14 +28,17 @@ class WorkerProcess {
   // Takes what has arrived: the answer, once it is complete. Nothing to be understood ends the worker.
   [[nodiscard]] std::optional<JobResult> receive();
   [[nodiscard]] bool ended() const { return ended_; }
+  // Whether that is why it has ended.
+  [[nodiscard]] bool is_damaged() const { return is_damaged_; }
 
-  // Ends it, if need be, and returns how it ended, as wait(2) tells.
+  // Ends it, if need be, and returns how it ended, as wait(2) tells: one that hangs in the kernel is given seconds, and
+  // left to itself.
   int end();
 
  private:
   pid_t process_ = -1;
   int socket_ = -1;
-  bool ended_ = false;
+  bool ended_ = false, is_damaged_ = false;
   MessageReader reader_;
 };
 

@@ -31,7 +31,7 @@ OptionGroup batch_group(const std::string& formats) {
            {"--format", formats + "|none", "Format of outputs (default: vdb; npz of samples); none: results.csv only"},
            {"--full-names", "", "Keep the mesh's extension in the output's name: a.stl.vdb"},
            {"-0,--null", "", "Paths in lists end with NUL, not with a line feed"},
-           {"--jobs", "J", "Number of meshes at a time (default: as --threads allows)"},
+           {"--jobs", "J", "Number of meshes at a time, each on one thread at least (default: as --threads allows)"},
            {"--shard", "I/N|slurm", "Do only part I of N; slurm: the part of this array task"},
            {"--retry-failed", "", "Try failed meshes again"},
            {"--keep-going", "", "Go on when a mesh fails (default)"},
@@ -132,7 +132,9 @@ std::string result_options(const std::string& format, const MeshValues& of_mesh)
   std::string text = "--format=" + format;
   for (const auto& [name, given] : of_mesh) {
     if (without_effect.contains(name)) continue;
-    const std::string option = known.flags.contains(name) ? name : name + '=' + given.back();
+    // Of the grid batches keep the hash.
+    const std::string value = name == "--like" ? like_without_directory(given.back()) : given.back();
+    const std::string option = known.flags.contains(name) ? name : name + '=' + value;
     if (!is_default(option, draws ? kDefaultOfPoints : kDefaultOfLattices, draws)) text += '\n' + option;
   }
   return text;

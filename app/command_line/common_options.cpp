@@ -130,8 +130,6 @@ OutputFiles parse_output_files(const Values& values) {
   output.no_clobber = values.given("--no-clobber");
   if (values.given("--report")) output.report = values.text("--report");
   if (values.given("--depfile")) output.depfile = values.text("--depfile");
-  if (output.depfile == output.path) throw UsageError("--depfile " + output.path + ": is the output too");
-  if (output.report == output.path) throw UsageError("--report " + output.path + ": is the output too");
   return output;
 }
 

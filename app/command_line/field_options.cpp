@@ -71,7 +71,7 @@ OptionGroup field_group() {
         true},
        parts_option(),
        priority_option(),
-       {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"},
+       rule_option(),
        {"--band", "B",
         "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not "
         "cut it off"},
@@ -80,6 +80,10 @@ OptionGroup field_group() {
        {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
        {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
        {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
+}
+
+OptionSpec rule_option() {
+  return {"--rule", "threshold=T|abs=T|nonzero|positive|odd", "What counts as inside (default: threshold=0.5)"};
 }
 
 OptionSpec parts_option() {

@@ -15,6 +15,7 @@ namespace raycone {
 // --field solid, where there is no lattice.
 [[noreturn]] void refuse_solid();
 
+[[nodiscard]] OptionSpec rule_option();
 [[nodiscard]] OptionSpec parts_option();
 [[nodiscard]] OptionSpec priority_option();
 [[nodiscard]] OptionSpec tolerance_option();

@@ -50,6 +50,10 @@ bool is_default(const std::string& option, std::string_view own_default, bool dr
   return is_field || is_same(own_default) || std::ranges::any_of(kDefaults, is_same);
 }
 
+std::string like_without_directory(const std::string& value) {
+  return std::filesystem::path(value).filename().string();
+}
+
 std::vector<std::string> given_options(const Values& values, const OptionNames& known, std::string_view own_default) {
   static const std::set<std::string> without_effect{
       "--depfile", "--engine", "--format", "--memory-limit", "--no-clobber", "--output", "--progress", "--quiet",
@@ -58,7 +62,7 @@ std::vector<std::string> given_options(const Values& values, const OptionNames& 
   for (const auto& [name, given] : values.all()) {
     if (!name.starts_with("--") || without_effect.contains(name)) continue;
     for (const std::string& text : values_that_count(name, given)) {
-      const std::string value = name == "--like" ? std::filesystem::path(text).filename().string() : text;
+      const std::string value = name == "--like" ? like_without_directory(text) : text;
       std::string option = known.flags.contains(name) ? name : name + '=' + value;
       if (!is_default(option, own_default, values.given("--sample"))) options.push_back(std::move(option));
     }

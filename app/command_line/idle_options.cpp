@@ -23,7 +23,9 @@ void refuse_option(const Values& values, const std::string& name, const std::str
   refuse(values, name, false, because);
 }
 
-constexpr const char* kNoDigits = "on inside and label, which have no digits, expected another field";
+constexpr const char* kNoDigits = "on inside and label, which are no real numbers, expected another field";
+
+constexpr const char* kOnCsv = "on CSV, which holds all digits, expected another format";
 
 bool draws_in_box(const SampleRequest& request) {
   return std::ranges::any_of(request.groups,
@@ -32,9 +34,9 @@ bool draws_in_box(const SampleRequest& request) {
 
 }  // namespace
 
-void refuse_idle_rule(const Values& values, const FieldOptions& field) {
+void refuse_idle_rule(const Values& values, const FieldOptions& field, const char* expected) {
   if (field.has_rule()) return;
-  refuse_option(values, "--rule", "on winding, density and gradient, expected --field inside, sdf, solid or label");
+  refuse_option(values, "--rule", std::string("on winding, density and gradient, expected --field ") + expected);
 }
 
 void refuse_idle_parts(const Values& values, const FieldOptions& field) {
@@ -51,8 +53,7 @@ void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
 // `stores_numbers`: besides those of fields, as points are.
 void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
                           bool stores_numbers) {
-  const std::string on_csv = "on CSV, which holds all digits, expected another format";
-  if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", on_csv);
+  if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", kOnCsv);
   if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
@@ -60,14 +61,13 @@ void refuse_idle_encoding(const Values& values, const FieldOptions& field, const
 
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   refuse_idle_encoding(values, command.field, command.encoding, false);
-  refuse_idle_rule(values, command.field);
+  refuse_idle_rule(values, command.field, "inside, sdf, solid or label");
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
   if (!command.field.has_distance()) {
     refuse_option(values, "--band", "without a distance, expected --field sdf or solid");
   }
-  const std::string on_csv = "on CSV, which holds all digits, expected the format vdb, npy, npz, nrrd or vti";
-  if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", on_csv);
+  if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", kOnCsv);
   for (const char* const name : {"--double", "--half"}) {
     if (!command.field.has_numbers()) refuse_flag(values, name, kNoDigits);
   }
@@ -75,7 +75,7 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
 
 void refuse_idle_options(const Values& values, const PointsCommand& command) {
   refuse_idle_encoding(values, command.field, command.encoding, command.sample.has_value());
-  refuse_idle_rule(values, command.field);
+  refuse_idle_rule(values, command.field, "inside, sdf or label");
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
   refuse_option(values, "--band", "on distances at points, which are not cut off");

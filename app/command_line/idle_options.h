@@ -14,8 +14,8 @@ namespace raycone {
 void refuse_idle_options(const Values& values, const LatticeCommand& command);
 void refuse_idle_options(const Values& values, const PointsCommand& command);
 
-// Parts of them for other commands: options of fields, and of files.
-void refuse_idle_rule(const Values& values, const FieldOptions& field);
+// Parts of them for other commands: options of fields, and of files. `expected`: the command's fields that have a rule.
+void refuse_idle_rule(const Values& values, const FieldOptions& field, const char* expected);
 void refuse_idle_parts(const Values& values, const FieldOptions& field);
 void refuse_idle_depfile(const Values& values, const OutputFiles& output);
 

@@ -13,6 +13,7 @@
 #include "app/command_line/idle_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
@@ -34,9 +35,9 @@ VoxelSize parse_voxel_size(const std::string& text) {
   invalid("--voxel-size", text, "H or HX,HY,HZ, positive numbers");
 }
 
-// A file name may contain colons: the grid's name starts behind the last ".vdb:".
+// A file name may contain colons: the grid's name starts behind the last ".vdb:", in any case.
 GridReference parse_like(const std::string& text) {
-  const std::size_t end = text.rfind(".vdb:");
+  const std::size_t end = lower_case(text).rfind(".vdb:");
   if (end == std::string::npos) return {text, ""};
   return {text.substr(0, end + 4), text.substr(end + 5)};
 }

@@ -2,7 +2,6 @@
 // stay strings, as CLI11's own conversions accept infinity and let list options swallow operands.
 #include "app/command_line/parse_command_line.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <CLI/App.hpp>
@@ -19,6 +18,7 @@
 #include "app/command_line/commands.h"
 #include "app/command_line/suggestion.h"
 #include "app/command_line/values.h"
+#include "app/process/terminal.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
 #include "app/text/wrapped_help.h"
@@ -71,18 +71,12 @@ void declare_all(CLI::App& root) {
   }
 }
 
-// Of the terminal on standard output; 0: there is none.
-std::size_t terminal_width() {
-  winsize size{};
-  return isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
-}
-
 // CLI11's formatter leaves two blank lines between groups and none below the description. Programs that read the help
 // get a line for each option.
 std::string formatted_help(const CLI::App& app, const std::string& program) {
   std::string text = app.help(program);
   for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) text.erase(at, 1);
-  return wrapped_help(text.insert(text.find("\nUsage:"), 1, '\n'), terminal_width());
+  return wrapped_help(text.insert(text.find("\nUsage:"), 1, '\n'), terminal_columns(STDOUT_FILENO));
 }
 
 // `arguments` in a form that CLI11 cannot take for anything else. It only counts the operands: "[a,b]" would be a list

@@ -78,8 +78,9 @@ SliceRequest parse_request(const Values& values, const Values& up) {
   if (values.given("--normal")) {
     request.plane = parse_oblique_plane(values, up);
   } else {
-    if (values.given("--origin")) throw UsageError("--origin: needs --normal");
-    if (up.given("--up")) throw UsageError("--up " + up.text("--up") + ": needs --normal");
+    const std::string because = ": has no effect without --normal, expected both";
+    if (values.given("--origin")) throw UsageError("--origin " + values.text("--origin") + because);
+    if (up.given("--up")) throw UsageError("--up " + up.text("--up") + because);
     request.plane = parse_axis_plane(values);
   }
   if (values.given("--bounds")) request.bounds = parse_bounds(values.text("--bounds"));
@@ -95,11 +96,9 @@ FieldOptions parse_slice_field(const Values& values) {
   if (field == Field::kSolid) refuse_solid();
   if (!field || field == Field::kDensity || field == Field::kGradient)
     invalid("--field", name, "winding, inside, sdf or label");
-  if (field == Field::kWinding && values.given("--rule")) {
-    throw UsageError("--rule " + values.text("--rule") + ": has no effect on --field winding");
-  }
   FieldOptions options;
   options.fields = {*field};
+  refuse_idle_rule(values, options, "inside, sdf or label");
   if (values.given("--rule")) options.rule = parse_rule(values);
   if (values.given("--tolerance")) options.tolerance = parse_tolerance(values);
   return options;
@@ -161,8 +160,7 @@ CommandSpec slice_spec() {
                         "Winding number (default), inside, signed distance, or number of the part", true},
                        parts_option(),
                        priority_option(),
-                       {"--rule", "threshold=T|abs=T|nonzero|positive|odd",
-                        "What counts as inside (default: threshold=0.5)"},
+                       rule_option(),
                        tolerance_option()}},
                      output,
                      run_group()},
@@ -190,10 +188,6 @@ Command parse_slice(const Values& values) {
   command.run.options = given_options(values, option_names(slice_spec()));
   if (values.given("--values")) command.values = values.text("--values");
   if (command.values) check_values_name(*command.values);
-  if (command.values == command.output.path) throw UsageError("--values " + *command.values + ": is the output too");
-  if (command.values && command.values == command.output.report) {
-    throw UsageError("--values " + *command.values + ": is the report too");
-  }
   return command;
 }
 

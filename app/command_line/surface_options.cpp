@@ -70,8 +70,7 @@ CommandSpec surface_spec() {
           .groups = {mesh_group(),
                      lattice_group_with_room(),
                      {"Surface",
-                      {{"--rule", "threshold=T|abs=T|nonzero|positive|odd",
-                        "What counts as inside (default: threshold=0.5)"},
+                      {rule_option(),
                        {"--thicken", "T", "Add all that is within T of the faces, so that sheets survive"},
                        {"--simplify", "0|E|none",
                         "0 (default): merge faces of one plane; E: also others, if the surface moves by E at most; "

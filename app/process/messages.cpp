@@ -7,12 +7,23 @@
 #include "app/process/usage_error.h"
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
+#include "io/files/readable_bytes.h"
 
 namespace raycone {
 
 std::string message_line(std::string_view message) { return "raycone: " + plain_text(message, "?") + '\n'; }
 
 void print_message(std::string_view message) { std::fputs(message_line(message).c_str(), stderr); }
+
+std::string timeout_text(const std::string& name, double seconds) {
+  char limit[32];
+  std::snprintf(limit, sizeof limit, "%g", seconds);
+  return name + ": not finished within " + limit + (seconds == 1.0 ? " second" : " seconds") + " (--timeout)";
+}
+
+std::string out_of_memory_text(const std::string& name, std::uint64_t limit) {
+  return name + ": out of memory, the limit is " + readable_bytes(static_cast<double>(limit));
+}
 
 Failure current_failure() {
   try {

@@ -1,6 +1,7 @@
 // What the user is told on standard error, and how failures become messages and exit statuses.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,10 @@ namespace raycone {
 
 // Writes that line to standard error.
 void print_message(std::string_view message);
+
+// What limits have done to the work on `name`.
+[[nodiscard]] std::string timeout_text(const std::string& name, double seconds);
+[[nodiscard]] std::string out_of_memory_text(const std::string& name, std::uint64_t limit);  // bytes
 
 // How a run failed: its exit status, and what to tell the user.
 struct Failure {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "app/process/terminal.h"
 #include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
@@ -17,8 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kInterval{100};
-
-void erase_line() { std::fputs("\r\033[K", stderr); }
 
 std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total, double seconds) {
   const auto count = static_cast<double>(done);
@@ -91,9 +90,7 @@ void Progress::show_until_stopped() {
     const std::chrono::duration<double> elapsed = Clock::now() - start_;
     const std::string line = stage_ ? std::string(stage_) + "  " + readable_time(elapsed.count())
                                     : progress_line(done_, total_, elapsed.count());
-    erase_line();
-    std::fputs(line.c_str(), stderr);
-    std::fflush(stderr);
+    rewrite_line(line);
   } while (!changed_.wait_for(lock, kInterval, [this] { return stopped_; }));
 }
 

@@ -144,10 +144,7 @@ void leave_signals_to_supervisor() {
 }
 
 void start_timeout(double seconds, const std::string& name) {
-  char limit[32];
-  std::snprintf(limit, sizeof limit, "%g", seconds);
-  const std::string line = message_line(name + ": not finished within " + limit +
-                                        (seconds == 1.0 ? " second" : " seconds") + " (--timeout)");
+  const std::string line = message_line(timeout_text(name, seconds));
   line.copy(timeout_message, sizeof timeout_message - 1);
   handle(SIGALRM, time_out);
   const double capped = std::min(seconds, kMaxTimeout);
@@ -166,6 +163,7 @@ HeldSignals::HeldSignals() {
   };
   for (const int signal : kInterruptions) hold(signal);
   hold(SIGXCPU);
+  hold(SIGPIPE);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
   descriptor_ = signalfd(-1, &held, SFD_NONBLOCK | SFD_CLOEXEC);
   if (descriptor_ >= 0) return;

@@ -7,17 +7,22 @@
 namespace raycone {
 namespace {
 
+[[noreturn]] void refuse(const std::string& name, const std::string& names) {
+  throw OutputError(name + ": Make cannot read " + names + ", expected none with --depfile");
+}
+
 void refuse(const std::string& name, const char* characters, const std::string& names) {
   const std::size_t found = name.find_first_of(characters);
   if (found == std::string::npos) return;
-  const std::string what = name[found] == '\n' ? "line feeds" : std::string("'") + name[found] + "'";
-  throw OutputError(name + ": Make cannot read " + names + " with " + what + ", expected none with --depfile");
+  refuse(name, names + " with " + (name[found] == '\n' ? "line feeds" : std::string("'") + name[found] + "'"));
 }
 
 // As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled. Colons, too,
-// which GCC leaves as they are: Make would take the line for another rule.
+// which GCC leaves as they are: Make would take the line for another rule. A leading ~ is a home, behind ./, too.
 std::string escaped(const std::string& name) {
-  refuse(name, "\n;|=", "names");
+  refuse(name, "\n;|=*?[", "names");
+  if (name.starts_with('~')) refuse(name, "names that begin with '~'");
+  if (name.ends_with('\\')) refuse(name, "names that end with '\\'");
   std::string text;
   std::string backslashes;
   for (const char c : name) {

@@ -1,21 +1,16 @@
 // Text for people; machines take json.h.
 #include "app/report/info.h"
 
+#include <cstddef>
 #include <cstdio>
 #include <utility>
 
 #include "app/text/plain_text.h"
+#include "app/text/readable_count.h"
 #include "io/files/counted.h"
 
 namespace raycone {
 namespace {
-
-// 1234567 as "1 234 567".
-std::string readable(std::uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t end = digits.size(); end > 3; end -= 3) digits.insert(end - 3, 1, ' ');
-  return digits;
-}
 
 std::string readable_seconds(double seconds) {
   char text[48];
@@ -26,7 +21,8 @@ std::string readable_seconds(double seconds) {
   } else if (seconds < 7200.0) {
     std::snprintf(text, sizeof text, "about %.0f minutes", seconds / 60.0);
   } else {
-    std::snprintf(text, sizeof text, "about %.3g hours", seconds / 3600.0);
+    const double hours = seconds / 3600.0;
+    std::snprintf(text, sizeof text, hours < 99.5 ? "about %.3g hours" : "about %.0f hours", hours);
   }
   return text;
 }
@@ -39,16 +35,15 @@ std::string cost_of(const CostedLattice& costed, int threads) {
 }
 
 std::string intersections_of(const IntersectionInfo& found) {
-  if (found.pairs) return readable(*found.pairs) + (*found.pairs == 1 ? " pair of faces" : " pairs of faces");
+  if (found.pairs) return grouped(*found.pairs) + (*found.pairs == 1 ? " pair of faces" : " pairs of faces");
   return "some; --intersections counts them";
 }
 
 }  // namespace
 
 void InfoTable::row(const std::string& name, const std::string& value) {
-  char line[48];
-  std::snprintf(line, sizeof line, "  %-20s ", name.c_str());
-  text_ += line + value + "\n";
+  constexpr std::size_t kWidth = 20;
+  text_ += "  " + name + std::string(name.size() < kWidth ? kWidth - name.size() : 0, ' ') + ' ' + value + "\n";
 }
 
 std::string printed_number(double number) {
@@ -64,18 +59,18 @@ std::string printed_point(const Vec3& point) {
 std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const MeshStatistics& s = info.statistics;
   InfoTable table;
-  table.row("faces", readable(info.faces));
-  if (info.skipped_faces > 0) table.row("skipped faces", readable(info.skipped_faces) + " of fewer than three corners");
-  table.row("vertices", readable(info.vertices) + ", after welding " + readable(info.welded_vertices));
+  table.row("faces", grouped(info.faces));
+  if (info.skipped_faces > 0) table.row("skipped faces", grouped(info.skipped_faces) + " of fewer than three corners");
+  table.row("vertices", grouped(info.vertices) + ", after welding " + grouped(info.welded_vertices));
   if (!info.unit.empty()) table.row("unit", info.unit);
-  table.row("components", readable(s.components));
+  table.row("components", grouped(s.components));
   table.row("surface", s.closed() ? "closed" : "open");
-  table.row("exterior edges", readable(s.exterior_edges));
-  table.row("inconsistent edges", readable(s.inconsistent_edges) + " of two faces in the same direction");
-  table.row("non-manifold edges", readable(s.nonmanifold_edges) + " of more than two faces");
-  table.row("degenerate faces", readable(s.degenerate_faces) + " of zero area");
+  table.row("exterior edges", grouped(s.exterior_edges));
+  table.row("inconsistent edges", grouped(s.inconsistent_edges) + " of two faces in the same direction");
+  table.row("non-manifold edges", grouped(s.nonmanifold_edges) + " of more than two faces");
+  table.row("degenerate faces", grouped(s.degenerate_faces) + " of zero area");
   table.row("duplicate faces",
-            readable(s.duplicate_faces) + ", pairs that cancel " + readable(info.opposite_duplicate_faces));
+            grouped(s.duplicate_faces) + ", pairs that cancel " + grouped(info.opposite_duplicate_faces));
   if (info.intersections) table.row("self-intersections", intersections_of(*info.intersections));
   table.row("bounds", printed_point(info.bounds.lower) + " to " + printed_point(info.bounds.upper));
   table.row("size", printed_point(info.bounds.upper - info.bounds.lower) + " world units");

@@ -18,7 +18,7 @@ void check_cubic(const char* field, const PlacedLattice& lattice, const std::str
   if (lattice.is_cubic(turned ? 1e-5 : 1e-12)) return;  // of matrices in 32 bits; of sides divided by counts
   const Vec3& spacing = lattice.grid.spacing;
   char voxels[120];
-  std::snprintf(voxels, sizeof voxels, "voxels of %g x %g x %g%s", spacing.x, spacing.y, spacing.z,
+  std::snprintf(voxels, sizeof voxels, "voxels of %.9g x %.9g x %.9g%s", spacing.x, spacing.y, spacing.z,
                 lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles");
   throw UsageError("--field " + std::string(field) + ": " + voxels + ", expected cubic ones (" + remedy + ')');
 }

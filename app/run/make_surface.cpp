@@ -19,14 +19,16 @@ namespace raycone {
 namespace {
 
 // What is inside must be something that a surface can go around.
-void check_inside(const std::string& name, const NodeSet& inside, const Rule& rule) {
+void check_inside(const std::string& name, const NodeSet& inside, const SurfaceOptions& options) {
+  const std::string rule = name_of(options.rule);
   if (inside.empty()) {
-    throw InputError(name + ": no sample is inside by the rule " + name_of(rule) +
-                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, "
-                     "raycone surface --thicken T)?");
+    const bool thickens = options.thickness > 0.0;
+    throw InputError(name + ": no sample is inside by the rule " + rule + (thickens ? ", or within --thicken" : "") +
+                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, " +
+                     (thickens ? "a larger --thicken" : "raycone surface --thicken T") + ")?");
   }
   if (inside.reaches_border()) {
-    throw InputError(name + ": what is inside by the rule " + name_of(rule) +
+    throw InputError(name + ": what is inside by the rule " + rule +
                      " reaches the border of the lattice, expected a larger box (--padding P), faces that agree "
                      "(--orient auto), or another rule");
   }
@@ -115,7 +117,7 @@ struct PointEvaluators {
 MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
-  check_memory(name, node_set_bytes(lattice), memory);
+  check_memory(name, node_set_bytes(lattice) + kWorkingMemory, memory);
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
@@ -124,7 +126,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done, &tally);
   Terms terms = evaluator->terms();
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
-  check_inside(name, inside, options.rule);
+  check_inside(name, inside, options);
   std::optional<PointEvaluators> at_points;
   if (!edges.empty()) {  // values of closed meshes are exact anyway
     evaluator.reset();   // what it held is free for those that follow
@@ -135,7 +137,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   FinishedSurface closed = within_limits(name, options, [&] {
     std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
     if (itself) return *std::move(itself);
-    check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
+    check_memory(name, surface_bytes(inside, mesh.triangles.size()) + kWorkingMemory, memory);
     return closed_surface(mesh, evaluators, inside, options);
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
+#include "app/process/limits.h"
 #include "app/process/usage_error.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/read_file.h"
+#include "io/files/text_scanner.h"
 
 namespace raycone {
 namespace {
-
-// What editors of Windows put first.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool is_blank_or_comment(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
@@ -21,9 +21,14 @@ bool is_blank_or_comment(std::string_view line) {
 
 }  // namespace
 
+std::string read_list(const std::string& list) {
+  constexpr std::uint64_t kOfMemory = 64;  // what becomes of a path takes some tens of times its bytes
+  return read_file(list, available_memory() / kOfMemory);
+}
+
 std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated,
                                        const std::string& hint) {
-  if (!nul_separated && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (!nul_separated) text = without_byte_order_mark(text);
   std::vector<std::string> paths;
   for (std::size_t number = 1; !text.empty(); ++number) {
     std::string_view line = text.substr(0, text.find(nul_separated ? '\0' : '\n'));
@@ -55,7 +60,7 @@ MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& point
     }
     const std::string list = operand.substr(1);
     expanded.lists.push_back(list);
-    const std::vector<std::string> listed = paths_in_list(read_file(list), list, false);
+    const std::vector<std::string> listed = paths_in_list(read_list(list), list, false);
     if (listed.empty()) throw InputError(list + ": names no mesh, expected one a line");
     paths.insert(paths.end(), listed.begin(), listed.end());
   }

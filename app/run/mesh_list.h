@@ -9,6 +9,10 @@
 
 namespace raycone {
 
+// The text of a list; "-": standard input. Throws InputError where it cannot be read, LimitError where its paths would
+// take more memory than there is.
+[[nodiscard]] std::string read_list(const std::string& list);
+
 // The paths in `text`, in its order. One a line: a carriage return at its end and a byte order mark at the start of the
 // text are no part of it; lines of blanks only, and comments, whose first character that is no blank is #, are none.
 // With `nul_separated` each path ends with NUL, and none is a comment. Throws InputError, with the name of the list and

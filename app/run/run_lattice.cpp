@@ -106,7 +106,7 @@ double writer_memory(const LatticeCommand& command, const RunReport& report) {
 // module must be counted before it is loaded.
 double memory_to_begin(const LatticeCommand& command, const RunReport& report) {
   constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
-  const double of_writer = writer_memory(command, report);
+  const double of_writer = writer_memory(command, report) + kWorkingMemory;
   if (command.encoding.format != FieldFormat::kVdb) return of_writer;
   const Lattice& grid = report.lattice->grid;
   SlabKind kind = slab_kind(report);
@@ -121,7 +121,7 @@ void check_slab_memory(const LatticeCommand& command, const LatticeWriter& write
   const LatticeBlock smallest = Slabs(report.lattice->grid, writer, 1).first();
   SlabKind kind = slab_kind(report);
   kind.blocks = takes_blocks(command, writer, *report.lattice);
-  const double bytes = writer_memory(command, report) + slab_memory(smallest, command.field, kind);
+  const double bytes = writer_memory(command, report) + slab_memory(smallest, command.field, kind) + kWorkingMemory;
   check_memory(report.mesh, bytes, limits.memory());
 }
 
@@ -141,7 +141,8 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
 // Slabs as memory allows.
 Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                const RunLimits& limits) {
-  const double left = static_cast<double>(limits.memory()) - memory_in_use() - writer_memory(command, report);
+  const double taken = memory_in_use() + writer_memory(command, report) + kWorkingMemory;
+  const double left = static_cast<double>(limits.memory()) - taken;
   return {report.lattice->grid, writer, slab_samples(command.field, slab_kind(report), left)};
 }
 

@@ -1,23 +1,28 @@
 #include "app/run/run_limits.h"
 
 #include <malloc.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <new>
 
 #include "app/process/limits.h"
+#include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "io/files/file_error.h"
-#include "io/files/readable_bytes.h"
 
 namespace raycone {
 namespace {
 
-// Each thread may have an arena, and none uses what is free in another one's.
+// Each thread may have an arena, and none uses what is free in another one's. An arena takes 64 MB of addresses at a
+// time, and 128 MB for a moment. Where `ulimit -v` has none left for that, each number would get a mapping of its own.
 void share_arenas(std::uint64_t memory) {
-  constexpr std::uint64_t kPerArena = std::uint64_t{64} << 20;
+  constexpr std::uint64_t kPerArena = std::uint64_t{64} << 20, kOfAddresses = std::uint64_t{1} << 30;
   constexpr std::uint64_t kMostArenas = 64;
-  mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(memory / kPerArena, 1, kMostArenas)));
+  rlimit addresses{};
+  const bool are_few = getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY;
+  const std::uint64_t arenas = memory / (are_few ? kOfAddresses : kPerArena);
+  mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(arenas, 1, kMostArenas)));
 }
 
 // TBB starts as many workers as there are CPUs, now or later, however few are allowed to work, and ends the process
@@ -44,8 +49,7 @@ void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    const std::string limit = limits ? ", the limit is " + readable_bytes(static_cast<double>(limits->memory())) : "";
-    throw LimitError(mesh + ": out of memory" + limit);
+    throw LimitError(limits ? out_of_memory_text(mesh, limits->memory()) : mesh + ": out of memory");
   } catch (const ThreadsUnavailable& error) {
     throw UnavailableError(mesh + ": " + error.what());
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <iterator>
 #include <string>
@@ -19,6 +20,13 @@ namespace raycone {
   std::snprintf(number, sizeof number, "%.3g", count);
   const std::string behind = kPrefixes[prefix] + unit;
   return behind.empty() ? number : number + (' ' + behind);
+}
+
+// In groups of three digits: "1 234 567".
+[[nodiscard]] inline std::string grouped(std::uint64_t count, const char* between = " ") {
+  std::string digits = std::to_string(count);
+  for (std::size_t end = digits.size(); end > 3; end -= 3) digits.insert(end - 3, between);
+  return digits;
 }
 
 }  // namespace raycone

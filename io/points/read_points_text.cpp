@@ -2,6 +2,7 @@
 // and somebody who sends a point and waits for its answer gets it.
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -29,9 +30,11 @@ class TextPointReader : public PointReader {
     given_ = columns_;
   }
 
+  // Points before a line that is none are answered first, however they arrive.
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.clear();
-    while (batch.size() < max && (batch.empty() || !lines_.would_wait())) {
+    if (fault_) std::rethrow_exception(fault_);
+    while (batch.size() < max && !fault_ && (batch.empty() || !lines_.would_wait())) {
       const auto line = lines_.next();
       if (!line) {
         check_header_alone();
@@ -39,16 +42,25 @@ class TextPointReader : public PointReader {
       }
       const bool is_first = !std::exchange(started_, true);
       if (is_first && take_header(*line)) continue;
-      batch.push_back(parse(*line));
+      take_point(*line, batch);
     }
     return !batch.empty();
   }
 
-  [[nodiscard]] bool would_block() override { return lines_.would_wait(); }
+  [[nodiscard]] bool would_block() override { return fault_ || lines_.would_wait(); }
   [[nodiscard]] bool has_columns() const override { return true; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
+  void take_point(std::string_view line, std::vector<Vec3>& batch) {
+    try {
+      batch.push_back(parse(line));
+    } catch (const InputError&) {
+      if (batch.empty()) throw;
+      fault_ = std::current_exception();
+    }
+  }
+
   bool take_header(std::string_view line) {
     if (line.find('\0') != std::string_view::npos) lines_.fail("the input is binary, expected text");
     if (line.substr(0, line.find_last_not_of(" \t") + 1) == "ply") {
@@ -80,12 +92,22 @@ class TextPointReader : public PointReader {
     Vec3 point;
     for (std::size_t column = 0; column <= last; ++column) {
       const auto field = fields.next();
+      check_quotes(fields);
       if (!field) fail_short(line, column, last);
       for (int axis = 0; axis < 3; ++axis) {
         if (columns_[static_cast<std::size_t>(axis)] == column) point[axis] = coordinate(*field, column);
       }
     }
+    if (line.find('"') != std::string_view::npos) {
+      while (fields.next()) {
+      }
+      check_quotes(fields);
+    }
     return point;
+  }
+
+  void check_quotes(const TableFields& fields) const {
+    if (fields.is_open()) lines_.fail("a quotation mark without its end, expected it in the same line");
   }
 
   [[nodiscard]] double coordinate(std::string_view field, std::size_t column) const {
@@ -107,6 +129,7 @@ class TextPointReader : public PointReader {
   std::optional<std::string> header_;
   std::uint64_t header_number_ = 0;  // of its line
   std::optional<char> delimiter_;    // of the data, known from their first line on
+  std::exception_ptr fault_;         // what comes behind the last points
 };
 
 }  // namespace

@@ -20,6 +20,9 @@ class TableFields {
     return rest_.starts_with('"') ? next_quoted() : next_plain();
   }
 
+  // Whether a quotation mark among the fields so far has no other one.
+  [[nodiscard]] bool is_open() const { return is_open_; }
+
  private:
   [[nodiscard]] bool is_blank(char c) const { return c == ' ' || (c == '\t' && delimiter_ != '\t'); }
   [[nodiscard]] bool ends_field(char c) const { return delimiter_ == ' ' ? is_blank(c) : c == delimiter_; }
@@ -41,6 +44,7 @@ class TableFields {
     while (size < rest_.size() && (rest_[size] != '"' || rest_.substr(size, 2) == "\"\"")) {
       size += rest_[size] == '"' ? 2 : 1;
     }
+    is_open_ = is_open_ || size >= rest_.size();
     const std::string_view field = rest_.substr(1, std::min(size, rest_.size()) - 1);
     const std::size_t after = std::min(size + 1, rest_.size());
     std::size_t end = after;
@@ -61,7 +65,7 @@ class TableFields {
 
   std::string_view rest_;
   char delimiter_;
-  bool at_end_ = false;
+  bool at_end_ = false, is_open_ = false;
 };
 
 }  // namespace raycone

@@ -184,7 +184,7 @@ TEST_F(CommandLine, ContradictionsAreUsageErrors) {
       expect_error(run_raycone({"points", mesh, points}), 1, "cannot both be standard input");
     }
   }
-  expect_error(lattice({"--report", csv_}), 1, "is the output too");
+  expect_error(lattice({"--report", csv_}), 1, "is output and report");
 }
 
 TEST_F(CommandLine, ValuesAreNeitherForgottenNorGivenToFlags) {

@@ -123,6 +123,9 @@ TEST_F(SdfField, IsALevelSetWhateverTheMesh) {
     }
     const CommandResult result = run_raycone(arguments);
     ASSERT_TRUE(result.status == 0 || result.status == 5) << result.err;  // some are broken on purpose
+    const std::string table = contents(dir_ / "out/results.csv");
+    for (const std::string status : {",crashed,", ",memory,", ",timeout,"})
+      EXPECT_EQ(table.find(status), std::string::npos) << table;
     for (const auto& output : std::filesystem::directory_iterator(dir_ / "out")) {
       if (output.path().extension() != ".vdb") continue;
       EXPECT_EQ(surface_of(output.path())->level_set_faults(8), "") << output.path();

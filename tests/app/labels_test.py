@@ -468,7 +468,7 @@ class Refusals(Labels):
     def test_what_cannot_be_read(self):
         self.refused("lattice left_lobe.obj absent.obj -o l.npy --field label", 2, "absent.obj: cannot be")
         self.write("points.csv", "0,0,0\n")
-        self.refused("points right.obj points.csv -o l.npy --field label --dtype f32", 1, "have no digits")
+        self.refused("points right.obj points.csv -o l.npy --field label --dtype f32", 1, "are no real numbers")
         self.refused("lattice @absent -o l.npy --field label", 2, "absent: cannot be")
         self.write("empty", "# nothing\n")
         self.refused("lattice @empty -o l.npy --field label", 2, "empty: names no mesh")

@@ -8,6 +8,7 @@ installed.
 import itertools
 import json
 import os
+import shutil
 import sys
 import warnings
 import xml.etree.ElementTree
@@ -293,6 +294,8 @@ class Files(Like):
         for steps, points in self.cases():
             self.works("lattice %s --like g.nrrd -o a.vdb" % CUBE)
             self.assertTrue((self.like("a.vdb") == points).all())
+            shutil.copyfile("a.vdb", "A.VDB")
+            self.assertTrue((self.like("A.VDB:winding") == points).all())
             try:
                 import pyopenvdb
             except ImportError:

@@ -37,8 +37,7 @@ TEST(MeshList, WithNulInItsLinesIsRefused) {
     (void)paths_in_list(text, "list", false, "; -0 helps");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "list:2: holds a NUL, expected a path of text; -0 helps");
+    EXPECT_EQ(std::string(error.what()), "list:2: holds a NUL, expected a path of text; -0 helps");
   }
 }
 

@@ -191,9 +191,40 @@ TEST(DepfileText, EscapesWhatMakeWouldMisread) {
             "a\\ b.vdb: \\\n  $$x.obj \\\n  c\\#d.bin \\\n  e\\\\\\ f \\\n  g\\h\n");
 }
 
-TEST(DepfileText, ReadsBackInMakeOrIsRefused) {
-  EXPECT_EQ(depfile_text("a:b.vdb", {"c:d.obj"}), "a\\:b.vdb: \\\n  c\\:d.obj\n");
-  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb"}) {
+// Make's opinion of a rule: 0, up to date, or 1.
+int asked_of_make(const TemporaryDirectory& directory, const std::string& rule) {
+  write_text(directory / "rule.mk", rule + "\t@true\n");
+  return Command({"/usr/bin/make", "--question", "--directory", directory.path().string(), "--file=rule.mk"})
+      .wait()
+      .status;
+}
+
+TEST(DepfileText, ReadsBackInMake) {
+  if (!std::filesystem::exists("/usr/bin/make")) GTEST_SKIP() << "no GNU Make";
+  const TemporaryDirectory directory;
+  const auto touch = [&](const std::string& name, int seconds) {
+    write_text(directory / name, "");
+    std::filesystem::last_write_time(directory / name, std::filesystem::file_time_type(std::chrono::seconds(seconds)));
+  };
+  for (const std::string name :
+       {"a b", "a:b", "a#b", "$a", "a\\ b", "a\\b", "50%", "(a)", "{a,b}", "a'b", "a\"b", "a&b", "é"}) {
+    if (name != "50%") {  // which no output may have
+      touch(name, 1000);
+      touch("input", 999);
+      EXPECT_EQ(asked_of_make(directory, depfile_text(name, {"input"})), 0) << name;
+      touch("input", 1001);
+      EXPECT_EQ(asked_of_make(directory, depfile_text(name, {"input"})), 1) << name;
+    }
+    touch("out", 1000);
+    touch(name, 999);
+    EXPECT_EQ(asked_of_make(directory, depfile_text("out", {name})), 0) << name;
+    touch(name, 1001);
+    EXPECT_EQ(asked_of_make(directory, depfile_text("out", {name})), 1) << name;
+  }
+}
+
+TEST(DepfileText, RefusesWhatMakeCannotRead) {
+  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb", "a*", "a?", "c[1]", "~root", "a\\"}) {
     EXPECT_THROW((void)depfile_text(name, {"mesh"}), OutputError) << name;
     EXPECT_THROW((void)depfile_text("out", {name}), OutputError) << name;
   }

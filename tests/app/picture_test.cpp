@@ -173,8 +173,6 @@ TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
   EXPECT_LT(image.at(1, 0).red, image.at(1, 0).blue);
 }
 
-// Hundreds of parts with long names, in pictures of all sizes: what does not fit is left out. (Pixels outside of an
-// image are memory of something else, which sanitizers notice.)
 // Of the pixels of a picture of values that rise evenly from one end to the other, whether any is darker than its
 // colour.
 bool has_contours(double least, double most) {
@@ -205,6 +203,8 @@ TEST(TraceContours, LeaveOutSquaresThatTheyWouldFill) {
   EXPECT_EQ(lines, 1);
 }
 
+// Hundreds of parts with long names, in pictures of all sizes: what does not fit is left out. (Pixels outside of an
+// image are memory of something else, which sanitizers notice.)
 TEST(SlicePicture, OfLabelsHasALegendThatFits) {
   const std::vector<std::string> names(500, "WWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWW \xc3\xa9 mmmmmm");
   for (const auto& [width, height] : std::vector<std::pair<std::int64_t, std::int64_t>>{

@@ -82,6 +82,27 @@ TEST_F(PointsCommand, LinesThatAreNoPointsAreInputErrorsWithTheirNumber) {
   }
 }
 
+TEST_F(PointsCommand, PointsBeforeALineThatIsNoneAreAnswered) {
+  for (const std::string line : {"bad\n", "1,2,\"3\n", "1,2,3,\"a\nb\"\n"}) {
+    write_text(points_, "0.5,0.5,0.5\n2,0,0\n" + line);
+    const CommandResult result = run_raycone({"points", mesh_, points_, "--quiet"});
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_EQ(result.out, "x,y,z,w\n0.5,0.5,0.5,1\n2,0,0,0\n") << line;
+    EXPECT_EQ(result.err.rfind("raycone: " + points_ + ":3: ", 0), 0U) << result.err;
+  }
+}
+
+TEST_F(PointsCommand, QuotesNeedEnds) {
+  write_text(points_, "1,2,\"3\",\"a \"\" b\"\n1,2,3 # a \"comment\n");
+  EXPECT_EQ(run_raycone({"points", mesh_, points_, "--quiet"}).status, 0);
+  for (const std::string line : {"\"1,2,3", "1,2,\"3", "1,2,3,\"a", "1,2,3,\"a\"\""}) {
+    write_text(points_, line + '\n');
+    const CommandResult result = run_raycone({"points", mesh_, points_, "--quiet"});
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_NE(result.err.find(points_ + ":1: a quotation mark without its end"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(PointsCommand, NoPointsAreNoError) {
   write_text(points_, "");
   const CommandResult result = run_raycone({"points", mesh_, points_, "--quiet"});

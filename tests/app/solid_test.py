@@ -125,7 +125,7 @@ class Solid(CommandCase):
                 (CUBE, "--resolution 5 --orient flip", 2, "no sample is inside"),
                 (CUBE, "--resolution 5 --rule threshold=-.5", 2, "reaches the border of the lattice"),
                 (CUBE, "--resolution 9 --bounds 0,0,0,1,1,.5", 2, "reaches the border of the lattice"),
-                (CUBE, "--resolution 5,6,7", 1, "--field solid: voxels of 0.25 x 0.2 x 0.166667, expected cubic ones"),
+                (CUBE, "--resolution 5,6,7", 1, "--field solid: voxels of 0.25 x 0.2 x 0.166666667, expected cubic ones"),
                 (CUBE, "--resolution 9 --memory-limit 1", 4, "memory")):
             self.refused("lattice %s -o a.vdb --field solid %s --quiet" % (mesh, options), status, reason)
             self.assertFalse(os.path.exists("a.vdb"))

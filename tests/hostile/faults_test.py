@@ -1,7 +1,7 @@
-"""Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--memory] [--long]
+"""Faults at every stage of a run: python3 faults_test.py RAYCONE MESH_DIRECTORY [--memory|--threads] [--long]
 
 Signals, a full disk, a file that shrinks; with --memory instead memory that runs out (status 77 where RAYCONE is built with
-a sanitizer, which ends the process then). Whatever happens, a run ends with a documented status and one line, and leaves
+a sanitizer, which ends the process then), with --threads batches of a user who may have few (77 where not root). Whatever happens, a run ends with a documented status and one line, and leaves
 the earlier outputs as they were or replaces them by the complete new ones. --long sweeps more finely.
 """
 
@@ -18,6 +18,7 @@ import time
 from runs import CLOSED, MESHES, OPEN, RAYCONE, Run, all_runs, contents, fail, is_sanitized, limit, report
 
 LONG = "--long" in sys.argv
+FEW_THREADS = "--threads" in sys.argv
 
 
 # From too little for the program to be loaded (127, the dynamic linker's; it dies of no other signal) to enough.
@@ -134,7 +135,8 @@ def batch_with_few_threads(count):
     try:
         subprocess.run([RAYCONE, "--version"], capture_output=True, check=True, preexec_fn=few_threads)
     except (OSError, subprocess.SubprocessError):
-        return print("batches with few threads need root, and a build that others may read")
+        print("batches with few threads need root, and a build that others may read")
+        sys.exit(77)
     for i in range(count):
         arguments = [RAYCONE, "batch", MESHES, "--resolution", "6", "--jobs", "4", "--quiet", "--out-dir", "few%d" % i]
         process = subprocess.Popen(arguments, stderr=subprocess.PIPE, preexec_fn=lambda: few_threads(11 + i % 2))
@@ -160,6 +162,18 @@ def read_endless_meshes():
             fail(what, process.returncode, process.stderr)
 
 
+# Nor are lists, of which there is no limit but what data may take.
+def read_endless_lists():
+    for what in (
+        "ulimit -d 200000; yes a.obj | exec %s batch @- --out-dir endless",
+        "ulimit -d 200000; yes a.obj | exec %s lattice @/dev/stdin --field label -o endless.npy",
+        "ulimit -d 200000; exec %s batch @/dev/zero --out-dir endless",
+    ):
+        process = subprocess.run(["sh", "-c", what % RAYCONE], capture_output=True, timeout=300)
+        if process.returncode != 4 or not re.fullmatch(rb"raycone: [^ ]+: larger than \d+ bytes, expected a smaller file\n", process.stderr):
+            fail(what, process.returncode, process.stderr)
+
+
 # What data may take is known from the start.
 def refuse_what_data_cannot_hold():
     what = "ulimit -d 200000; exec %s slice %s -o big.png --size 20000" % (RAYCONE, OPEN)
@@ -169,12 +183,12 @@ def refuse_what_data_cannot_hold():
         fail(what, process.returncode, process.stderr)
 
 
-if "--memory" in sys.argv and is_sanitized():
-    print("sanitizers do not live within limits of memory")
+if ("--memory" in sys.argv or FEW_THREADS) and is_sanitized():
+    print("sanitizers do not live within limits of memory and threads")
     sys.exit(77)
 with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
-    for run in all_runs():
+    for run in [] if FEW_THREADS else all_runs():
         if "--memory" in sys.argv:
             sweep_memory(run, resource.RLIMIT_AS, "address space", 24 << 20, (1 if LONG else 10) << 20)
             sweep_memory(run, resource.RLIMIT_DATA, "data", 1 << 20, (256 if LONG else 3 << 10) << 10)
@@ -185,9 +199,11 @@ with tempfile.TemporaryDirectory() as directory:
         surface = Run("surface to PLY", "surface", CLOSED, "--resolution", "30", output="out.ply")  # much of it in GMP
         sweep_memory(surface, resource.RLIMIT_DATA, "data", 10 << 20, (100 if LONG else 400) << 10)
         sweep_batch_memory((1 if LONG else 20) << 20)
-        batch_with_few_threads(100 if LONG else 10)
         read_endless_meshes()
+        read_endless_lists()
         refuse_what_data_cannot_hold()
+    elif FEW_THREADS:
+        batch_with_few_threads(100 if LONG else 10)
     else:
         sweep_shrinking(200 if LONG else 10)
     os.chdir("/")

@@ -127,11 +127,10 @@ def run(operands, out, options, directory="."):
 
 
 def kill_one(operands, options):
-    process = subprocess.Popen(command(operands, "out", options), stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(command(operands, "out", options), stderr=subprocess.PIPE)
     time.sleep(random.random() * 0.05)
     process.kill()
-    process.wait()
-    time.sleep(0.05)  # until its workers are gone, too
+    process.communicate()  # until its workers are gone, too
 
 
 def faults_of_round():

@@ -284,7 +284,7 @@ TEST_F(ReadPoints, WhatIsNotAFiniteNumberIsAnErrorWithItsLine) {
   EXPECT_EQ(error_of("1,-inf,3\n"), "pts:1: column 2 is '-inf', expected a finite number");
   EXPECT_EQ(error_of("1,,3\n"), "pts:1: column 2 is empty, expected a finite number");
   EXPECT_EQ(error_of("1,2,3x\n"), "pts:1: column 3 is '3x', expected a finite number");
-  EXPECT_EQ(error_of("1,\"2,3\n"), "pts:1: column 2 is '2,3', expected a finite number");
+  EXPECT_EQ(error_of("1,\"2,3\n"), "pts:1: a quotation mark without its end, expected it in the same line");
 }
 
 TEST_F(ReadPoints, DecimalCommaIsAnErrorNotAnotherPoint) {

@@ -116,7 +116,13 @@ TEST_F(BatchMeshes, WithOneOutputAreAllListed) {
       << error;
   EXPECT_TRUE(error.ends_with("19.vdb; and 2 more; --full-names keeps them apart")) << error;
   EXPECT_EQ(error.find(last), std::string::npos) << "ten are enough";
-  EXPECT_TRUE(error_of({put("y/a.stl"), put("z/a.stl")}).ends_with("would both be a.stl in the results"));
+  EXPECT_NE(error_of({put("y/a.stl"), put("z/a.stl")}).find("would both be a.stl in the results; names are unique"),
+            std::string::npos);
+  std::vector<std::string> same;
+  for (int i = 0; i < 100; ++i) same.push_back(put(std::to_string(i) + "/model.obj"));
+  const std::string of_many = error_of(same);
+  EXPECT_NE(of_many.find("/2/model.obj and 97 more: would all be model.obj in the results"), std::string::npos);
+  EXPECT_LT(of_many.size(), 1000U) << of_many;
 }
 
 TEST_F(BatchMeshes, HaveNamesHoweverTheyAreWritten) {

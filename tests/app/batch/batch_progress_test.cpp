@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <regex>
+#include <thread>
 
 namespace raycone::test {
 namespace {
@@ -12,13 +14,16 @@ using std::chrono::hours;
 using std::chrono::seconds;
 
 // What is written about two meshes, the second of which fails, with a call of show() before and between them.
-std::string written(BatchProgress::Style style, std::chrono::duration<double> between_lines) {
+std::string written(BatchProgress::Style style, std::chrono::duration<double> between_lines,
+                    std::chrono::milliseconds pause = {}) {
   testing::internal::CaptureStderr();
   {
     BatchProgress progress(style, 2, between_lines);
     progress.show();
+    std::this_thread::sleep_for(pause);
     progress.add(false, 0.5);
     progress.show();
+    std::this_thread::sleep_for(pause);
     progress.add(true, 1.0);
     progress.show();
   }
@@ -42,9 +47,12 @@ TEST(BatchProgress, WritesALineEachPeriodAndAtTheEnd) {
 }
 
 TEST(BatchProgress, RewritesOneLineOnATerminal) {
-  const std::string text = written(BatchProgress::Style::kRewritten, hours(1));
+  const std::string text = written(BatchProgress::Style::kRewritten, hours(1), std::chrono::milliseconds(110));
   EXPECT_EQ(text.find('\n'), std::string::npos) << text;
   EXPECT_NE(text.find("\r\033[K2/2 meshes"), std::string::npos) << text;
+  const std::string hurried = written(BatchProgress::Style::kRewritten, hours(1));
+  EXPECT_TRUE(hurried.starts_with("\r\033[K0/2 meshes")) << hurried;
+  EXPECT_LE(std::ranges::count(hurried, '/'), 3) << "not more often than people read: " << hurried;
   EXPECT_TRUE(text.ends_with("\r\033[K")) << text;
   EXPECT_EQ(written(BatchProgress::Style::kNone, seconds(0)), "");
 }

@@ -32,6 +32,7 @@ std::vector<std::function<void(Command&)>> common_changes() {
           [](Command& c) {
             c.mesh.further = {"b.stl", "c.stl"};
           },
+          [](Command& c) { c.mesh.lists = {"list"}; },
           [](Command& c) { c.mesh.parts.by = PartsBy::kComponent; },
           [](Command& c) { c.mesh.parts.first_wins = true; },
           [](Command& c) { c.run.threads = 3; },

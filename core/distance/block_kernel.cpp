@@ -189,7 +189,7 @@ void fill_group(const BlockTask& task, const SampleBox& box, const Middle& middl
   Group group(task, box);
   const auto look_at = [&](std::size_t number) {
     const auto place = static_cast<std::size_t>(near.places[number]);
-    return beyond_error(lower_to({scratch.packed[place / kStride], place % kStride, place}, scratch.accurate, group));
+    return beyond_error(lower_to({scratch.packed[place / kWidth], place % kWidth, place}, scratch.accurate, group));
   };
   const double slack = slack_of(task.reach * kReachSlack, middle.radius);
   const FirstLook first = find_bounds(near, middle, here, slack, scratch.bounds);

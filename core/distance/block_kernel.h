@@ -31,7 +31,7 @@ inline constexpr double kReachSlack = 1 + 1e-9;
 // Triangles that may be near some samples, in columns of equal length.
 struct NearTriangles {
   std::array<std::vector<double>, 3> lower, upper;  // their boxes
-  std::vector<std::int64_t> places;                 // in packs: of the first column's number, counted in numbers
+  std::vector<std::int64_t> places;                 // in packs: the slot, and kWidth times the pack
   // From the middle of part of the samples. Where directions are not sure, they are 0, and the distance is one that all
   // of the samples have at least.
   std::vector<double> distances;
@@ -58,7 +58,7 @@ class AccurateTriangles {
   }
 
  private:
-  static constexpr std::size_t kMost = 61;  // no multiple of the places of a pack
+  static constexpr std::size_t kMost = 61;  // kept at a time
   static constexpr std::size_t kNone = SIZE_MAX;
   std::array<std::size_t, kMost> places_;
   std::array<std::optional<AccurateTriangle>, kMost> triangles_{};

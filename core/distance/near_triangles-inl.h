@@ -29,7 +29,6 @@ namespace {
 using Places = hn::RebindToSigned<Doubles>;
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
-constexpr std::size_t kStride = sizeof(TrianglePack) / sizeof(double);
 
 // Whatever is compressed into a list may write this far beyond its end.
 void make_room(NearTriangles& list, std::size_t count) {
@@ -160,7 +159,7 @@ void find_near(const BlockTask& task, const Middle& middle, bool with_bearings, 
       if (hn::AllFalse(d, wanted)) continue;
       if (with_bearings) bearings = finder.find(PackedTriangles(pack, i), wanted);
       const Places integers;
-      append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kStride + i)), wanted);
+      append(near, boxes, bearings, hn::Iota(integers, static_cast<std::int64_t>(number * kWidth + i)), wanted);
     }
   }
   near.nearest_of_unsure = finder.nearest_of_unsure();
@@ -173,8 +172,8 @@ void pack_together(const DistanceTree& tree, NearTriangles& near, std::vector<Tr
   if (packs.size() < count) packs.resize(count);
   for (std::size_t n = 0; n < near.count; ++n) {
     const auto place = static_cast<std::size_t>(near.places[n]);
-    packs[n / kWidth].copy(n % kWidth, tree.packs()[place / kStride], place % kStride);
-    near.places[n] = static_cast<std::int64_t>(n / kWidth * kStride + n % kWidth);
+    packs[n / kWidth].copy(n % kWidth, tree.packs()[place / kWidth], place % kWidth);
+    near.places[n] = static_cast<std::int64_t>(n);
   }
 }
 

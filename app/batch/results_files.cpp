@@ -35,18 +35,18 @@ bool signal_waits() {
 
 // Held while a results file of `directory` changes: runs of one batch, should there be several, change the same one.
 // Where the file system has no locks, runs of different shards still do not get in each other's way. Throws OutputError
-// where another process does not let go, or a signal that a supervisor holds back waits meanwhile.
+// where another process does not let go; sooner where a signal waits that the supervisor holds back.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::string& directory)
       : descriptor_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
     constexpr std::chrono::milliseconds kPause{5};
-    constexpr std::chrono::minutes kMost{5};
-    const auto given_up = std::chrono::steady_clock::now() + kMost;
+    constexpr std::chrono::seconds kMost{300}, kMostWithSignal{2};
+    const auto begin = std::chrono::steady_clock::now();
     while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) return;  // there are no locks
-      if (signal_waits() || std::chrono::steady_clock::now() >= given_up) {
+      if (std::chrono::steady_clock::now() - begin >= (signal_waits() ? kMostWithSignal : kMost)) {
         close(descriptor_);
         throw OutputError(directory + ": is locked by another process, expected one that lets go");
       }

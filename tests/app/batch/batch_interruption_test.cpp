@@ -76,6 +76,11 @@ int second_most(const std::map<std::string, int>& times) {
   return ticks[1];
 }
 
+// Whether a worker is a program of its own by now.
+bool has_started(pid_t worker) {
+  return read_text("/proc/" + std::to_string(worker) + "/cmdline").find("batch-worker") != std::string::npos;
+}
+
 // Whether it waits for something to receive, as a worker that is idle does.
 bool receives(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/syscall");
@@ -190,6 +195,26 @@ TEST_F(BatchInterruption, ByAClosedStandardErrorCleansUp) {
   EXPECT_EQ(temporaries(), 0U);
   const auto kept = rows();
   EXPECT_TRUE(kept.size() == 1 && kept.contains("c.obj"));
+}
+
+// Installed anew, or on a file system that was mounted anew, while the batch runs.
+TEST_F(BatchInterruption, AProgramThatMayNotBeExecutedIsNoLackOfMemory) {
+  const std::string program = dir_ / "program";
+  fs::copy_file(fs::canonical(raycone_command({}).front()), program);
+  put("a.obj", triangle_soup(2000));  // its worker is replaced when its time is over
+  put("b.obj");
+  std::vector<std::string> words =
+      arguments({"--resolution", "300", "--threads", "1", "--timeout", "2", "--format", "csv"});
+  words.insert(words.begin(), program);
+  Command command(words);
+  EXPECT_TRUE(becomes_true([&] { return std::ranges::any_of(children_of(command.process()), has_started); }));
+  fs::permissions(program, fs::perms::owner_read);
+  EXPECT_EQ(command.wait().status, 5);
+  const auto results = rows();
+  EXPECT_EQ(results.at("a.obj").status, MeshStatus::kTimeout);
+  EXPECT_EQ(results.at("b.obj").status, MeshStatus::kCrashed);
+  EXPECT_NE(results.at("b.obj").message.find("could not start, expected raycone's program"), std::string::npos)
+      << results.at("b.obj").message;
 }
 
 TEST_F(BatchInterruption, ATerminalsSignalToAllIsTheSupervisors) {

@@ -44,8 +44,8 @@ std::string own_name(const std::string& path) {
 
 // How many meshes this process can keep in mind: links make trees of directories as large as they like.
 std::size_t most_meshes() {
-  constexpr std::uint64_t kBytesOfMesh = 1024;  // its names and all that is kept of its result, about
-  return static_cast<std::size_t>(available_memory() / kBytesOfMesh);
+  constexpr std::uint64_t kMemoryPerMesh = 1024;  // its names and all that is kept of its result, about
+  return static_cast<std::size_t>(available_memory() / kMemoryPerMesh);
 }
 
 // What a directory holds that may be a mesh, by names relative to it.
@@ -93,7 +93,7 @@ class DirectorySearch {
   void add(const std::string& name) {
     if (meshes_.size() >= most_) {
       throw LimitError(root_ + ": more than " + std::to_string(most_) +
-                       " meshes, links to directories followed, for the memory that there is; see --shard");
+                       " meshes, links to directories followed, for the memory that there is, expected fewer");
     }
     meshes_.push_back({path_of(name), name.empty() ? own_name(path_of("") + '/') : name, "", stamp_of(path_of(name))});
   }

@@ -18,7 +18,6 @@
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
 #include "app/process/limits.h"
-#include "app/process/messages.h"
 #include "app/process/progress.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
@@ -352,14 +351,6 @@ void refuse_to_replace_results(const ReportCommand& command) {
   }
 }
 
-// Whose meshes the page does not have.
-void warn_of_unreadable_rows(const ReportCommand& command) {
-  const std::size_t rows = count_unreadable_rows(command.directory);
-  if (rows == 0 || command.run.quiet) return;
-  print_message("warning: " + command.directory + ": results: " + counted(rows, "row") +
-                " cannot be read, left out; batch makes such meshes again");
-}
-
 }  // namespace
 
 std::size_t write_report_page(const ReportCommand& command) {
@@ -368,7 +359,7 @@ std::size_t write_report_page(const ReportCommand& command) {
   if (records.empty() && std::ranges::none_of(names_in(command.directory), holds_rows)) {
     throw InputError(command.directory + ": no results, expected the results.csv of a batch");
   }
-  warn_of_unreadable_rows(command);
+  if (!command.run.quiet) warn_of_unreadable_rows(command.directory);
   OutputFile output(command.output, command.no_clobber);
   const std::string html = page(command.directory, records);
   output.write(html.data(), html.size());

@@ -1,7 +1,6 @@
 #include "app/batch/results_files.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -18,6 +17,9 @@
 
 #include "app/batch/file_stamp.h"
 #include "app/process/limits.h"
+#include "app/process/messages.h"
+#include "app/process/signals.h"
+#include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
 #include "io/files/read_file.h"
@@ -26,12 +28,6 @@ namespace raycone {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool signal_waits() {
-  sigset_t waiting;
-  sigemptyset(&waiting);
-  return sigpending(&waiting) == 0 && sigisemptyset(&waiting) == 0;
-}
 
 // Held while a results file of `directory` changes: runs of one batch, should there be several, change the same one.
 // Where the file system has no locks, runs of different shards still do not get in each other's way. Throws OutputError
@@ -46,9 +42,12 @@ class DirectoryLock {
     while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) return;  // there are no locks
-      if (std::chrono::steady_clock::now() - begin >= (signal_waits() ? kMostWithSignal : kMost)) {
+      const bool is_interrupted = interruption_waits();
+      if (std::chrono::steady_clock::now() - begin >= (is_interrupted ? kMostWithSignal : kMost)) {
         close(descriptor_);
-        throw OutputError(directory + ": is locked by another process, expected one that lets go");
+        throw OutputError(directory + (is_interrupted ? ": interrupted while waiting for the lock of another process"
+                                                      : ": is locked by another process, for 5 minutes now; end it, "
+                                                        "or run this again"));
       }
       std::this_thread::sleep_for(kPause);
     }
@@ -130,14 +129,13 @@ BatchRecord record_of(ResultRow row, std::int64_t written_by, const std::map<std
 
 }  // namespace
 
-std::string CsvLog::text() const {
+std::string CsvLog::text(std::uint64_t most_bytes) const {
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (status.type() == fs::file_type::not_found) return "";
   // A pipe would keep us waiting.
   if (fs::is_other(status)) throw InputError(path_ + ": is a pipe or device, expected a file");
-  constexpr std::uint64_t kOfMemory = 8;  // what becomes of a table takes some times its bytes
-  return read_file(path_, available_memory() / kOfMemory);
+  return read_file(path_, most_bytes);
 }
 
 // What is behind the last complete line must be what a killed writer left of one. Where rows are in it, that line is
@@ -162,13 +160,15 @@ bool CsvLog::is_row(const CsvRecord& record) const {
 
 CsvText CsvLog::parsed(std::string_view text) const {
   CsvText table = parse_csv(text);
+  if (rows_ == Rows::kOfAnyText) return table;
   const std::string_view whole = text.substr(0, table.complete);
   check_rest(text.substr(table.complete), 1 + static_cast<std::size_t>(std::ranges::count(whole, '\n')));
   return table;
 }
 
 std::vector<CsvRecord> CsvLog::read() const {
-  const std::string all = text();
+  constexpr std::uint64_t kMemoryPerByte = 8;  // of what becomes of a table
+  const std::string all = text(available_memory() / kMemoryPerByte);
   const std::string header = csv_line(columns_);
   const bool is_table = all.starts_with(header) || std::ranges::any_of(former_columns_, [&](const CsvRecord& columns) {
                           return all.starts_with(csv_line(columns));
@@ -230,8 +230,10 @@ void CsvLog::sync() const {
 
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
     : directory_(directory),
-      rows_(directory + "/results" + suffix_of(shard) + ".csv", result_columns(), {former_result_columns()}),
-      origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", origin_columns(), former_origin_columns()) {}
+      rows_(directory + "/results" + suffix_of(shard) + ".csv", CsvLog::Rows::kOfLines, result_columns(),
+            {former_result_columns()}),
+      origins_(directory + "/batch-state" + suffix_of(shard) + ".csv", CsvLog::Rows::kOfAnyText, origin_columns(),
+               former_origin_columns()) {}
 
 BatchRecords ResultsFiles::read() const { return contents().records; }
 
@@ -338,6 +340,13 @@ std::size_t count_unreadable_rows(const std::string& directory) {
     count += static_cast<std::size_t>(std::ranges::count_if(rows, [](const CsvRecord& row) { return !row_from(row); }));
   }
   return count;
+}
+
+void warn_of_unreadable_rows(const std::string& directory) {
+  const std::size_t rows = count_unreadable_rows(directory);
+  if (rows == 0) return;
+  print_message("warning: " + directory + ": results: " + counted(rows, "row") +
+                " cannot be read, left out; batch makes such meshes again");
 }
 
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes) {

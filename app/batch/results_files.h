@@ -23,11 +23,15 @@ namespace raycone {
 // A CSV file with a fixed header that several processes may append to.
 class CsvLog {
  public:
-  // A table with the columns of an earlier version is read, too; its records have only these.
-  CsvLog(std::string path, CsvRecord columns, std::vector<CsvRecord> former_columns)
-      : path_(std::move(path)), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
+  // Whether a row is a line, but for a mesh's name. Then a quotation mark that hides rows is noticed.
+  enum class Rows : std::uint8_t { kOfLines, kOfAnyText };
 
-  // Nothing where there is no file. Throws InputError where it is no such table, or a quotation mark in it hides rows.
+  // A table with the columns of an earlier version is read, too; its records have only these.
+  CsvLog(std::string path, Rows rows, CsvRecord columns, std::vector<CsvRecord> former_columns)
+      : path_(std::move(path)), rows_(rows), columns_(std::move(columns)), former_columns_(std::move(former_columns)) {}
+
+  // Nothing where there is no file. Throws InputError where it is no such table, or a quotation mark in it hides rows;
+  // LimitError where it would take more memory than there is.
   [[nodiscard]] std::vector<CsvRecord> read() const;
   // Nanoseconds since 1970; 0 where there is no file.
   [[nodiscard]] std::int64_t modified() const;
@@ -36,7 +40,7 @@ class CsvLog {
   void replace(const std::vector<std::string>& lines) const;  // just syncs where they are there already
 
  private:
-  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string text(std::uint64_t most_bytes = UINT64_MAX) const;
   [[nodiscard]] CsvText parsed(std::string_view text) const;
   void check_rest(std::string_view rest, std::size_t line) const;
   [[nodiscard]] bool is_row(const CsvRecord& record) const;
@@ -44,6 +48,7 @@ class CsvLog {
   void sync() const;
 
   std::string path_;
+  Rows rows_;
   CsvRecord columns_;
   std::vector<CsvRecord> former_columns_;
   mutable off_t complete_ = 0;  // the size that this has left behind: it ends with a complete line
@@ -88,6 +93,9 @@ class ResultsFiles {
 
 // Rows there that are damaged: nothing is known of their meshes. Throws InputError.
 [[nodiscard]] std::size_t count_unreadable_rows(const std::string& directory);
+
+// Tells the user of them, where there are any. Throws InputError.
+void warn_of_unreadable_rows(const std::string& directory);
 
 // Removes from the whole batch and all its shards the rows of meshes that are gone. Not while a shard runs: a row that
 // it adds at this moment would be lost, and made again. Throws InputError, OutputError.

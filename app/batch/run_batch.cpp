@@ -344,6 +344,7 @@ ExitCode run_batch(const BatchCommand& command) {
   const SupervisorOptions limits = supervisor_options(command);
   const PlanOptions options = plan_options(command, limits);
   const BatchRecords records = read_all_results(command.directory);
+  if (!command.run.quiet) warn_of_unreadable_rows(command.directory);
   Plan plan = make_plan(meshes, records, options);
   GoneMeshes gone = gone_from(command, records, all.meshes);
   if (command.dry_run) {

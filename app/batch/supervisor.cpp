@@ -104,6 +104,9 @@ class Supervisor {
 
   // Ends the workers that still run; what they were doing is not done.
   ~Supervisor() {
+    for (const Slot& slot : slots_) {
+      if (slot.worker) slot.worker->kill();
+    }
     for (Slot& slot : slots_) replace(slot);
   }
 
@@ -257,6 +260,9 @@ class Supervisor {
   [[nodiscard]] JobResult crash(const std::string& mesh, int wait_status) const {
     constexpr int kSignalBase = 128;  // as in shells
     const auto internal = static_cast<int>(ExitCode::kInternal), limit = static_cast<int>(ExitCode::kLimit);
+    if (wait_status == WorkerProcess::kDoesNotEnd) {
+      return failed(MeshStatus::kCrashed, internal, mesh + ": its process does not end, though it was killed");
+    }
     const int exit_status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 0;
     if (exit_status == limit) {
       return failed(MeshStatus::kMemory, limit, out_of_memory_text(mesh, options_.memory_limit));
@@ -268,7 +274,7 @@ class Supervisor {
     }
     if (exit_status == kNotExecuted) {
       return failed(MeshStatus::kCrashed, internal,
-                    mesh + ": its process could not start, expected raycone's program where it was, to be executed");
+                    mesh + ": raycone's own program cannot be executed any more, expected it where it was");
     }
     if (!WIFSIGNALED(wait_status)) {
       return failed(MeshStatus::kCrashed, internal, mesh + ": its process ended unexpectedly, please report");

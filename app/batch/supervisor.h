@@ -38,8 +38,8 @@ using ResultHandler = std::function<bool(std::size_t job, JobResult result, doub
 // where it ran out of time or memory or crashed. Where a mesh failed, another worker is asked for the hashes of what
 // was read; if it does not answer in time, the result says that they are not known. `tick` is called at least four
 // times a second. Returns the one of `signals` that interrupted it, or 0. Throws LimitError where not even one worker
-// can be started, and what `handle` and `tick` throw. Either way no worker is left, nor any file that one was writing;
-// meshes that were running then are not done. Call in a process of one thread.
+// can be started, and what `handle` and `tick` throw. Either way no worker is left that can be killed, nor any file
+// that one was writing; meshes that were running then are not done. Call in a process of one thread.
 [[nodiscard]] int supervise(const std::vector<SupervisedJob>& jobs, const SupervisorOptions& options,
                             const HeldSignals& signals, const ResultHandler& handle, const std::function<void()>& tick);
 

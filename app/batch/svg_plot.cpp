@@ -141,7 +141,8 @@ std::string readable_quantity(double value, Quantity quantity) {
   static constexpr Unit kTimes[] = {{1.0, " s"}, {1e-3, " ms"}, {1e-6, " \xC2\xB5s"}, {1e-9, " ns"}};
   const Unit* unit = kTimes;
   for (int i = 0; i < 3 && value < unit->size * (1.0 - 1e-9); ++i) ++unit;
-  return formatted(value < 999.5 ? "%.3g" : "%.0f", value / unit->size) + unit->name;
+  const double number = value / unit->size;
+  return formatted(number < 999.5 ? "%.3g" : "%.0f", number) + unit->name;
 }
 
 std::string scatter_plot(const PlotAxis& x, const PlotAxis& y, const std::vector<PlotPoint>& points) {

@@ -80,28 +80,32 @@ std::optional<JobResult> WorkerProcess::receive() {
   try {
     if (const std::optional<Message> message = reader_.next()) return result_from(*message);
   } catch (const std::exception&) {
-    kill(process_, SIGKILL);
+    kill();
     ended_ = is_damaged_ = true;
   }
   return std::nullopt;
 }
 
+void WorkerProcess::kill() {
+  if (process_ > 0) ::kill(process_, SIGKILL);
+}
+
 int WorkerProcess::end() {
+  constexpr std::chrono::milliseconds kPause{1};
+  constexpr int kPatience = 5000, kMost = 60000;  // pauses
+  // One that closed its socket is ending by itself, and how is of interest.
+  if (!ended_) kill();
   const pid_t process = std::exchange(process_, -1);
   if (process < 0) return 0;
-  // One that closed its socket is ending by itself, and how is of interest.
-  if (!ended_) kill(process, SIGKILL);
-  // One that hangs in the kernel, as on a file system that does not answer, cannot be killed: others go on without.
-  constexpr int kPauses = 5000;
-  constexpr std::chrono::milliseconds kPause{1};
   int status = 0;
-  for (int n = 0; n < kPauses; ++n) {
+  for (int n = 0; n < kMost; ++n) {
     const pid_t ended = waitpid(process, &status, WNOHANG);
     if (ended == process) return status;
     if (ended < 0 && errno != EINTR) return 0;
+    if (n == kPatience) ::kill(process, SIGKILL);
     std::this_thread::sleep_for(kPause);
   }
-  return SIGKILL;
+  return kDoesNotEnd;
 }
 
 }  // namespace raycone

@@ -31,9 +31,12 @@ class WorkerProcess {
   // Whether that is why it has ended.
   [[nodiscard]] bool is_damaged() const { return is_damaged_; }
 
-  // Ends it, if need be, and returns how it ended, as wait(2) tells: one that hangs in the kernel is given seconds, and
-  // left to itself.
+  // Has it end, without waiting for that.
+  void kill();
+  // Ends it, if need be, and returns how it ended, as wait(2) tells. One that hangs in the kernel, as on a file system
+  // that does not answer, is given a minute, then left to itself: kDoesNotEnd.
   int end();
+  static constexpr int kDoesNotEnd = -1;
 
  private:
   pid_t process_ = -1;

@@ -32,10 +32,6 @@ void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 // Bytes that are resident now, with what code and stacks will take yet.
 [[nodiscard]] double memory_in_use();
 
-// Bytes that evaluation takes beside values and what else is counted: operators of far fields, scratch of threads, ends
-// of heaps. Measured with small meshes: runs that had less, beside what is said to be needed, ran out of memory.
-inline constexpr double kWorkingMemory = 8.0 * 1024 * 1024;
-
 // Throws LimitError with both numbers if `more` bytes on top of memory_in_use() exceed `limit`. `name`: the file
 // concerned.
 void check_memory(const std::string& name, double more, std::uint64_t limit);

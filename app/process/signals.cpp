@@ -155,6 +155,13 @@ void start_timeout(double seconds, const std::string& name) {
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
+bool interruption_waits() {
+  sigset_t waiting;
+  if (sigpending(&waiting) != 0) return false;
+  const auto waits = [&](int signal) { return sigismember(&waiting, signal) == 1; };
+  return std::ranges::any_of(kInterruptions, waits) || waits(SIGXCPU) || waits(SIGPIPE);
+}
+
 HeldSignals::HeldSignals() {
   sigset_t held;
   sigemptyset(&held);

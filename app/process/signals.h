@@ -19,6 +19,9 @@ void leave_signals_to_supervisor();
 // Ends the process with status 4 and a message about `name` after so many seconds.
 void start_timeout(double seconds, const std::string& name);
 
+// Whether a signal waits that HeldSignals may hold.
+[[nodiscard]] bool interruption_waits();
+
 // While this lives, the signals that end a process wait until take() asks for them: for a process that must end others
 // first. Those that were ignored stay so.
 class HeldSignals {

@@ -22,7 +22,7 @@ std::string readable_seconds(double seconds) {
     std::snprintf(text, sizeof text, "about %.0f minutes", seconds / 60.0);
   } else {
     const double hours = seconds / 3600.0;
-    std::snprintf(text, sizeof text, hours < 99.5 ? "about %.3g hours" : "about %.0f hours", hours);
+    std::snprintf(text, sizeof text, hours < 999.5 ? "about %.3g hours" : "about %.0f hours", hours);
   }
   return text;
 }

@@ -109,7 +109,7 @@ void check_points_memory(const MeshOptions& options, std::uint64_t triangles, co
                          const RunLimits& limits) {
   constexpr double kPerTriangle = 240.0;  // of the grid over their projections: hardly less; 250 to 420 are common
   if (field.engine != RayEngine::kScan) return;
-  check_memory(options.path, kPerTriangle * static_cast<double>(triangles) + kWorkingMemory, limits.memory());
+  check_memory(options.path, kPerTriangle * static_cast<double>(triangles), limits.memory());
 }
 
 OutputDescription description_of(const RunReport& report, const FieldOptions& field, const FieldEncoding& encoding) {

@@ -84,7 +84,8 @@ class FlatSides {
 
   void warn(std::vector<Warning>& warnings) const {
     if (axes_.empty()) return;
-    warnings.push_back({"flat-box", "the box is flat along " + axes_ + ", and sampled once there, not " + asked_ + " times"});
+    warnings.push_back(
+        {"flat-box", "the box is flat along " + axes_ + ", and sampled once there, not " + asked_ + " times"});
   }
 
  private:

@@ -117,7 +117,7 @@ struct PointEvaluators {
 MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
-  check_memory(name, node_set_bytes(lattice) + kWorkingMemory, memory);
+  check_memory(name, node_set_bytes(lattice), memory);
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
                            .sides_only = true};
@@ -137,7 +137,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   FinishedSurface closed = within_limits(name, options, [&] {
     std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
     if (itself) return *std::move(itself);
-    check_memory(name, surface_bytes(inside, mesh.triangles.size()) + kWorkingMemory, memory);
+    check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
     return closed_surface(mesh, evaluators, inside, options);
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};

@@ -22,8 +22,8 @@ bool is_blank_or_comment(std::string_view line) {
 }  // namespace
 
 std::string read_list(const std::string& list) {
-  constexpr std::uint64_t kOfMemory = 64;  // what becomes of a path takes some tens of times its bytes
-  return read_file(list, available_memory() / kOfMemory);
+  constexpr std::uint64_t kMemoryPerByte = 64;  // what becomes of a path takes some tens of times its bytes
+  return read_file(list, available_memory() / kMemoryPerByte);
 }
 
 std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated,

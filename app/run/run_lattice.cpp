@@ -102,11 +102,18 @@ double writer_memory(const LatticeCommand& command, const RunReport& report) {
   return writer_memory(report.lattice->grid, command.encoding.format, description, slab_kind(report));
 }
 
+// Sides and distances alone have no values that a far field could be for.
+double working_memory(const LatticeCommand& command, const RunReport& report) {
+  const FieldOptions& field = command.field;
+  const bool has_values = field.has(Field::kWinding) || field.has(Field::kDensity) || field.diagnostics;
+  return has_values ? raycone::working_memory(slab_kind(report), static_cast<double>(report.samples)) : 0.0;
+}
+
 // What is needed beside what is in memory, as far as it is known before there is a writer. All of it for VDB, whose
 // module must be counted before it is loaded.
 double memory_to_begin(const LatticeCommand& command, const RunReport& report) {
   constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
-  const double of_writer = writer_memory(command, report) + kWorkingMemory;
+  const double of_writer = writer_memory(command, report) + working_memory(command, report);
   if (command.encoding.format != FieldFormat::kVdb) return of_writer;
   const Lattice& grid = report.lattice->grid;
   SlabKind kind = slab_kind(report);
@@ -121,7 +128,8 @@ void check_slab_memory(const LatticeCommand& command, const LatticeWriter& write
   const LatticeBlock smallest = Slabs(report.lattice->grid, writer, 1).first();
   SlabKind kind = slab_kind(report);
   kind.blocks = takes_blocks(command, writer, *report.lattice);
-  const double bytes = writer_memory(command, report) + slab_memory(smallest, command.field, kind) + kWorkingMemory;
+  const double bytes =
+      writer_memory(command, report) + slab_memory(smallest, command.field, kind) + working_memory(command, report);
   check_memory(report.mesh, bytes, limits.memory());
 }
 
@@ -141,7 +149,7 @@ std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRu
 // Slabs as memory allows.
 Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                const RunLimits& limits) {
-  const double taken = memory_in_use() + writer_memory(command, report) + kWorkingMemory;
+  const double taken = memory_in_use() + writer_memory(command, report) + working_memory(command, report);
   const double left = static_cast<double>(limits.memory()) - taken;
   return {report.lattice->grid, writer, slab_samples(command.field, slab_kind(report), left)};
 }

@@ -17,11 +17,11 @@ namespace {
 // Each thread may have an arena, and none uses what is free in another one's. An arena takes 64 MB of addresses at a
 // time, and 128 MB for a moment. Where `ulimit -v` has none left for that, each number would get a mapping of its own.
 void share_arenas(std::uint64_t memory) {
-  constexpr std::uint64_t kPerArena = std::uint64_t{64} << 20, kOfAddresses = std::uint64_t{1} << 30;
+  constexpr std::uint64_t kPerArena = std::uint64_t{64} << 20, kAddressesPerArena = std::uint64_t{1} << 30;
   constexpr std::uint64_t kMostArenas = 64;
   rlimit addresses{};
   const bool are_few = getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY;
-  const std::uint64_t arenas = memory / (are_few ? kOfAddresses : kPerArena);
+  const std::uint64_t arenas = memory / (are_few ? kAddressesPerArena : kPerArena);
   mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(arenas, 1, kMostArenas)));
 }
 

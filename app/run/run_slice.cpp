@@ -60,7 +60,7 @@ void check_slice_memory(const Slice& slice, const SliceCommand& command, const R
   if (!is_on_lattice(slice, command.field)) check_points_memory(command.mesh, report.faces, command.field, limits);
   const double values = static_cast<double>(report.samples) * sizeof(double);
   const double picture = slice_picture_bytes(slice.view, command.framed);
-  const double bytes = values + kWorkingMemory + std::max(evaluation_memory(slice, command.field, report), picture);
+  const double bytes = values + std::max(evaluation_memory(slice, command.field, report), picture);
   check_memory(command.mesh.path, bytes, limits.memory());
 }
 

@@ -82,6 +82,11 @@ double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKi
   return bytes_per_sample(options, kind) * static_cast<double>(slab.size());
 }
 
+double working_memory(SlabKind kind, double samples) {
+  constexpr double kManySamples = 1e5, kBytes = 8.0 * 1024 * 1024;
+  return kind.open && samples >= kManySamples ? kBytes : 0.0;
+}
+
 double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDescription& description, SlabKind kind) {
   const auto samples = static_cast<double>(whole(lattice).size());
   if (format == FieldFormat::kNpz && description.packs_flags) return samples / 8;

@@ -30,6 +30,10 @@ struct SlabKind {
 // Bytes that a slab takes: its numbers, and what is needed to find and to write them.
 [[nodiscard]] double slab_memory(const LatticeBlock& slab, const FieldOptions& options, SlabKind kind);
 
+// Bytes that evaluating so many samples takes beside slabs, mesh and trees, where a far field may pay: its operators,
+// scratch of threads, ends of heaps. Measured: with less, lattices of small open meshes could end in mid-work.
+[[nodiscard]] double working_memory(SlabKind kind, double samples);
+
 // Bytes that the writer of `format` surely needs for `lattice`: for VDB the grids and the blocks in the making. Winding
 // numbers of an open mesh and their error bounds differ everywhere; all else only at a surface. For CSV texts of each
 // index along x.

@@ -40,7 +40,7 @@ struct Group {
       x[n] = rows.xs[i];
       y[n] = rows.ys[j];
       z[n] = rows.zs[k];
-      index[n] = place_in_box({i - task.block.begin[0], j - task.block.begin[1], k - task.block.begin[2]});
+      index[n] = place_in_block({i - task.block.begin[0], j - task.block.begin[1], k - task.block.begin[2]});
     }
     least.fill(kNowhere);
   }

@@ -21,7 +21,7 @@ inline constexpr std::size_t kBlockSide = 8;
 inline constexpr std::size_t kSamplesOfBlock = kBlockSide * kBlockSide * kBlockSide;
 
 // The place of a sample among all of a block's, by its number along each axis.
-[[nodiscard]] constexpr std::size_t place_in_box(const std::array<std::size_t, 3>& sample) {
+[[nodiscard]] constexpr std::size_t place_in_block(const std::array<std::size_t, 3>& sample) {
   return (sample[2] * kBlockSide + sample[1]) * kBlockSide + sample[0];
 }
 
@@ -72,7 +72,7 @@ struct BlockScratch {
   AccurateTriangles accurate;            // likewise
   std::vector<double> bounds;            // below the squares of those of the part, at all samples of a group
   std::vector<std::int64_t> candidates;  // their numbers
-  alignas(64) std::array<double, kSamplesOfBlock> squares;  // by place_in_box()
+  alignas(64) std::array<double, kSamplesOfBlock> squares;  // by place_in_block()
 };
 
 // Samples and what is known about their nearest triangles.

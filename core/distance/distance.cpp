@@ -69,7 +69,7 @@ using LatticeIndex = std::array<std::int64_t, 3>;
 constexpr std::int64_t kSide = DistanceBlocks::kSide;
 static_assert(kSide == static_cast<std::int64_t>(kBlockSide));
 
-// `box`: of distances.samples(); `numbers` by place_in_box() from its first sample on.
+// `box`: of distances.samples(); `numbers` by place_in_block() from its first sample on.
 void take_block(const SampleBox& box, std::span<const double> numbers, DistanceBlocks& distances) {
   LatticeIndex first;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -81,7 +81,7 @@ void take_block(const SampleBox& box, std::span<const double> numbers, DistanceB
     for (std::size_t j = 0; j < box.side(1); ++j) {
       const std::size_t to = DistanceBlocks::index_in_block(
           {first[0], first[1] + static_cast<std::int64_t>(j), first[2] + static_cast<std::int64_t>(k)});
-      std::ranges::copy(numbers.subspan(place_in_box({0, j, k}), box.side(0)), taken.subspan(to).begin());
+      std::ranges::copy(numbers.subspan(place_in_block({0, j, k}), box.side(0)), taken.subspan(to).begin());
     }
   }
 }

@@ -115,7 +115,7 @@ class Descent {
       for (std::size_t i = block.begin[0]; i < block.end[0]; ++i) {
         const Vec3 q{rows_.xs[i], rows_.ys[j], rows_.zs[k]};
         const double square = square_within(std::min(band_, distance + norm(q - last)), q);
-        scratch_.squares[place_in_box({i - block.begin[0], j - block.begin[1], k - block.begin[2]})] = square;
+        scratch_.squares[place_in_block({i - block.begin[0], j - block.begin[1], k - block.begin[2]})] = square;
         distance = std::sqrt(square);
         last = q;
       }
@@ -172,7 +172,7 @@ void fill_band(const DistanceTree& tree, const LatticeRows& rows, double band, c
     which.finish(squares);
     for_each_row(box, [&](std::size_t j, std::size_t k) {
       const std::span<double> row = row_of(box, j, k);
-      const std::size_t first = place_in_box({0, j - box.begin[1], k - box.begin[2]});
+      const std::size_t first = place_in_block({0, j - box.begin[1], k - box.begin[2]});
       std::copy_n(squares.begin() + static_cast<std::ptrdiff_t>(first), row.size(), row.begin());
     });
   };

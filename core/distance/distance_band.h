@@ -20,7 +20,7 @@ using BlockPhase = std::array<std::size_t, 3>;
 struct BandVisitor {
   // Samples that are surely beyond the band.
   std::function<void(const SampleBox& samples)> beyond;
-  // Samples of one block, and room for what may be made of them: place_in_box() of their numbers in the block is the
+  // Samples of one block, and room for what may be made of them: place_in_block() of their numbers in the block is the
   // place of the square of the distance to the nearest triangle (core/distance/triangle_distance.h) where that is not
   // above the band's, else of a larger number or infinity.
   std::function<void(const SampleBox& samples, std::span<double, kSamplesOfBlock> squares)> block;

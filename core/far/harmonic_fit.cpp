@@ -289,7 +289,7 @@ const HarmonicFit& HarmonicFit::instance() {
 void HarmonicFit::set_nodes() {
   std::vector<double> along;
   for (std::size_t n = 1; n <= kNodesAlong / 2; ++n) {
-    // In 64 bits: cosines of doubles are not the same with every C library.
+    // With a significand of 64 bits: cosines of doubles are not the same with every C library.
     const long double angle = static_cast<long double>(2 * n - 1) * std::numbers::pi_v<long double> / (2 * kNodesAlong);
     along.push_back(static_cast<double>(std::cos(angle)));
   }

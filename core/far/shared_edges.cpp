@@ -81,14 +81,14 @@ void SharedEdges::give_back(Scratch scratch) const noexcept {
 
 std::optional<std::span<const ChainStep>> SharedEdges::Boundary::of(std::span<const std::uint32_t> triangles,
                                                                     std::size_t most) {
-  is_at_work_ = true;
+  const bool was_at_work = std::exchange(is_at_work_, true);
   const bool are_few = set_multiplicities(triangles) <= most;
   if (are_few) {
     set_chains();
   } else {
     for (const std::uint32_t edge : touched_) scratch_.multiplicities[edge] = 0;
   }
-  is_at_work_ = false;
+  is_at_work_ = was_at_work;
   return are_few ? std::optional(std::span<const ChainStep>(steps_)) : std::nullopt;
 }
 

@@ -32,7 +32,7 @@ struct SourceNode {
   MultipoleBounds bounds;
   // From so far on, squared, the expansion cut off behind degree p errs by at most the node's share of the tolerance,
   // in proportion to area and to the number of its triangles by halves, rounding included. Never increases with p;
-  // infinite where no distance will do, [0] always.
+  // infinite where no distance will do, [0] always; no numbers in a node without expansion: nothing is far enough.
   std::array<double, kMultipoleOrder + 1> square_of_distance{};
 
   [[nodiscard]] std::size_t triangles() const { return end - begin; }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
-#include "core/surface/surface_mesh.h"
 
+#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

@@ -105,12 +105,14 @@ TEST(LatticeChoice, FlatSideGetsOneSampleAndTheSpacingOfTheSmallestOtherSide) {
   EXPECT_EQ(choice.lattice.counts, (Counts{5, 5, 1}));
   EXPECT_EQ(choice.lattice.spacing, (Vec3{1, 0.5, 0.5}));
   EXPECT_EQ(choice.lattice.origin, kSheet.lower);
-  EXPECT_EQ(choice.warnings, (std::vector<Warning>{{"flat-box", "the box is flat along z, and sampled once there, not 50 times"}}));
+  EXPECT_EQ(choice.warnings,
+            (std::vector<Warning>{{"flat-box", "the box is flat along z, and sampled once there, not 50 times"}}));
 }
 
 TEST(LatticeChoice, FlatSidesAreWarnedAboutUnlessOneSampleWasAsked) {
-  EXPECT_EQ(choose(kNeedle, sampled(SampleCounts{{5, 6, 7}})).warnings,
-            (std::vector<Warning>{{"flat-box", "the box is flat along y and z, and sampled once there, not 6 and 7 times"}}));
+  EXPECT_EQ(
+      choose(kNeedle, sampled(SampleCounts{{5, 6, 7}})).warnings,
+      (std::vector<Warning>{{"flat-box", "the box is flat along y and z, and sampled once there, not 6 and 7 times"}}));
   EXPECT_EQ(choose(kNeedle, sampled(SampleCounts{{5, 1, 1}})).warnings.size(), 0U);
   EXPECT_EQ(choose(kNeedle, sampled(SampleCounts{{5, 1, 1}})).lattice.spacing, (Vec3{1, 1, 1}));
 }

@@ -151,13 +151,15 @@ TEST_F(LatticeCommand, WarnsOnceAboutAFlatSide) {
   const CommandResult result =
       run_raycone({"lattice", flat_, "-o", dir_ / "out.csv", "--resolution", "4,4,4", "--report", report});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err.rfind(
-                "raycone: warning: " + flat_ + ": flat-box: the box is flat along z, and sampled once there, not 4 times\n", 0),
+  EXPECT_EQ(result.err.rfind("raycone: warning: " + flat_ +
+                                 ": flat-box: the box is flat along z, and sampled once there, not 4 times\n",
+                             0),
             0U)
       << result.err;
   const auto json = nlohmann::json::parse(read_text(report));
   EXPECT_EQ(json["warnings"], nlohmann::json({"flat-box"}));
-  EXPECT_EQ(json["warning_lines"], nlohmann::json({"flat-box: the box is flat along z, and sampled once there, not 4 times"}));
+  EXPECT_EQ(json["warning_lines"],
+            nlohmann::json({"flat-box: the box is flat along z, and sampled once there, not 4 times"}));
 }
 
 TEST_F(LatticeCommand, StrictTurnsWarningsIntoErrorsWithoutOutput) {

@@ -50,7 +50,7 @@ TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
   const auto make = [&](double share, const TriangleMesh& of) {
     malloc_trim(0);  // as check_memory() does: what other tests have freed is no longer in use then
     return make_surface("m", of, exterior_edges(of), lattice, options,
-                        static_cast<std::uint64_t>(memory_in_use() + kWorkingMemory + share * predicted));
+                        static_cast<std::uint64_t>(memory_in_use() + share * predicted));
   };
   try {
     make(0.5, mesh);

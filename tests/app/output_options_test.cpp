@@ -224,11 +224,12 @@ TEST(DepfileText, ReadsBackInMake) {
 }
 
 TEST(DepfileText, RefusesWhatMakeCannotRead) {
-  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb", "a*", "a?", "c[1]", "~root", "a\\"}) {
+  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb", "a*", "a?", "c[1]", "~root", ".//~root", "a\\", "a(b)"}) {
     EXPECT_THROW((void)depfile_text(name, {"mesh"}), OutputError) << name;
     EXPECT_THROW((void)depfile_text("out", {name}), OutputError) << name;
   }
   EXPECT_THROW((void)depfile_text("50%.csv", {"mesh"}), OutputError) << "a rule for patterns";
+  EXPECT_THROW((void)depfile_text("a&", {"mesh"}), OutputError) << "a rule for several targets";
   EXPECT_EQ(depfile_text("out", {"50%.obj"}), "out: \\\n  50%.obj\n");
 }
 

@@ -124,7 +124,7 @@ TEST_F(ResultsFilesTest, WaitForALockNoLongerThanASignal) {
   sigemptyset(&held);
   sigaddset(&held, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &held, &before);
-  kill(getpid(), SIGUSR1);
+  raise(SIGUSR1);
   EXPECT_THROW(files_.append(record("a")), OutputError);
   int taken = 0;
   sigwait(&held, &taken);

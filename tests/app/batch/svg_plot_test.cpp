@@ -24,6 +24,7 @@ TEST(ReadableQuantity, HasThreeDigitsAndAUnit) {
   EXPECT_EQ(readable_quantity(0.00125, Quantity::kSeconds), "1.25 ms");
   EXPECT_EQ(readable_quantity(1e-7, Quantity::kSeconds), "100 ns");
   EXPECT_EQ(readable_quantity(3600.0, Quantity::kSeconds), "3600 s");
+  EXPECT_EQ(readable_quantity(0.9997, Quantity::kSeconds), "1000 ms");
 }
 
 std::size_t count_of(const std::string& text, const std::string& what) {

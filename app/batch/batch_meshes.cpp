@@ -16,6 +16,7 @@
 #include "app/process/usage_error.h"
 #include "app/run/mesh_list.h"
 #include "io/files/file_error.h"
+#include "io/files/file_identity.h"
 #include "io/files/unpack.h"
 #include "io/mesh/read_mesh.h"
 
@@ -188,9 +189,10 @@ void refuse_collisions(const std::vector<BatchMesh>& meshes) {
   throw UsageError(text);
 }
 
+// Of one name, in one directory: a link elsewhere to the same file may refer to other files beside it.
 bool same_file(const BatchMesh& a, const BatchMesh& b) {
   std::error_code error;
-  return a.name == b.name && (a.path == b.path || fs::equivalent(a.path, b.path, error));
+  return a.name == b.name && (a.path == b.path || fs::equivalent(directory_of(a.path), directory_of(b.path), error));
 }
 
 }  // namespace

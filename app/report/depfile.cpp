@@ -35,14 +35,17 @@ bool is_member(const std::string& name) {
 // As GCC's -MD writes them: blanks and # behind a backslash, as are backslashes before these; $ doubled. Colons, too,
 // which GCC leaves as they are: Make would take the line for another rule. A leading ~ is a home.
 std::string escaped(const std::string& name) {
+  const auto is_control = [](char c) { return c < ' ' && c >= 0 && c != '\n'; };
+  if (std::ranges::any_of(name, is_control)) refuse(name, "names with control characters");
   refuse(name, "\n;|=*?[", "names");
+  if (name.ends_with(' ')) refuse(name, "names that end with a blank");
   if (without_dots(name).starts_with('~')) refuse(name, "names that begin with '~'");
   if (is_member(name)) refuse(name, "names with '(' and ')' at their end");
   if (name.ends_with('\\')) refuse(name, "names that end with '\\'");
   std::string text;
   std::string backslashes;
   for (const char c : name) {
-    if (c == ' ' || c == '\t' || c == '#' || c == ':') text += backslashes + '\\';
+    if (c == ' ' || c == '#' || c == ':') text += backslashes + '\\';
     if (c == '$') text += '$';
     text += c;
     backslashes = c == '\\' ? backslashes + c : "";

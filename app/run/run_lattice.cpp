@@ -28,6 +28,7 @@
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
+#include "io/vdb/read_vdb.h"
 
 namespace raycone {
 namespace {
@@ -80,7 +81,7 @@ std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, Output
                                            const PlacedLattice& lattice, const OutputDescription& description,
                                            const RunLimits& limits) {
   constexpr double kMappedByModule = 160.0 * 1024 * 1024;
-  const bool loads = command.encoding.format == FieldFormat::kVdb;
+  const bool loads = command.encoding.format == FieldFormat::kVdb && !vdb_module_is_loaded();
   if (loads) cap_memory(limits.memory(), kMappedByModule);
   std::unique_ptr<LatticeWriter> writer = make_lattice_writer(command.encoding.format, output, lattice, description);
   if (loads) cap_memory(limits.memory());
@@ -119,7 +120,8 @@ double memory_to_begin(const LatticeCommand& command, const RunReport& report) {
   SlabKind kind = slab_kind(report);
   kind.blocks = may_take_blocks(command, *report.lattice);
   const LatticeBlock smallest = slab_from(grid, 2, kVdbSlabAlignment, grid.index_min[2], 1);
-  return kTouchedByModule + of_writer + slab_memory(smallest, command.field, kind);
+  const double module = vdb_module_is_loaded() ? 0.0 : kTouchedByModule;  // as in a worker that is used again
+  return module + of_writer + slab_memory(smallest, command.field, kind);
 }
 
 // Refuses lattices of which not even the smallest slab fits beside what is in memory.

@@ -22,6 +22,7 @@
 #include "app/run/sampled_points.h"
 #include "app/run/written_files.h"
 #include "io/fields/field_writer.h"
+#include "io/files/file_error.h"
 #include "io/points/read_points.h"
 
 namespace raycone {
@@ -138,9 +139,18 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
   const PointBatch batch = batch_for(command, reader, run.report.exterior_edges > 0, run.limits());
   std::atomic<std::uint64_t>* const done = run.start_progress(reader.size());
   std::vector<Vec3> points;
-  for (;;) {
-    if (reader.would_block()) work.writer->flush();
-    if (!timed(source, [&] { return next(reader, batch, points); })) return;
+  // Of text, what has been answered is handed on before an error about what follows, too. In a binary file that is
+  // damaged nothing is right.
+  const auto read_more = [&] {
+    try {
+      if (reader.would_block()) work.writer->flush();
+      return timed(source, [&] { return next(reader, batch, points); });
+    } catch (const InputError&) {
+      if (run.report.samples > 0 && reader.has_columns()) work.writer->flush();
+      throw;
+    }
+  };
+  while (read_more()) {
     fields.evaluate(points, done);
     if (work.labels) timed(seconds.evaluate, [&] { work.labels->evaluate(points, fields.labels()); });
     const SurfacePlaces places = reader.places();

@@ -97,6 +97,8 @@ void require_what_loading_takes(const std::string& name) {
   require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
 }
 
+std::atomic<bool> is_loaded = false;
+
 // `name`: the file that asks for it. Throws std::bad_alloc, UnavailableError, and Error where the module cannot be
 // loaded.
 template <class Error>
@@ -108,7 +110,10 @@ const vdb::Module& vdb_module(const std::string& name) {
   // Bound lazily: OpenVDB has tens of thousands of functions. Stays loaded to the end.
   void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
-  if (symbol) return *(loaded = static_cast<const vdb::Module*>(symbol));
+  if (symbol) {
+    is_loaded = true;
+    return *(loaded = static_cast<const vdb::Module*>(symbol));
+  }
   throw Error(name + ": cannot load the module for OpenVDB, which belongs to raycone's installation: " + dlerror());
 }
 
@@ -118,6 +123,8 @@ std::unique_ptr<LatticeWriter> make_vdb_lattice_writer(OutputFile& output, const
                                                        const OutputDescription& description) {
   return vdb_module<OutputError>(output.name()).make_writer(output, lattice, description);
 }
+
+bool vdb_module_is_loaded() { return is_loaded; }
 
 PlacedLattice read_vdb_lattice(const std::string& path, const std::string& name) {
   return vdb_module<UnreadableError>(path).read(path, name);

@@ -14,6 +14,9 @@ namespace raycone {
 // OpenVDB; meanwhile this process's memory is limited to what a file of that size can ask for.
 [[nodiscard]] PlacedLattice read_vdb_lattice(const std::string& path, const std::string& name);
 
+// Whether OpenVDB is in memory: reading or writing a VDB loads it once.
+[[nodiscard]] bool vdb_module_is_loaded();
+
 // All grids, the lattice of the first one, and how that was made. Throws and may crash likewise.
 [[nodiscard]] VolumeFacts read_vdb_facts(const std::string& path);
 

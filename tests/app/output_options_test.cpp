@@ -224,7 +224,8 @@ TEST(DepfileText, ReadsBackInMake) {
 }
 
 TEST(DepfileText, RefusesWhatMakeCannotRead) {
-  for (const std::string name : {"a;b", "a|b", "a=b", "a\nb", "a*", "a?", "c[1]", "~root", ".//~root", "a\\", "a(b)"}) {
+  for (const std::string name :
+       {"a;b", "a|b", "a=b", "a\nb", "a*", "a?", "c[1]", "~root", ".//~root", "a\\", "a(b)", "a\tb", "\ra", "a "}) {
     EXPECT_THROW((void)depfile_text(name, {"mesh"}), OutputError) << name;
     EXPECT_THROW((void)depfile_text("out", {name}), OutputError) << name;
   }

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/app/meshes.h"
@@ -89,6 +91,20 @@ TEST_F(PointsCommand, PointsBeforeALineThatIsNoneAreAnswered) {
     EXPECT_EQ(result.status, 2) << line;
     EXPECT_EQ(result.out, "x,y,z,w\n0.5,0.5,0.5,1\n2,0,0,0\n") << line;
     EXPECT_EQ(result.err.rfind("raycone: " + points_ + ":3: ", 0), 0U) << result.err;
+  }
+}
+
+// Whether the line that is none comes with the one before, or while that is answered.
+TEST_F(PointsCommand, WhatHasBeenAnsweredIsHandedOnBeforeAnError) {
+  for (int i = 0; i < 30; ++i) {
+    Command command(raycone_command({"points", mesh_, "-", "--quiet"}));
+    command.write("0.5 0.5 0.5\n");
+    std::this_thread::sleep_for(std::chrono::microseconds(200 * i));
+    for (const char c : std::string("bad\n")) command.write(std::string(1, c));
+    command.close_input();
+    const CommandResult result = command.wait();
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.out, "x,y,z,w\n0.5,0.5,0.5,1\n");
   }
 }
 

@@ -30,6 +30,12 @@ std::string open_cube(double size) {
 
 std::size_t count_lines(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
 
+TEST_F(Batch, AWorkerIsChargedForOpenVdbOnce) {
+  for (const char* const name : {"a.obj", "b.obj", "c.obj", "d.obj"}) put(name);
+  const CommandResult result = run({"--threads", "1", "--memory-limit", "64M"});
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
 TEST_F(Batch, GivesEachMeshWhatLatticeGivesIt) {
   const std::string cube = put("sub/cube one.OBJ");
   const std::string triangle = put("\xC3\xA4.obj", kTriangle);

@@ -125,6 +125,15 @@ TEST_F(BatchMeshes, WithOneOutputAreAllListed) {
   EXPECT_LT(of_many.size(), 1000U) << of_many;
 }
 
+// A glTF refers to files beside itself.
+TEST_F(BatchMeshes, LinksInOtherDirectoriesAreOtherMeshes) {
+  const std::string one = put("one/a.gltf"), other = root_ + "/other/a.gltf";
+  fs::create_directory(root_ + "/other");
+  fs::create_hard_link(one, other);
+  EXPECT_NE(error_of({one, other}).find("would both be a.gltf in the results"), std::string::npos);
+  EXPECT_EQ(find({one, root_ + "/other/../one/a.gltf"}).size(), 1U);
+}
+
 TEST_F(BatchMeshes, HaveNamesHoweverTheyAreWritten) {
   put("tree/a.stl");
   for (const char* const form : {"/tree", "/tree/", "/tree//", "/tree/.", "/tree/../tree/", "/tree/./"}) {

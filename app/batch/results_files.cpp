@@ -183,6 +183,11 @@ std::vector<CsvRecord> CsvLog::read() const {
   return rows;
 }
 
+bool CsvLog::ends_within_line() const {
+  const std::string all = text();
+  return parse_csv(all).complete < all.size();
+}
+
 // Where the last write(2) was cut short, because its process was killed, its line is cut off. That needs a look at the
 // whole file, as fields may hold line feeds, but only where others have written to it.
 off_t CsvLog::drop_incomplete_line(int descriptor) const {
@@ -338,6 +343,7 @@ std::size_t count_unreadable_rows(const std::string& directory) {
   for (const ResultsFiles& files : all_results_files(directory)) {
     const std::vector<CsvRecord> rows = files.rows_.read();
     count += static_cast<std::size_t>(std::ranges::count_if(rows, [](const CsvRecord& row) { return !row_from(row); }));
+    count += files.rows_.ends_within_line() ? 1 : 0;
   }
   return count;
 }

@@ -33,6 +33,8 @@ class CsvLog {
   // Nothing where there is no file. Throws InputError where it is no such table, or a quotation mark in it hides rows;
   // LimitError where it would take more memory than there is.
   [[nodiscard]] std::vector<CsvRecord> read() const;
+  // Whether it ends within a line, as a killed writer leaves it.
+  [[nodiscard]] bool ends_within_line() const;
   // Nanoseconds since 1970; 0 where there is no file.
   [[nodiscard]] std::int64_t modified() const;
   // Throw OutputError. append() leaves the file as it was where it cannot write all of the line.
@@ -91,7 +93,7 @@ class ResultsFiles {
 // one whose origin is lost may be from any time until its file changed last. Throws InputError.
 [[nodiscard]] BatchRecords read_all_results(const std::string& directory);
 
-// Rows there that are damaged: nothing is known of their meshes. Throws InputError.
+// Rows there that are damaged, or cut short: nothing is known of their meshes. Throws InputError.
 [[nodiscard]] std::size_t count_unreadable_rows(const std::string& directory);
 
 // Tells the user of them, where there are any. Throws InputError.

@@ -16,7 +16,7 @@ suites=$(grep -lE 'run_raycone|raycone_command|batch_fixture' tests/app/*_test.c
   xargs sed -nE 's/^TEST(_F)?\((\w+),.*/\2/p' | sort -u | grep -vx BatchCost | paste -sd '|')
 
 # What is about so little memory that sanitizers have none left.
-of_memory='MemoryLimitsHoldForThoseThatLookForBuffers'
+of_memory='MemoryLimitsHoldForThoseThatLookForBuffers|AWorkerIsChargedForOpenVdbOnce'
 
 # black_box PRESET CTEST-OPTION...: the dev build's tests of what PRESET built.
 black_box() {

@@ -1,17 +1,20 @@
-"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY
+"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY [--long]
 
 Boxes between whole numbers, of either orientation, share sides, parts of sides, edges and corners in every way. The
 oracle: a unit cell is inside where the rule holds of the sum of the boxes around it, so volumes are whole numbers of
-cells. Also under sanitizers (tests/sanitize.sh).
+cells. Also under sanitizers (tests/sanitize.sh). --long: ten times as many.
 """
 
 import itertools
 import json
 import math
 import random
+import sys
 
 from command_case import SURFACE, CommandCase, run_tests
 
+TIMES = 10 if "--long" in sys.argv else 1
+sys.argv = [word for word in sys.argv if word != "--long"]
 SIZE = 5  # of the lattice of cells
 HOLDS = {"threshold=0.5": lambda w: w > 0, "threshold=1.5": lambda w: w > 1, "odd": lambda w: w % 2 == 1,
          "nonzero": lambda w: w != 0}
@@ -69,7 +72,7 @@ class CutSolids(CommandCase):
     def solids(self, seed, count, turn=beside_samples):
         """Calls with the words for a surface, and its volume, of those that are not empty."""
         dice = random.Random(seed)
-        for n in range(count):
+        for n in range(TIMES * count):
             boxes = random_boxes(dice, 2 + n % 5)
             rule = list(HOLDS)[n % len(HOLDS)]
             expected = volume(boxes, HOLDS[rule])
@@ -78,13 +81,13 @@ class CutSolids(CommandCase):
                 yield "boxes.obj --rule %s --voxel-size 0.37" % rule, expected
 
     def test_cells_that_the_rule_holds_for_are_inside(self):
-        for words, expected in self.solids(1, 60):
+        for words, expected in self.solids(1, 24):
             self.works("surface %s -o out.ply" % words)
             # Parts that touch are 2^-30 of a voxel apart, times the area of a few dozen sides.
             self.assertAlmostEqual(self.measured("out.ply"), expected, delta=1e-7, msg=words)
 
     def test_single_precision_and_simplified(self):
-        for words, expected in self.solids(2, 24):
+        for words, expected in self.solids(2, 8):
             self.works("surface %s -o out.stl" % words)
             self.assertAlmostEqual(self.measured("out.stl"), expected, delta=1e-3, msg=words)  # 32 roundings apart
             self.works("surface %s -o out.stl --simplify 0.1" % words)
@@ -93,14 +96,14 @@ class CutSolids(CommandCase):
     def test_samples_on_sides(self):
         # Where parts touch next to a sample on their sides they move against the perturbation.
         for seed in (1, 5):
-            for words, expected in self.solids(seed, 36, lambda p: p):
+            for words, expected in self.solids(seed, 12, lambda p: p):
                 for size in ("0.37", "0.25"):
                     self.works("surface %s -o out.ply" % words.replace("0.37", size))
                     self.assertAlmostEqual(self.measured("out.ply"), expected, delta=1e-7, msg=words + size)
 
     def test_turned(self):
         # Sides of one plane are so but for roundings; a contour, if that is what it takes, may lose tips.
-        for words, expected in self.solids(3, 24, turned(random.Random(4))):
+        for words, expected in self.solids(3, 8, turned(random.Random(4))):
             for output in ("out.ply", "out.stl"):
                 self.works("surface %s -o %s" % (words, output))
                 self.assertAlmostEqual(self.measured(output), expected, delta=0.02 * expected, msg=words)

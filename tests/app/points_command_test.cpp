@@ -96,10 +96,10 @@ TEST_F(PointsCommand, PointsBeforeALineThatIsNoneAreAnswered) {
 
 // Whether the line that is none comes with the one before, or while that is answered.
 TEST_F(PointsCommand, WhatHasBeenAnsweredIsHandedOnBeforeAnError) {
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 15; ++i) {
     Command command(raycone_command({"points", mesh_, "-", "--quiet"}));
     command.write("0.5 0.5 0.5\n");
-    std::this_thread::sleep_for(std::chrono::microseconds(200 * i));
+    std::this_thread::sleep_for(std::chrono::microseconds(400 * i));
     for (const char c : std::string("bad\n")) command.write(std::string(1, c));
     command.close_input();
     const CommandResult result = command.wait();

@@ -327,7 +327,7 @@ std::string sheet(int n) {
 
 // Which takes twenty times as long as the eight points.
 TEST_F(Slice, ReportsThePreparationOfPointsAsSuch) {
-  write_text(cube_, sheet(300));
+  write_text(cube_, sheet(200));
   const std::string report = dir_ / "report.json";
   double largest = 0.0;  // a run may lose the processor while it evaluates
   for (int run = 0; run < 3; ++run) {

@@ -1,7 +1,7 @@
 """Damaged meshes: python3 damaged_meshes_test.py RAYCONE MESH_DIRECTORY [SHARED_MESHES] [--count N] [--seed N]
 
 Meshes of up to 100 kB, those of SHARED_MESHES too where it is there, with some of their numbers, lines or bytes changed:
-corners far away or in one place, faces repeated, exchanged or torn off, files cut. Each of N (150) is refused in one line, or
+corners far away or in one place, faces repeated, exchanged or torn off, files cut. Each of N (80) is refused in one line, or
 gives values that --verify finds right, and the same bytes by another engine and instruction set and as single points.
 """
 
@@ -19,7 +19,7 @@ from runs import MESHES, RAYCONE, contents, fail, report
 parser = argparse.ArgumentParser()
 parser.add_argument("raycone_and_meshes", nargs=2)
 parser.add_argument("shared", nargs="?", default="")
-parser.add_argument("--count", type=int, default=150)
+parser.add_argument("--count", type=int, default=80)
 parser.add_argument("--seed", type=int, default=1)
 options = parser.parse_args()
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:3])
-RUNS = int(sys.argv[3]) if len(sys.argv) > 3 else 80
+RUNS = int(sys.argv[3]) if len(sys.argv) > 3 else 40
 PATIENCE = 10.0  # seconds of CPU time; a run takes half a second under sanitizers
 failures = []
 chance = random.Random(5)

@@ -190,21 +190,21 @@ with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
     for run in [] if FEW_THREADS else all_runs():
         if "--memory" in sys.argv:
-            sweep_memory(run, resource.RLIMIT_AS, "address space", 24 << 20, (1 if LONG else 10) << 20)
-            sweep_memory(run, resource.RLIMIT_DATA, "data", 1 << 20, (256 if LONG else 3 << 10) << 10)
+            sweep_memory(run, resource.RLIMIT_AS, "address space", 24 << 20, (1 if LONG else 20) << 20)
+            sweep_memory(run, resource.RLIMIT_DATA, "data", 1 << 20, (256 if LONG else 6 << 10) << 10)
         else:
-            sweep_disk(run, 60 if LONG else 6)
-            sweep_signals(run, 300 if LONG else 15)
+            sweep_disk(run, 60 if LONG else 4)
+            sweep_signals(run, 300 if LONG else 10)
     if "--memory" in sys.argv:
         surface = Run("surface to PLY", "surface", CLOSED, "--resolution", "30", output="out.ply")  # much of it in GMP
-        sweep_memory(surface, resource.RLIMIT_DATA, "data", 10 << 20, (100 if LONG else 400) << 10)
-        sweep_batch_memory((1 if LONG else 20) << 20)
+        sweep_memory(surface, resource.RLIMIT_DATA, "data", 10 << 20, (100 if LONG else 1000) << 10)
+        sweep_batch_memory((1 if LONG else 40) << 20)
         read_endless_meshes()
         read_endless_lists()
         refuse_what_data_cannot_hold()
     elif FEW_THREADS:
         batch_with_few_threads(100 if LONG else 10)
     else:
-        sweep_shrinking(200 if LONG else 10)
+        sweep_shrinking(200 if LONG else 6)
     os.chdir("/")
 sys.exit(report())

@@ -76,7 +76,7 @@ def sweep_room(arguments, outputs):
         if room > DISK // 2:
             return failures.append("%s: no room is enough" % " ".join(arguments))
         refusals += 1
-        room += 4096 if room < 65536 else 65536
+        room += 4096 if room < 16384 else 65536
     if refusals == 0:
         failures.append("%s: had room on a full disk" % " ".join(arguments))
 

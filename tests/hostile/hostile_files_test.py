@@ -1,7 +1,7 @@
-"""Walks the table of hostile_files.py: python3 hostile_files_test.py RAYCONE MESH
+"""Walks the table of hostile_files.py: python3 hostile_files_test.py RAYCONE MESH [MEGABYTES]
 
 Each file gets its status, and on failure one line that names it and says what the table says, and no output. Files that
-never end and those that links and URIs point to follow behind the table.
+never end and those that links and URIs point to follow behind the table. The longest lines have MEGABYTES (1024).
 """
 
 import os
@@ -11,7 +11,8 @@ import tempfile
 
 from hostile_files import OBJ, OFF, TABLE, put
 
-RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:])
+RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:3])
+LONGEST = (int(sys.argv[3]) if len(sys.argv) > 3 else 1024) << 20
 failures = []
 
 
@@ -48,7 +49,7 @@ def walk_table():
             expect_mesh(name, status, fragment)
 
 
-# Lines of one gigabyte, of zeros that take no space on most disks.
+# Of zeros, which take no space on most disks.
 def walk_longest_lines():
     for name, beginning, status, fragment in [
         ("longest_line.obj", OBJ + "# ", 0, ""),
@@ -58,7 +59,7 @@ def walk_longest_lines():
     ]:
         with open(name, "w") as file:
             file.write(beginning)
-            file.truncate(1 << 30)
+            file.truncate(LONGEST)
         if name.endswith(".csv"):
             expect(name, ["points", MESH, name], status, fragment)
         else:

@@ -27,8 +27,9 @@ ssize_t write_some(int descriptor, const char* data, std::size_t size) {
 
 }  // namespace
 
-FileBuffer::FileBuffer(int descriptor) : descriptor_(descriptor), bytes_(kBufferSize) {
-  setp(bytes_.data(), bytes_.data() + bytes_.size());
+FileBuffer::FileBuffer(int descriptor)
+    : descriptor_(descriptor), bytes_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
+  setp(bytes_.get(), bytes_.get() + kBufferSize);
 }
 
 bool FileBuffer::write_through(const char* data, std::size_t size) {
@@ -47,7 +48,7 @@ bool FileBuffer::write_through(const char* data, std::size_t size) {
 
 int FileBuffer::sync() {
   const bool written = write_through(pbase(), static_cast<std::size_t>(pptr() - pbase()));
-  setp(bytes_.data(), bytes_.data() + bytes_.size());
+  setp(bytes_.get(), bytes_.get() + kBufferSize);
   return written ? 0 : -1;
 }
 

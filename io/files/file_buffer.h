@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <streambuf>
-#include <vector>
 
 namespace raycone {
 
@@ -29,7 +29,7 @@ class FileBuffer : public std::streambuf {
   int descriptor_;
   int error_ = 0;
   off_type start_ = 0;  // position of the first buffered byte
-  std::vector<char> bytes_;
+  std::unique_ptr<char[]> bytes_;  // not set before they are written: small outputs touch few pages of memory
 };
 
 }  // namespace raycone

@@ -3,7 +3,6 @@
 
 #include <nettle/sha2.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -11,7 +10,6 @@
 #include <memory>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "io/files/byte_source.h"
 #include "io/files/file_error.h"
@@ -55,10 +53,10 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   const std::uint64_t expected = source->size().value_or(0);
   if (expected > max_bytes) fail_too_large(path, max_bytes);
 
-  constexpr std::size_t kSmallest = std::size_t{1} << 16;
+  constexpr std::size_t kOfUnknown = std::size_t{1} << 16;
   std::string bytes;
   // One byte more than expected, so that the end is seen without growing.
-  bytes.resize(std::max<std::size_t>(kSmallest, static_cast<std::size_t>(expected) + 1));
+  bytes.resize(expected > 0 ? static_cast<std::size_t>(expected) + 1 : kOfUnknown);
   std::size_t size = 0;
   for (;;) {
     if (size == bytes.size()) bytes.resize(2 * size);
@@ -91,11 +89,12 @@ std::string sha256_of_file(const std::string& path) {
   const std::unique_ptr<ByteSource> source = open_source(path);
   sha256_ctx context;
   sha256_init(&context);
-  std::vector<char> block(std::size_t{1} << 20);
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  const auto block = std::make_unique_for_overwrite<char[]>(kBlock);
   for (;;) {
-    const std::size_t count = source->read(block.data(), block.size());
+    const std::size_t count = source->read(block.get(), kBlock);
     if (count == 0) return digest(context);
-    add(context, {block.data(), count});
+    add(context, {block.get(), count});
   }
 }
 

@@ -4,8 +4,8 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <memory>
 #include <system_error>
-#include <vector>
 
 #include "io/files/file_buffer.h"
 #include "io/files/file_error.h"
@@ -50,13 +50,13 @@ void SpoolFile::read_back(const std::function<void(const char*, std::size_t)>& t
   if (state_->buffer.pubsync() != 0) fail_to_spool(state_->name, state_->buffer.error());
   const int descriptor = fileno(state_->file.get());
   if (lseek(descriptor, 0, SEEK_SET) < 0) fail_to_spool(state_->name, errno);
-  std::vector<char> bytes(kCopySize);
+  const auto bytes = std::make_unique_for_overwrite<char[]>(kCopySize);
   while (true) {
-    const ssize_t count = read(descriptor, bytes.data(), bytes.size());
+    const ssize_t count = read(descriptor, bytes.get(), kCopySize);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail_to_spool(state_->name, errno);
     if (count == 0) return;
-    take(bytes.data(), static_cast<std::size_t>(count));
+    take(bytes.get(), static_cast<std::size_t>(count));
   }
 }
 

@@ -10,11 +10,11 @@
 namespace raycone {
 
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
-// side of the field's threshold as the double it stands for, compared as float or as double, and likewise of every
-// half-integer: a positive one stands only for numbers that reach it, a negative one, which some rules compare by
-// magnitude, only for itself. Half-integers beyond 2^23 are not floats. Where a threshold lies beyond all that can be
-// stored, numbers beyond that become the largest on their side of 0. Negative distances stay negative, and bounds
-// are rounded up.
+// side of the field's threshold as the double it stands for, compared as it is stored, as float or as double, and
+// likewise of every half-integer: a positive one stands only for numbers that reach it, a negative one, which some
+// rules compare by magnitude, only for itself. Half-integers beyond 2^23 are not floats. Where a threshold lies beyond
+// all that can be stored, numbers beyond that become the largest on their side of 0. Negative distances stay negative,
+// and bounds are rounded up.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field)
@@ -28,8 +28,10 @@ class Narrowing {
         is_bound_(field.kind == FieldKind::kBound),
         of_magnitude_(field.threshold_of_magnitude),
         threshold_(field.threshold),
-        low_(std::min(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
-        high_(std::max(threshold_, static_cast<double>(static_cast<float>(threshold_)))),
+        low_(std::min(
+            {threshold_, static_cast<double>(static_cast<float>(threshold_)), stored(threshold_, nearest, next)})),
+        high_(std::max(
+            {threshold_, static_cast<double>(static_cast<float>(threshold_)), stored(threshold_, nearest, next)})),
         nearest_(nearest),
         next_(next) {}
 
@@ -47,6 +49,11 @@ class Narrowing {
   static float float_in_range(double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp(value, -kMost, kMost));
+  }
+  // The threshold as readers have it who compare in the precision of what is stored; itself beyond that.
+  static double stored(double threshold, float (*nearest)(double), float (*next)(float)) {
+    const float as_stored = nearest(threshold), size = std::abs(as_stored);
+    return next(size) == size ? threshold : static_cast<double>(as_stored);
   }
   static float next_float(float value) { return std::nextafter(value, std::numeric_limits<float>::infinity()); }
   [[nodiscard]] float up(float value) const { return next_(value); }

@@ -6,6 +6,7 @@
 
 #include "io/fields/quaternion.h"
 #include "io/fields/volume_error.h"
+#include "io/files/ascii.h"
 #include "io/files/byte_order.h"
 
 namespace raycone {
@@ -43,7 +44,8 @@ std::string NiftiHead::text(std::size_t offset, std::size_t room) const {
 }
 
 PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
-  if (head.integer(40) < 3) fail_as_volume(path, "its dimension, expected at least 3");
+  if (head.integer(40) < 3)
+    fail_as_volume(path, "its dimension, expected at least 3, found " + std::to_string(head.integer(40)));
   const std::array<std::int64_t, 3> counts{head.integer(42), head.integer(44), head.integer(46)};
   std::array<Vec3, 3> steps;
   if (head.integer(254) > 0) {
@@ -55,7 +57,8 @@ PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
   if (!(head.integer(252) > 0)) fail_as_volume(path, "it has neither sform nor qform, expected a place in the world");
   steps = columns_of({head.real(256), head.real(260), head.real(264)});
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(head.real(80 + 4 * a) > 0.0)) fail_as_volume(path, "its spacing, expected three positive numbers");
+    if (!(head.real(80 + 4 * a) > 0.0))
+      fail_as_volume(path, "its spacing, expected positive numbers, found " + shortest_text(head.real(80 + 4 * a)));
     steps[a] = head.real(80 + 4 * a) * steps[a];
   }
   if (head.real(76) < 0.0) steps[2] = -1.0 * steps[2];
@@ -63,9 +66,11 @@ PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
 }
 
 NiftiFacts nifti_facts(const NiftiHead& head) {
-  static const std::map<int, const char*> kTypes{{2, "uint8"},      {4, "int16"},    {8, "int32"},    {16, "float32"},
-                                                 {32, "complex64"}, {64, "float64"}, {128, "rgb24"},  {256, "int8"},
-                                                 {512, "uint16"},   {768, "uint32"}, {1024, "int64"}, {1280, "uint64"}};
+  static const std::map<int, const char*> kTypes{
+      {2, "uint8"},         {4, "int16"},     {8, "int32"},  {16, "float32"},    {32, "complex64"},
+      {64, "float64"},      {128, "rgb24"},   {256, "int8"}, {512, "uint16"},    {768, "uint32"},
+      {1024, "int64"},      {1280, "uint64"}, {1, "binary"}, {1536, "float128"}, {1792, "complex128"},
+      {2048, "complex256"}, {2304, "rgba32"}};
   constexpr int kMostAxes = 7;
   NiftiFacts facts;
   const int code = head.integer(70);

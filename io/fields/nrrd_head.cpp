@@ -32,7 +32,7 @@ class Numbers {
   Numbers(const std::string& path, const NrrdHead& head, const std::string& key) : path_(path), key_(key) {
     const auto found = head.fields.find(key);
     if (found == head.fields.end()) fail_as_volume(path, "it has no " + key);
-    rest_ = found->second;
+    rest_ = text_ = found->second;
   }
 
   // Whether the next one is this word, which is then behind.
@@ -72,14 +72,16 @@ class Numbers {
     if (!rest_.empty()) fail(expected);
   }
 
-  [[noreturn]] void fail(const std::string& expected) const { fail_as_volume(path_, key_ + ", expected " + expected); }
+  [[noreturn]] void fail(const std::string& expected) const {
+    fail_as_volume(path_, key_ + ", expected " + expected + ", found '" + excerpt(text_) + '\'');
+  }
 
  private:
   void skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(", \t"), rest_.size())); }
 
   const std::string& path_;
   std::string key_;
-  std::string_view rest_;
+  std::string_view text_, rest_;
 };
 
 std::size_t read_dimension(const std::string& path, const NrrdHead& head) {
@@ -119,7 +121,8 @@ Vec3 signs_of_space(const std::string& path, const NrrdHead& head) {
   if (name == "left-posterior-superior" || name == "lps") return {-1, -1, 1};
   static constexpr std::array kOfNoBody{"scanner-xyz", "3d-right-handed", "3drh", "3d-left-handed", "3dlh"};
   if (std::ranges::find(kOfNoBody, name) != kOfNoBody.end()) return {1, 1, 1};
-  fail_as_volume(path, "its space, expected right-anterior-superior or another of three axes");
+  fail_as_volume(path, "its space, expected right-anterior-superior or another of three axes, found '" +
+                           excerpt(space->second) + '\'');
 }
 
 Vec3 times(const Vec3& a, const Vec3& b) { return Vec3{a.x * b.x, a.y * b.y, a.z * b.z} + Vec3{}; }  // no -0

@@ -133,20 +133,28 @@ bool fits_float(const Vec3& v) {
   return fits(v.x) && fits(v.y) && fits(v.z);
 }
 
-// How far the sform, in 32 bits, displaces a sample at most, in voxels: all are sums of its columns.
-double nifti_displacement(const PlacedLattice& lattice) {
-  const auto rounding = [](double number) {
-    return std::abs(static_cast<double>(static_cast<float>(number)) - number);
-  };
+constexpr double kMostDisplaced = 0.0625;  // voxels: less than anybody sees
+
+double in_32_bits(double number) { return static_cast<double>(static_cast<float>(number)); }
+Vec3 in_32_bits(const Vec3& v) { return {in_32_bits(v.x), in_32_bits(v.y), in_32_bits(v.z)}; }
+
+// How far a sample is displaced at most, in voxels, where the first one and the steps are these.
+double displacement(const PlacedLattice& lattice, const Vec3& first, const std::array<Vec3, 3>& steps) {
   double most = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    double sum = rounding(first_sample(lattice)[axis]);
+    double sum = std::abs(first[axis] - first_sample(lattice)[axis]);
     for (std::size_t n = 0; n < 3; ++n) {
-      sum += static_cast<double>(lattice.grid.counts[n] - 1) * rounding(lattice.steps[n][axis]);
+      sum += static_cast<double>(lattice.grid.counts[n] - 1) * std::abs(steps[n][axis] - lattice.steps[n][axis]);
     }
     most = std::max(most, sum / lattice.grid.least_spacing());
   }
   return most;
+}
+
+// By the sform.
+double nifti_displacement(const PlacedLattice& lattice) {
+  const auto& [i, j, k] = lattice.steps;
+  return displacement(lattice, in_32_bits(first_sample(lattice)), {in_32_bits(i), in_32_bits(j), in_32_bits(k)});
 }
 
 void check_nifti(const PlacedLattice& lattice, const std::string& name) {
@@ -161,7 +169,6 @@ void check_nifti(const PlacedLattice& lattice, const std::string& name) {
   if (!fits_float(spacing) || !fits_float(first_sample(lattice)) || least < std::numeric_limits<float>::min()) {
     throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
   }
-  constexpr double kMostDisplaced = 0.0625;  // voxels: less than anybody sees
   if (const double displaced = nifti_displacement(lattice); displaced > kMostDisplaced) {
     std::array<char, 16> text;
     std::snprintf(text.data(), text.size(), "%.2g", displaced);
@@ -170,7 +177,8 @@ void check_nifti(const PlacedLattice& lattice, const std::string& name) {
   }
 }
 
-// The place of the voxels as a rotation, which programs read that know no matrices; nothing where it is none.
+// The place of the voxels as a rotation, which programs read that know no matrices; nothing where it is none, nor where
+// what they decode would displace samples: near half turns the parts of a quaternion leave no real part.
 void put_rotation(NiftiHead& head, const PlacedLattice& lattice) {
   constexpr double kRounding = 1e-5;  // of matrices in 32 bits, which some programs also compute in these
   std::array<Vec3, 3> columns = lattice.units();
@@ -179,7 +187,14 @@ void put_rotation(NiftiHead& head, const PlacedLattice& lattice) {
   if (!lattice.is_orthogonal(kRounding)) return;
   if (mirrored) columns[2] = -1.0 * columns[2];
   const std::array<float, 3> parts = stored_parts(quaternion_of(columns));
+  const auto& [b, c, d] = parts;
+  std::array<Vec3, 3> decoded = columns_of({static_cast<double>(b), static_cast<double>(c), static_cast<double>(d)});
+  if (mirrored) decoded[2] = -1.0 * decoded[2];
+  for (std::size_t n = 0; n < 3; ++n) {
+    decoded[n] = in_32_bits(lattice.grid.spacing[static_cast<int>(n)]) * decoded[n];
+  }
   const Vec3 first = first_sample(lattice);
+  if (displacement(lattice, in_32_bits(first), decoded) > kMostDisplaced) return;
   head.put(252, kScannerSpace);
   for (std::size_t a = 0; a < 3; ++a) {
     head.put(256 + 4 * a, parts[a]);

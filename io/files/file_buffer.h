@@ -28,7 +28,7 @@ class FileBuffer : public std::streambuf {
 
   int descriptor_;
   int error_ = 0;
-  off_type start_ = 0;  // position of the first buffered byte
+  off_type start_ = 0;             // position of the first buffered byte
   std::unique_ptr<char[]> bytes_;  // not set before they are written: small outputs touch few pages of memory
 };
 

@@ -44,11 +44,22 @@ class HeadParser {
   [[nodiscard]] std::string parse_type() const {
     const std::string_view value = value_of(dictionary_, "descr");
     if (value.empty()) fail("header without a type (descr), expected one");
+    if (value.front() == '[') return std::string(value.substr(0, end_of_list(value)));
     const std::size_t end = value.find(value.front(), 1);
     if (end == std::string_view::npos || (value.front() != '\'' && value.front() != '"')) {
-      fail("file of structured values, expected numbers");
+      fail("type " + excerpt(value) + ", expected a text");
     }
     return std::string(value.substr(1, end - 1));
+  }
+
+  // Behind the bracket that closes the first one.
+  static std::size_t end_of_list(std::string_view text) {
+    std::size_t depth = 0;
+    for (std::size_t n = 0; n < text.size(); ++n) {
+      if (text[n] == '[') ++depth;
+      if (text[n] == ']' && --depth == 0) return n + 1;
+    }
+    return text.size();
   }
 
   [[nodiscard]] bool parse_order() const {
@@ -61,7 +72,8 @@ class HeadParser {
   void parse_shape(NpyHead& head) const {
     const std::string_view value = value_of(dictionary_, "shape");
     const std::size_t end = value.find(')');
-    if (!value.starts_with('(') || end == std::string_view::npos) fail("header without a shape, expected (n, 3)");
+    if (!value.starts_with('(') || end == std::string_view::npos)
+      fail("header without a shape, expected whole numbers");
     const std::string_view shape = value.substr(0, end + 1);
     const auto is_between = [](char c) { return c == 'L' || c == ',' || c == ' '; };  // Python 2 wrote 10L
     const char* c = shape.data() + 1;
@@ -69,7 +81,7 @@ class HeadParser {
     while (*c != ')') {
       std::uint64_t size = 0;
       const auto [after, error] = std::from_chars(c, shape.data() + shape.size(), size);
-      if (error != std::errc()) fail("shape " + excerpt(shape) + ", expected (n, 3)");
+      if (error != std::errc()) fail("shape " + excerpt(shape) + ", expected whole numbers");
       head.shape.push_back(size);
       for (c = after; is_between(*c);) ++c;
     }

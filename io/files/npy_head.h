@@ -14,14 +14,14 @@ namespace raycone {
 inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 struct NpyHead {
-  std::string type;  // as NumPy writes it, "<f8" for instance
+  std::string type;  // as NumPy writes it, "<f8" for instance, or of structured values a list of names and types
   bool fortran_order = false;
   std::vector<std::uint64_t> shape;
   std::string shape_text;
   std::uint64_t data_offset = 0;
 };
 
-// Consumes the head. Throws InputError, also about structured values.
+// Consumes the head. Throws InputError.
 [[nodiscard]] NpyHead read_npy_head(InputBuffer& input);
 
 // A head of version 1.0 to write, for elements in C order: a text padded to 64 bytes. `descriptor`: of the elements,

@@ -56,13 +56,13 @@ struct Directory {
   std::uint64_t entries, size, offset;
 };
 
-// 4.3.14, 4.3.15: `end` is where the record of 4.3.16 begins.
-Directory large_directory(const ByteSource& file, const std::string& path, std::uint64_t end) {
+// 4.3.14, 4.3.15: `end` is where the record of 4.3.16 begins. Nothing where there is no locator before it.
+std::optional<Directory> large_directory(const ByteSource& file, const std::string& path, std::uint64_t end) {
   constexpr std::uint64_t kLocator = 20, kRecord = 56;
-  if (end < kLocator) fail(path, "no ZIP64 directory");
+  if (end < kLocator) return std::nullopt;
   const std::string locator = bytes_at(file, path, end - kLocator, kLocator);
   Fields place(locator, path);
-  if (place.number(4) != 0x07064b50) fail(path, "no ZIP64 directory");
+  if (place.number(4) != 0x07064b50) return std::nullopt;
   (void)place.number(4);  // disk
   const std::string record = bytes_at(file, path, place.number(8), kRecord);
   Fields fields(record, path);
@@ -109,8 +109,11 @@ Directory find_directory(const ByteSource& file, const std::string& path) {
   directory.entries = fields.number(2);
   directory.size = fields.number(4);
   directory.offset = fields.number(4);
-  const bool large = directory.entries == kLargest16 || directory.size == kLargest32 || directory.offset == kLargest32;
-  return large ? large_directory(file, path, size - window + found) : directory;
+  const bool large = directory.size == kLargest32 || directory.offset == kLargest32;
+  if (!large && directory.entries != kLargest16) return directory;
+  if (const auto of_zip64 = large_directory(file, path, size - window + found)) return *of_zip64;
+  if (large) fail(path, "no ZIP64 directory");
+  return directory;  // of exactly so many entries
 }
 
 // 4.5.3: what did not fit into 32 bits.

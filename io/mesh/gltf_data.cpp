@@ -35,8 +35,9 @@ std::shared_ptr<const tinygltf::Model> load_model(const std::string& json, const
 
 // Extensions that change what triangles look like or tell about them, never where they are.
 bool leaves_geometry_alone(const std::string& extension) {
-  static constexpr std::array kKinds{"_materials_", "_texture_",   "_lights_", "_camera",      "_image_",
-                                     "_packing_",   "_animation_", "_xmp",     "_techniques_", "_ngon_encoding"};
+  static constexpr std::array kKinds{"_materials_",  "_texture_",      "_lights_",    "_camera",
+                                     "_image_",      "_packing_",      "_animation_", "_xmp",
+                                     "_techniques_", "_ngon_encoding", "_metadata",   "_features"};
   return std::any_of(kKinds.begin(), kKinds.end(),
                      [&](const char* kind) { return extension.find(kind) != std::string::npos; });
 }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -47,8 +48,9 @@ class MemoryForFile {
  public:
   explicit MemoryForFile(const std::string& path) {
     constexpr std::uint64_t kLibraries = std::uint64_t{64} << 20;  // their own needs, an arena of the allocator
-    // The largest node: 32^3 tiles of 8 bytes, of which two masks of a bit each and little else need be in the file.
-    constexpr std::uint64_t kMostPerByte = 64;
+    // The largest node: 32^3 tiles of 24 bytes, a vector of doubles, of which two masks of a bit each and little else
+    // need be in the file.
+    constexpr std::uint64_t kMostPerByte = 128;
     const std::uint64_t more = kLibraries + kMostPerByte * std::filesystem::file_size(path);
     const std::uint64_t enough = status_bytes("VmData:") + more;
     rlimit space{};
@@ -77,39 +79,39 @@ std::string value_type(const std::string& grid_type) {
   return grid_type.substr(begin, grid_type.find('_', begin) - begin);
 }
 
-// Reads metadata and transform of a grid but not its tree. OpenVDB's File does that too, but returns a copy whose
-// transform has been recomputed, with rounding errors (see transform_of in write_vdb.cpp).
+// Reads metadata and transforms of grids but not their trees. OpenVDB's File does that too, but returns copies whose
+// transforms have been recomputed, with rounding errors (see transform_of in write_vdb.cpp).
 class HeadReader : private openvdb::io::Archive {
  public:
-  explicit HeadReader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
+  explicit HeadReader(const std::string& path) : stream_(path, std::ios::binary) {
     stream_.exceptions(std::ios::eofbit | std::ios::failbit | std::ios::badbit);
     readHeader(stream_);
     setFormatVersion(stream_);
     setLibraryVersion(stream_);
     setDataCompression(stream_);
     openvdb::MetaMap().readMeta(stream_);
-  }
-
-  // Streams that were redirected into a file have no table of contents.
-  [[nodiscard]] bool has_offsets() const { return inputHasGridOffsets(); }
-
-  // Precondition: has_offsets(). All heads are added to `all`, where given.
-  openvdb::GridBase::ConstPtr read(const std::string& wanted, openvdb::GridCPtrVec* all = nullptr) {
-    std::vector<openvdb::io::GridDescriptor> descriptors;
-    std::vector<std::string> names;
+    if (!has_offsets()) return;
     for (openvdb::Int32 remaining = readGridCount(stream_); remaining > 0; --remaining) {
-      openvdb::io::GridDescriptor& descriptor = descriptors.emplace_back();
+      openvdb::io::GridDescriptor& descriptor = descriptors_.emplace_back();
       descriptor.read(stream_);
       descriptor.seekToEnd(stream_);
-      names.push_back(openvdb::io::GridDescriptor::nameAsString(descriptor.uniqueName()));
     }
-    const std::size_t chosen = choose_grid(path_, names, wanted);
-    for (std::size_t n = 0; all && n < descriptors.size(); ++n) all->push_back(head_of(descriptors[n]));
-    return head_of(descriptors[chosen]);
   }
 
- private:
-  openvdb::GridBase::ConstPtr head_of(const openvdb::io::GridDescriptor& descriptor) {
+  // Streams that were redirected into a file have no table of contents, and nothing here.
+  [[nodiscard]] bool has_offsets() const { return inputHasGridOffsets(); }
+
+  // In the order of the file; no two are the same.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const openvdb::io::GridDescriptor& descriptor : descriptors_) {
+      names.push_back(openvdb::io::GridDescriptor::nameAsString(descriptor.uniqueName()));
+    }
+    return names;
+  }
+
+  openvdb::GridBase::ConstPtr head(std::size_t n) {
+    const openvdb::io::GridDescriptor& descriptor = descriptors_[n];
     descriptor.seekToGrid(stream_);
     readGridCompression(stream_);
     const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(descriptor.gridType());
@@ -119,19 +121,46 @@ class HeadReader : private openvdb::io::Archive {
     return grid;
   }
 
-  std::string path_;
+ private:
   std::ifstream stream_;
+  std::vector<openvdb::io::GridDescriptor> descriptors_;
 };
 
-// A grid with its tree.
-openvdb::GridBase::ConstPtr read_whole(const std::string& path, const std::string& wanted) {
-  openvdb::io::File file(path);
-  file.setCopyMaxBytes(0);  // else small files are copied to the temporary directory first
-  file.open();              // leaves' values stay on disk
-  std::vector<std::string> names;
-  for (auto name = file.beginName(); name != file.endName(); ++name) names.push_back(*name);
-  return file.readGrid(names[choose_grid(path, names, wanted)]);
-}
+// The grids of a file, in its order.
+class GridsOfFile {
+ public:
+  explicit GridsOfFile(const std::string& path) : path_(path), heads_(path), names_(heads_.names()) {
+    if (heads_.has_offsets()) return;
+    whole_ = *opened()->getGrids();
+    for (const openvdb::GridBase::Ptr& grid : whole_) names_.push_back(grid->getName());
+  }
+
+  [[nodiscard]] std::size_t count() const { return names_.size(); }
+  // The number of the grid of that name, or of the first where it is empty.
+  [[nodiscard]] std::size_t number_of(const std::string& wanted) const { return choose_grid(path_, names_, wanted); }
+
+  // Metadata and transform, perhaps with the tree.
+  [[nodiscard]] openvdb::GridBase::ConstPtr head(std::size_t n) {
+    return heads_.has_offsets() ? heads_.head(n) : whole_[n];
+  }
+  // With the tree.
+  [[nodiscard]] openvdb::GridBase::ConstPtr whole(std::size_t n) const {
+    return heads_.has_offsets() ? opened()->readGrid(names_[n]) : whole_[n];
+  }
+
+ private:
+  [[nodiscard]] std::unique_ptr<openvdb::io::File> opened() const {
+    auto file = std::make_unique<openvdb::io::File>(path_);
+    file->setCopyMaxBytes(0);  // else small files are copied to the temporary directory first
+    file->open();              // leaves' values stay on disk, but for streams
+    return file;
+  }
+
+  std::string path_;
+  HeadReader heads_;
+  std::vector<std::string> names_;
+  openvdb::GridPtrVec whole_;  // of streams
+};
 
 [[noreturn]] void fail(const std::string& path, const openvdb::GridBase& grid, const std::string& what) {
   throw InputError(path + ": grid '" + excerpt(grid.getName()) + "' " + what);
@@ -161,26 +190,27 @@ std::optional<openvdb::CoordBBox> box_metadata(const openvdb::GridBase& grid, co
   return openvdb::CoordBBox(openvdb::Coord(min->value()), openvdb::Coord(max->value()));
 }
 
-// The indices of all samples, ends included; empty where there are none. What the grid's head tells saves reading the
-// tree, which takes time and, where the file is damaged, may crash OpenVDB.
-openvdb::CoordBBox read_extent(const std::string& path, const openvdb::GridBase& head, const std::string& wanted) {
+// The indices of all samples of grid `n`, ends included; empty where there are none. What its head tells saves reading
+// the tree, which takes time and, where the file is damaged, may crash OpenVDB.
+openvdb::CoordBBox read_extent(const GridsOfFile& grids, std::size_t n, const openvdb::GridBase& head) {
   if (const auto lattice = box_metadata(head, "raycone_index_min", "raycone_index_max")) return *lattice;
   const auto active = box_metadata(head, openvdb::GridBase::META_FILE_BBOX_MIN, openvdb::GridBase::META_FILE_BBOX_MAX);
-  return active ? *active : read_whole(path, wanted)->evalActiveVoxelBoundingBox();
+  return active ? *active : grids.whole(n)->evalActiveVoxelBoundingBox();
 }
 
-// Of the head of grid `wanted`.
-PlacedLattice lattice_of(const std::string& path, const openvdb::GridBase& head, const std::string& wanted) {
+// Of grid `n`, with that head.
+PlacedLattice lattice_of(const std::string& path, const GridsOfFile& grids, std::size_t n,
+                         const openvdb::GridBase& head) {
   if (!head.constTransform().isLinear()) fail(path, head, "has a frustum transform, expected a linear one");
-  const openvdb::CoordBBox extent = read_extent(path, head, wanted);
+  const openvdb::CoordBBox extent = read_extent(grids, n, head);
   if (extent.empty()) fail(path, head, "has no active voxels, expected some, or a lattice recorded by raycone");
   return place(path, head, extent);
 }
 
 PlacedLattice read(const std::string& path, const std::string& wanted) {
-  HeadReader reader(path);
-  const openvdb::GridBase::ConstPtr head = reader.has_offsets() ? reader.read(wanted) : read_whole(path, wanted);
-  return lattice_of(path, *head, wanted);
+  GridsOfFile grids(path);
+  const std::size_t n = grids.number_of(wanted);
+  return lattice_of(path, grids, n, *grids.head(n));
 }
 
 // --- How a grid was made
@@ -232,28 +262,14 @@ void add_text(std::vector<MadeFact>& facts, const openvdb::GridBase& grid, const
   if (text && !known) facts.push_back({name, text->value(), is_json});
 }
 
-// Of all grids.
-openvdb::GridCPtrVec read_heads(const std::string& path) {
-  openvdb::GridCPtrVec heads;
-  HeadReader reader(path);
-  if (reader.has_offsets()) {
-    (void)reader.read("", &heads);
-    return heads;
-  }
-  openvdb::io::File file(path);
-  file.setCopyMaxBytes(0);
-  file.open();
-  for (const openvdb::GridBase::Ptr& grid : *file.readAllGridMetadata()) heads.push_back(grid);
-  if (heads.empty()) throw InputError(path + ": has no grids, expected one");
-  heads.front() = read_whole(path, "");
-  return heads;
-}
-
 VolumeFacts facts_of(const std::string& path) {
   VolumeFacts facts;
   facts.format = "OpenVDB";
-  const openvdb::GridCPtrVec heads = read_heads(path);
-  facts.made = how_made(*heads.front());
+  GridsOfFile grids(path);
+  const std::size_t first = grids.number_of("");
+  openvdb::GridCPtrVec heads;
+  for (std::size_t n = 0; n < grids.count(); ++n) heads.push_back(grids.head(n));
+  facts.made = how_made(*heads[first]);
   std::string fields;
   for (const openvdb::GridBase::ConstPtr& head : heads) {
     facts.arrays.push_back({head->getName(), value_type(head->type())});
@@ -266,7 +282,7 @@ VolumeFacts facts_of(const std::string& path) {
   }
   if (!fields.empty()) facts.made.push_back({"fields", fields});
   try {
-    facts.lattice = lattice_of(path, *heads.front(), "");
+    facts.lattice = lattice_of(path, grids, first, *heads[first]);
   } catch (const InputError& error) {
     facts.no_lattice = std::string(error.what()).substr(path.size() + 2);
   }

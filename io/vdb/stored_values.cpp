@@ -27,6 +27,15 @@ Value level_set_background(double band_width, double voxel, bool half) {
   return stored();
 }
 
+template <typename Value>
+Value next_within(Value background, bool half) {
+  if (half) return -static_cast<Value>(next_half_above(-static_cast<float>(background)));
+  return std::nextafter(background, Value{0});
+}
+
+template float next_within(float, bool);
+template double next_within(double, bool);
+
 template float level_set_background(double, double, bool);
 template double level_set_background(double, double, bool);
 

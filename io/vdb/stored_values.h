@@ -21,6 +21,10 @@ namespace raycone::vdb {
 template <typename Value>
 [[nodiscard]] Value level_set_background(double band_width, double voxel, bool half);
 
+// The next such value towards 0.
+template <typename Value>
+[[nodiscard]] Value next_within(Value background, bool half);
+
 // A byte, as several threads cannot write to the bits of one.
 struct StoreFlag {
   using Number = std::uint8_t;
@@ -56,18 +60,17 @@ struct StoreDouble {
 };
 
 // A distance of `band_width` or more is stored as the background, a lesser one as a value of lesser magnitude. Store:
-// of lesser ones, StoreFloat or StoreDouble; it keeps negative ones negative.
+// of lesser ones, StoreFloat or StoreDouble; it keeps negative ones negative. `most`: next_within() the background.
 template <typename Store>
 struct StoreDistance {
   using Number = double;
   using Stored = typename Store::Stored;
   Stored operator()(Number distance) const {
     if (std::abs(distance) >= band_width) return distance < 0 ? -background : background;
-    const Stored most = std::nextafter(background, Stored{0});
     return std::clamp(store(distance), -most, most);
   }
   double band_width;
-  Stored background;
+  Stored background, most;
   Store store;
 };
 

@@ -335,9 +335,10 @@ template <typename Grid, typename Store>
 std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan, const Store& store) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
-  const auto background =
-      vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, plan.description.is(Precision::kHalf));
-  return make_builder<Grid>(plan, vdb::StoreDistance<Store>{band_width, background, store}, background);
+  const bool half = plan.description.is(Precision::kHalf);
+  const auto background = vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, half);
+  const vdb::StoreDistance<Store> stored{band_width, background, vdb::next_within(background, half), store};
+  return make_builder<Grid>(plan, stored, background);
 }
 
 // Of 32 or 16 bits, as the user chose.

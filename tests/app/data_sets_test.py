@@ -386,6 +386,17 @@ class Points(DataSets):
         empty = numpy.load(io.BytesIO(self.works("points %s - -o - --format npz" % CUBE, input=b"")))
         self.assertEqual((empty["points"].shape, empty["w"].shape), ((0, 3), (0,)))
 
+    def test_archives_of_as_many_members_as_16_bits_count(self):
+        """65535 is also what stands for more; then a ZIP64 record says how many."""
+        for count in (65534, 65535, 65536):
+            with zipfile.ZipFile("many.npz", "w") as archive:
+                content = io.BytesIO()
+                numpy.save(content, numpy.array([[0.5, 0.5, 0.5]]))
+                archive.writestr("points.npy", content.getvalue())
+                archive.filelist += [archive.filelist[0]] * (count - 1)
+                archive._didModify = True  # so that its directory has them all
+            self.assertEqual(self.works("points %s many.npz -o -" % CUBE), b"x,y,z,w\n0.5,0.5,0.5,1\n", count)
+
     def test_files_that_hold_no_points(self):
         numpy.savez("none.npz", other=numpy.zeros((2, 3)))
         self.refused("points %s none.npz" % CUBE, 2, "none.npz: has no array 'points'")

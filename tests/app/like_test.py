@@ -9,6 +9,7 @@ import itertools
 import json
 import os
 import shutil
+import struct
 import sys
 import warnings
 import xml.etree.ElementTree
@@ -241,6 +242,36 @@ class Files(Like):
                 only = nibabel.Nifti1Image(image.get_fdata(), None, image.header)
                 nibabel.save(only, "q.nii")
                 self.assertLess(abs(self.like("q.nii") - points).max(), 1e-5)
+
+    def test_nifti_close_to_half_turns(self):
+        """What programs decode from the qform is where the sform has it, or there is none."""
+        shown = []
+        for counts in ((512, 512, 2), (2000, 3, 2)):
+            for axis in ((0, 0, 1), (1, 2, 3)):
+                for short in (0, 1e-5, 3e-4, 6e-4, 6.4e-4, 8e-4, 3e-3, 0.1):
+                    x, y, z = axis / numpy.linalg.norm(axis)
+                    cross, angle = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]), numpy.pi - short
+                    turn = numpy.eye(3) + numpy.sin(angle) * cross + (1 - numpy.cos(angle)) * cross @ cross
+                    with open("h.nrrd", "w") as file:
+                        file.write("NRRD0004\ntype: float\ndimension: 3\nspace: RAS\nsizes: %d %d %d\n" % counts)
+                        vectors = " ".join("(%r,%r,%r)" % tuple(map(float, column)) for column in turn.T)
+                        file.write("space directions: %s\nspace origin: (0,0,0)\nencoding: raw\n\n" % vectors)
+                    self.works("lattice %s --like h.nrrd -o h.nii" % CUBE)
+                    head = read("h.nii")
+                    if struct.unpack_from("<h", head, 252)[0] == 0:
+                        shown.append(0)
+                        continue
+                    b, c, d = map(float, struct.unpack_from("<3f", head, 256))
+                    left = 1 - (b * b + c * c + d * d)  # as in nifti1_io.c
+                    length = numpy.sqrt(b * b + c * c + d * d) if left < 1e-7 else 1.0
+                    a, b, c, d = 0.0 if left < 1e-7 else numpy.sqrt(left), b / length, c / length, d / length
+                    decoded = numpy.array([[a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+                                           [2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)],
+                                           [2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c]])
+                    displaced = abs(decoded - turn) @ (numpy.array(counts) - 1)
+                    self.assertLess(displaced.max(), 0.0625 + 1e-6, (counts, axis, short))
+                    shown.append(1)
+        self.assertTrue(0 < sum(shown) < len(shown), shown)
 
     def test_npz(self):
         for steps, points in self.cases():

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/fields/field_writer.h"
+#include "io/files/half.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/vdb_files.h"
@@ -197,6 +198,24 @@ TEST(WriteVdbFields, LevelSetsAreActiveExactlyInTheBand) {
     return 0;
   });
   EXPECT_EQ(grid->value({1000, 0, 0}), grid->background());
+}
+
+TEST(WriteVdbFields, LevelSetsOfHalvesAreActiveWhereTheyAreNotTheBackground) {
+  const TemporaryDirectory directory;
+  const auto distances = samples_of(lattice_around_zero(), distance_at);
+  OutputDescription description = described({kDistance});
+  description.precision = Precision::kHalf;
+  write_vdb(directory / "out.vdb", description, {std::span(distances)});
+  const auto grid = read_vdb_grid(directory / "out.vdb", "surface");
+  std::size_t close = 0;
+  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+    const double distance = std::abs(distance_at(at)), value = std::abs(grid->value(at));
+    close += grid->is_active(at) && static_cast<double>(nearest_half(distance)) >= grid->background();
+    EXPECT_EQ(grid->is_active(at), distance < 3 * kVoxel) << at;
+    EXPECT_EQ(value == grid->background(), !grid->is_active(at)) << at;
+    return 0;
+  });
+  EXPECT_GT(close, 0U);  // the nearest half would have been the background
 }
 
 TEST(WriteVdbFields, LevelSetsPassOpenvdbsChecks) {

@@ -440,6 +440,29 @@ TEST(ReadVdbLattice, ReadsStreamsWithoutTableOfContents) {
   expect_same(read_vdb_lattice(directory / "in.vdb", "b"), Lattice{{0, 0, 0}, {2, 2, 2}, {-5, 2, 30}, {10, 1, 71}});
 }
 
+TEST(ReadVdbLattice, TakesTheFirstGridOfTheFileWhateverItsName) {
+  const TemporaryDirectory directory;
+  const std::vector<test::VdbGridToWrite> grids{named_grid("c", VdbTransform(1)), named_grid("a", VdbTransform(2)),
+                                                named_grid("b", VdbTransform(3))};
+  const std::string path = directory / "in.vdb";
+  for (int how = 0; how < 3; ++how) {
+    if (how == 0) {
+      write_vdb_grids(path, grids);
+    } else if (how == 1) {
+      write_vdb_grids(path, grids, test::VdbStatistics::kWithout);
+    } else {
+      test::write_vdb_stream(path, grids);
+    }
+    EXPECT_EQ(read_vdb_lattice(path, "").grid.spacing.x, 1.0) << how;
+    EXPECT_EQ(read_vdb_lattice(path, "b").grid.spacing.x, 3.0) << how;
+    const VolumeFacts facts = read_vdb_facts(path);
+    ASSERT_EQ(facts.arrays.size(), 3U) << how;
+    EXPECT_EQ(facts.arrays[0].name + facts.arrays[1].name + facts.arrays[2].name, "cab") << how;
+    ASSERT_TRUE(facts.lattice) << how << facts.no_lattice;
+    EXPECT_EQ(facts.lattice->grid.spacing.x, 1.0) << how;
+  }
+}
+
 TEST(ReadVdbLattice, AcceptsAnAffineMapThatScalesOnly) {
   const TemporaryDirectory directory;
   const std::array<double, 16> matrix{0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 7.0, 8.0, 9.0, 1.0};

@@ -11,7 +11,7 @@
 #include "app/run/mesh_parts.h"
 #include "app/run/mesh_run.h"
 #include "app/run/part_evaluator.h"
-#include "core/mesh/mesh_defects.h"
+#include "core/orientation/mesh_defects.h"
 #include "core/orientation/orient.h"
 
 namespace raycone {

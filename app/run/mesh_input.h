@@ -11,7 +11,7 @@
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/mesh_defects.h"
+#include "core/orientation/mesh_defects.h"
 #include "core/orientation/orient.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"

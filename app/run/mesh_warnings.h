@@ -9,7 +9,7 @@
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
-#include "core/mesh/mesh_defects.h"
+#include "core/orientation/mesh_defects.h"
 #include "core/orientation/orient.h"
 
 namespace raycone {

@@ -8,7 +8,7 @@
 #include "app/options/info_command.h"
 #include "core/data/triangle_mesh.h"
 #include "core/intersections/self_intersections.h"
-#include "core/mesh/mesh_defects.h"
+#include "core/orientation/mesh_defects.h"
 #include "core/mesh/mesh_statistics.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-// Which closed patch lies within which.
+// Which closed surface lies within which.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,21 @@ struct ClosedSurface {
   std::vector<Triangle> faces;
 };
 
-// For each surface the others around it, by number: those whose box holds its box and within which all of its vertices
-// lie (winding number not 0). Vertices on the other's surface do not count, as long as one is not. Exact. Takes n^2 time
-// and memory for n boxes within each other. Uses the threads that ThreadLimit allows.
+// A surface lies within another one if its box does, if the other's winding number is 0 at none of its points that are
+// looked at, and if one of these is not on the other one. Looked at are its vertices, and both sides of points within
+// its faces: of each, as many as its size asks for, up to 256, and of all, up to 2048 or, of many surfaces, fewer, but
+// for small faces of surfaces of more than 4096. So a bar across the opening of a frame is not within it, although its
+// ends are, and a cavity that touches the walls with all its vertices is. Winding numbers are exact. Nothing depends on
+// the order of faces or vertices. Both functions use the threads that ThreadLimit allows.
+
+// For each surface the others within which it lies, by number. Takes n^2 time and memory for n boxes within each other.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> surfaces_around(const std::vector<const ClosedSurface*>& surfaces,
                                                                       const std::vector<Vec3>& vertices);
+
+// Of these surfaces, by number, those that lie within no other one, ascending. Of many within each other, the outermost
+// one tells at once.
+[[nodiscard]] std::vector<std::uint32_t> not_surrounded(std::vector<std::uint32_t> asked,
+                                                        const std::vector<const ClosedSurface*>& surfaces,
+                                                        const std::vector<Vec3>& vertices);
 
 }  // namespace raycone

@@ -1,5 +1,5 @@
 // Reversed components, inconsistent edges and faces that cancel: meshes that have them, and near misses.
-#include "core/mesh/mesh_defects.h"
+#include "core/orientation/mesh_defects.h"
 
 #include <gtest/gtest.h>
 
@@ -153,6 +153,97 @@ TEST(MeshDefects, CavityMayTouchItsWallsWithAllVertices) {
   }
   EXPECT_EQ(reversed_in(octahedron), 1U);
   EXPECT_EQ(reversed_in(joined(cube_at(0, 10), octahedron)), 0U);
+}
+
+TEST(MeshDefects, HoleDrilledThroughIsACavity) {
+  expect_none(joined(cube_at(0, 4), reversed(box_mesh({1, 1, 0}, {2, 2, 4}))));
+  const TriangleMesh tetrahedron{{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {0, 2, 2}},
+                                 {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+  EXPECT_EQ(reversed_in(tetrahedron) + reversed_in(reversed(tetrahedron)), 1U);
+  const TriangleMesh& cavity = reversed_in(tetrahedron) == 1 ? tetrahedron : reversed(tetrahedron);
+  EXPECT_EQ(reversed_in(joined(cube_at(0, 4), cavity)), 0U) << "all its vertices are on the walls";
+}
+
+// Between the squares [0, 10]^2 and [2, 8]^2, of that thickness.
+TriangleMesh picture_frame(double thickness) {
+  TriangleMesh frame;
+  for (const double z : {0.0, thickness}) {
+    for (const double margin : {0.0, 2.0}) {
+      const double low = margin, high = 10 - margin;
+      frame.vertices.insert(frame.vertices.end(), {{low, low, z}, {high, low, z}, {high, high, z}, {low, high, z}});
+    }
+  }
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    frame.triangles.insert(frame.triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    quad(i, j, j + 8, i + 8);            // outside
+    quad(j + 4, i + 4, i + 12, j + 12);  // the opening's
+    quad(i + 8, j + 8, j + 12, i + 12);  // above
+    quad(j, i, i + 4, j + 4);            // below
+  }
+  return frame;
+}
+
+// Its ends are within the frame, so all its vertices are.
+TEST(MeshDefects, BarAcrossTheOpeningOfAFrameIsNoCavity) {
+  const TriangleMesh frame = picture_frame(4);
+  expect_none(frame);
+  expect_reversed_in_any_position(joined(frame, reversed(box_mesh({4, 1, 1}, {6, 9, 3}))), 1);
+  expect_reversed_in_any_position(joined(frame, reversed(box_mesh({0.5, 1, 1}, {1.5, 9, 3}))), 0);
+}
+
+// In the notch of an L, with all its vertices on the walls there.
+TEST(MeshDefects, WhatFillsANotchIsNoCavity) {
+  const TriangleMesh l = joined(box_mesh({5, 0, 0}, {10, 5, 10}), box_mesh({0, 5, 0}, {10, 10, 10}));
+  const TriangleMesh wedge{{{1, 5, 1}, {2, 5, 9}, {5, 1, 2}, {5, 3, 8}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+  const TriangleMesh& negative = reversed_in(wedge) == 1 ? wedge : reversed(wedge);
+  expect_reversed_in_any_position(joined(l, negative), 1);
+}
+
+TEST(MeshDefects, CoincidentReversedSolidsAreNotWithinEachOther) {
+  TriangleMesh mesh = joined(cube_at(0, 5), reversed(cube_at(10, 11)));
+  for (const std::uint32_t v : std::vector<std::uint32_t>{8, 9, 10, 11, 12, 13, 14, 15}) {
+    mesh.vertices.push_back(mesh.vertices[v]);  // not welded
+  }
+  for (std::size_t n = 12; n < 24; ++n) {
+    const Triangle t = mesh.triangles[n];
+    mesh.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  VertexLinks links(mesh.vertices.size());
+  EXPECT_EQ(mesh_defects(mesh, exterior_edges(mesh, &links), links).reversed_components, 2U);
+}
+
+// Joined through that vertex they have a negative volume.
+TEST(MeshDefects, CavityMayTouchASolidOutsideAtAVertex) {
+  const TriangleMesh room = cube_at(0, 10);
+  const std::vector<Triangle> faces{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 3, 2}, {1, 4, 3}};
+  const TriangleMesh inner{{{0, 5, 4}, {5, 3, 2}, {5, 7, 2}, {5, 7, 6}, {5, 3, 6}}, faces};
+  const TriangleMesh outer{{{0, 5, 4}, {-1, 4, 3}, {-1, 4, 5}, {-1, 6, 5}, {-1, 6, 3}}, faces};
+  const auto facing = [](const TriangleMesh& mesh, std::uint64_t negative) {
+    return reversed_in(mesh) == negative ? mesh : reversed(mesh);
+  };
+  expect_none(joined(room, joined(facing(inner, 1), facing(outer, 0))));
+  EXPECT_EQ(reversed_in(joined(room, joined(facing(inner, 1), facing(outer, 1)))), 1U);
+}
+
+// Each box holds many others, but no strand lies within another: seconds, where each is compared with all.
+TEST(MeshDefects, ReversedStrandsTakeNoLongTime) {
+  Random random(41);
+  TriangleMesh strands;
+  for (int n = 0; n < 20'000; ++n) {
+    const Vec3 low{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1)};
+    const Vec3 high = low + Vec3{10, 10, 10};
+    const auto first = static_cast<std::uint32_t>(strands.vertices.size());
+    for (const Vec3& p : {low, low + Vec3{1e-3, 0, 0}, low + Vec3{0, 1e-3, 0}, high}) strands.vertices.push_back(p);
+    for (const Triangle& t : {Triangle{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}) {
+      strands.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  const std::clock_t begin = std::clock();
+  EXPECT_EQ(reversed_in(strands), 20'000U);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 20.0);
 }
 
 TEST(MeshDefects, WhollyReversedHollowSolidIsReversedOnce) {

@@ -473,12 +473,9 @@ MUTANTS = [
     Mutant("closed_relation_not_kept", "patches that agree as stored keep their relation", [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),
-    Mutant("nesting_on_surface_counts", "vertices on the other surface say nothing about nesting", [
-        ("core/orientation/nesting.cpp", "        if (sum->on_surface) continue;\n",
-         "")]),
     Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
-        ("core/orientation/nesting.cpp", "(sum->winding == 0 ? misses : hits) = true;",
-         "if (sum->winding != 0) hits = true;")]),
+        ("core/orientation/nesting.cpp", "if (!sum->on_surface) (sum->winding == 0 ? verdict.misses : verdict.hits) = true;",
+         "if (!sum->on_surface && sum->winding != 0) verdict.hits = true;")]),
     Mutant("copies_vote_for_the_first", "faces that are there both ways have no opinion", [
         ("core/orientation/unique_faces.cpp", "votes += as_first ? 1 : -1;",
          "votes += as_first ? 1 : 0;")]),
@@ -492,9 +489,11 @@ MUTANTS = [
         ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles) + 16.0) * 0x1p-52 * terms + 0x1p-900",
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
-        ("core/mesh/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+        ("core/orientation/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
     Mutant("touching_is_within", "a vertex on another component does not tell whether it lies within", [
-        ("core/mesh/mesh_defects.cpp", "q.x >= least_x && on_triangle(a, b, c, q)", "false && q.x >= least_x")]),
+        ("core/orientation/nesting.cpp", "if (!sum->on_surface) (sum->winding", "(sum->winding")]),
+    Mutant("vertices_alone_tell", "points beside faces tell what lies within, too", [
+        ("core/orientation/nesting.cpp", "if (look == Look::kFew) continue;", "continue;")]),
     Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
         ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
     Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [

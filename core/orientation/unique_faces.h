@@ -18,8 +18,8 @@ struct FaceCopy {
 struct UniqueFaces {
   std::vector<Triangle> corners;     // of three different positions, by representative vertices, as first stored
   std::vector<std::uint32_t> first;  // the place of that face in the mesh
-  // How most copies are stored: 1 as the first one, -1 the other way round, 0 if there are as many of either. Faces
-  // that are there both ways have no opinion.
+  // How most copies are stored: 1 as the first one, -1 the other way round, 0 if there are as many of either: no
+  // opinion.
   std::vector<std::int8_t> vote;
   std::vector<FaceCopy> copies;  // of those that are there more than once, the first ones too; by unique, then face
 };

@@ -1,11 +1,7 @@
 #include "core/arrangement/arrangement.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <numeric>
-#include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "core/arrangement/contact.h"
@@ -13,6 +9,7 @@
 #include "core/exact/predicates.h"
 #include "core/intersections/self_intersections.h"
 #include "core/intersections/triangle_pair.h"
+#include "core/mesh/disjoint_sets.h"
 
 namespace raycone {
 namespace {
@@ -32,22 +29,6 @@ std::vector<std::uint32_t> faces_with_area(const TriangleMesh& mesh) {
   }
   return faces;
 }
-
-// Sets of faces that are joined one by one.
-class FaceSets {
- public:
-  std::uint32_t set_of(std::uint32_t face) {
-    while (parent_.contains(face) && parent_[face] != face) face = parent_[face];
-    return face;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    const auto [low, high] = std::minmax({set_of(a), set_of(b)});
-    parent_[high] = low;
-  }
-
- private:
-  std::unordered_map<std::uint32_t, std::uint32_t> parent_;
-};
 
 }  // namespace
 
@@ -91,7 +72,7 @@ class Arrangement::Builder {
 
   void add_contacts(const std::vector<TrianglePair>& pairs) {
     std::vector<Contact> contacts;
-    FaceSets planes;
+    DisjointSets planes(mesh_.triangles.size());
     for (const auto& [s, t] : pairs) {
       contacts.push_back(contact_of(corners_of(mesh_, s), corners_of(mesh_, t), result_.points_));
       if (contacts.back().is_of_one_plane) planes.join(s, t);
@@ -101,9 +82,9 @@ class Arrangement::Builder {
     std::ranges::sort(faces);
     const auto [first, end] = std::ranges::unique(faces);
     faces.erase(first, end);
-    for (const std::uint32_t face : faces) groups_[planes.set_of(face)].faces.push_back(group_face(face));
+    for (const std::uint32_t face : faces) groups_[planes.lowest(face)].faces.push_back(group_face(face));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      for (const std::uint32_t face : pairs[n]) add(contacts[n].ends, groups_[planes.set_of(face)]);
+      for (const std::uint32_t face : pairs[n]) add(contacts[n].ends, groups_[planes.lowest(face)]);
     }
   }
 

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/arrangement/effort.h"
 #include "core/data/vec3.h"
 #include "core/mesh/near_vertices.h"
+#include "core/mesh/used_part.h"
 
 namespace raycone {
 namespace {
@@ -52,28 +54,43 @@ Splits splits_at_flat_triangles(const TriangleMesh& mesh, double distance) {
   return splits;
 }
 
-// Adds the parts of a triangle whose sides are split, but for those without area.
-void add_parts(const Triangle& triangle, std::uint32_t source, const Splits& splits, RuleBorder& result) {
-  constexpr int kMostParts = 1000;  // if rounding lets splits go around, the border is open then
+// Where the side opposite to a corner is split.
+Splits::const_iterator split_opposite(const Splits& splits, const Triangle& t, std::size_t corner) {
+  return splits.find(std::minmax(t[(corner + 1) % 3], t[(corner + 2) % 3]));
+}
+
+// Whether a side is split at the corner opposite to it: then it goes along the two others, and nothing is left between.
+bool is_gone(const Splits& splits, const Triangle& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto split = split_opposite(splits, t, i);
+    if (split != splits.end() && split->second == t[i]) return true;
+  }
+  return is_collapsed(t);
+}
+
+// Adds the parts of a triangle whose sides are split, but for those without area. Whether that was possible: rounding
+// may let splits go around.
+bool add_parts(const Triangle& triangle, std::uint32_t source, const Splits& splits, Effort& effort,
+               RuleBorder& result) {
   std::vector<Triangle> parts{triangle};
-  for (int n = 0; n < kMostParts && !parts.empty(); ++n) {
+  while (!parts.empty()) {
+    if (!effort.take()) return false;
     const Triangle t = parts.back();
     parts.pop_back();
-    if (is_collapsed(t)) continue;
-    bool is_whole = true;
-    for (std::size_t i = 0; i < 3 && is_whole; ++i) {
+    if (is_gone(splits, t)) continue;
+    std::size_t i = 0;
+    while (i < 3 && split_opposite(splits, t, i) == splits.end()) ++i;
+    if (i < 3) {
       const std::uint32_t apex = t[i], from = t[(i + 1) % 3], to = t[(i + 2) % 3];
-      const auto split = splits.find(std::minmax(from, to));
-      if (split == splits.end()) continue;
-      is_whole = false;
-      if (split->second == apex) break;
-      parts.push_back({apex, from, split->second});
-      parts.push_back({apex, split->second, to});
+      const std::uint32_t at = split_opposite(splits, t, i)->second;
+      parts.push_back({apex, from, at});
+      parts.push_back({apex, at, to});
+      continue;
     }
-    if (!is_whole) continue;
     result.mesh.triangles.push_back(t);
     result.sources.push_back(source);
   }
+  return true;
 }
 
 // Of each vertex the others that it shares a triangle with, one after the other.
@@ -131,13 +148,17 @@ bool split_at_corners_on_triangles(RuleBorder& border, double distance) {
   return border.sources.size() > count;
 }
 
-// Cuts triangles at corners of flat ones. Whether there were any.
+// Cuts triangles at corners of flat ones. Whether there were any. Does nothing where that would make too many.
 bool split_at_flat_triangles(RuleBorder& border, double distance) {
+  constexpr std::uint64_t kMostTimes = 8;
   const Splits splits = splits_at_flat_triangles(border.mesh, distance);
   if (splits.empty()) return false;
+  Effort effort(kMostTimes * border.sources.size());
   RuleBorder split{{border.mesh.vertices, {}}, {}};
-  for (std::size_t face = 0; face < border.sources.size(); ++face)
-    add_parts(border.mesh.triangles[face], border.sources[face], splits, split);
+  for (std::size_t face = 0; face < border.sources.size(); ++face) {
+    const Triangle& t = border.mesh.triangles[face];
+    if (!add_parts(t, border.sources[face], splits, effort, split)) return false;
+  }
   border = std::move(split);
   return true;
 }
@@ -175,6 +196,7 @@ void snap(RuleBorder& border, double distance) {
     if (!split_at_corners_on_triangles(border, distance) && !had_flat) break;
   }
   cancel(border);
+  border.mesh = used_part(border.mesh.vertices, std::move(border.mesh.triangles));
 }
 
 }  // namespace raycone

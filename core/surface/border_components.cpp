@@ -9,6 +9,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/exact/volume_sign.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/used_part.h"
 #include "core/surface/surface_mesh.h"
 
 namespace raycone {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/data/single_precision.h"
+#include "core/mesh/used_part.h"
 #include "core/surface/certificate.h"
 #include "core/surface/kept_vertices.h"
 #include "core/surface/merge_planes.h"

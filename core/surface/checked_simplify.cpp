@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/mesh/used_part.h"
 #include "core/surface/certificate.h"
 #include "core/surface/component_signs.h"
 #include "core/surface/fault_places.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/single_precision.h"
+#include "core/mesh/used_part.h"
 #include "core/surface/border_components.h"
 #include "core/surface/certificate.h"
 #include "core/surface/embedded_border.h"

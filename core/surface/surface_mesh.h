@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/data/vec3.h"
 
 namespace raycone {
 
@@ -23,8 +22,5 @@ struct SurfaceMesh {
 
 // Drops the faces that are gone, and the vertices that no face has then.
 void drop_gone(SurfaceMesh& surface);
-
-// A mesh without the vertices that no triangle uses; the others in the order in which triangles come to them.
-[[nodiscard]] TriangleMesh used_part(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles);
 
 }  // namespace raycone

@@ -16,6 +16,7 @@
 #include "core/exact/direct_sum.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
 #include "core/surface/fill_check.h"

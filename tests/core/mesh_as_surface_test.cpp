@@ -1,5 +1,6 @@
 #include "core/surface/mesh_as_surface.h"
 #include "core/mesh/components.h"
+#include "core/mesh/used_part.h"
 #include "core/surface/border_components.h"
 
 #include <gtest/gtest.h>

@@ -9,6 +9,7 @@
 
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
+#include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
 #include "core/surface/checked_simplify.h"

@@ -1,5 +1,6 @@
 // The closed surface between nodes: closed, embedded and where the mesh is, for any labels of nodes and any points.
 #include "core/surface/surface.h"
+#include "core/mesh/used_part.h"
 #include "core/surface/contour.h"
 
 #include <gtest/gtest.h>

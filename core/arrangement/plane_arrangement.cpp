@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <span>
+#include <tuple>
 
 #include "core/arrangement/plane_triangulation.h"
 #include "core/data/vec3.h"
@@ -92,10 +93,9 @@ class EdgeCounts {
       counts_[std::minmax(chain[i - 1], chain[i])] += is_forward ? 1 : -1;
     }
   }
-  // None where no boundary passes.
-  [[nodiscard]] std::optional<int> along(Number from, Number to) const {
+  [[nodiscard]] int along(Number from, Number to) const {
     const auto found = counts_.find(std::minmax(from, to));
-    if (found == counts_.end()) return std::nullopt;
+    if (found == counts_.end()) return 0;  // no boundary passes
     return from < to ? found->second : -found->second;
   }
 
@@ -119,7 +119,7 @@ std::vector<int> multiplicities(const PlaneTriangulation& triangulation, const E
       if (other == PlaneTriangulation::kNone || is_known[other]) continue;
       const Number from = triangulation.point(faces[face].corners[(i + 1) % 3]);
       const Number to = triangulation.point(faces[face].corners[(i + 2) % 3]);
-      result[other] = result[face] - counts.along(from, to).value_or(0);
+      result[other] = result[face] - counts.along(from, to);
       is_known[other] = true;
       to_do.push_back(other);
     }
@@ -127,26 +127,59 @@ std::vector<int> multiplicities(const PlaneTriangulation& triangulation, const E
   return result;
 }
 
-// The first face that a piece is part of. None if that takes too long to find.
-std::optional<std::uint32_t> face_of(const PointTriple& piece, const PlaneGroup& group, int axis,
-                                     const ExactPoints& points, Effort& effort) {
-  if (group.faces.size() == 1) return group.faces.front().number;
-  const auto holds_piece = [&](const PlaneGroup::Face& face) {
-    const PointTriple& c = face.corners;
-    const int direction = points.turn(axis, c[0], c[1], c[2]);
+// The faces of a group, to be found by what is part of them.
+class FacesOfGroup {
+ public:
+  FacesOfGroup(const PlaneGroup& group, int axis, const ExactPoints& points)
+      : group_(group), axis_(axis), points_(points) {
+    for (const PlaneGroup::Face& face : group.faces) boxes_.push_back(box_of(face.corners));
+  }
+
+  // The first face that a piece is part of. None if that takes too long to find.
+  [[nodiscard]] std::optional<std::uint32_t> first_with(const PointTriple& piece, Effort& effort) const {
+    constexpr std::size_t kPerStep = 64;  // boxes
+    const Extent of_piece = box_of(piece);
+    for (std::size_t n = 0; n < boxes_.size(); ++n) {
+      if (n % kPerStep == 0 && !effort.take()) return std::nullopt;
+      if (!holds(boxes_[n], of_piece)) continue;
+      if (!effort.take()) return std::nullopt;
+      if (holds(group_.faces[n].corners, piece)) return group_.faces[n].number;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Extent {
+    double left, right, lower, upper;
+  };
+
+  // Rounding keeps the order of numbers, so that what holds a piece has a box that does.
+  [[nodiscard]] Extent box_of(const PointTriple& corners) const {
+    const int right = (axis_ + 1) % 3, up = (axis_ + 2) % 3;
+    const Vec3 &a = points_.rounded(corners[0]), &b = points_.rounded(corners[1]), &c = points_.rounded(corners[2]);
+    const auto [left_end, right_end] = std::minmax({a[right], b[right], c[right]});
+    const auto [lower, upper] = std::minmax({a[up], b[up], c[up]});
+    return {left_end, right_end, lower, upper};
+  }
+  static bool holds(const Extent& face, const Extent& piece) {
+    return face.left <= piece.left && piece.right <= face.right && face.lower <= piece.lower &&
+           piece.upper <= face.upper;
+  }
+  [[nodiscard]] bool holds(const PointTriple& face, const PointTriple& piece) const {
+    const int direction = points_.turn(axis_, face[0], face[1], face[2]);
     for (std::size_t i = 0; i < 3; ++i) {
       for (const Number corner : piece) {
-        if (points.turn(axis, c[i], c[(i + 1) % 3], corner) == -direction) return false;
+        if (points_.turn(axis_, face[i], face[(i + 1) % 3], corner) == -direction) return false;
       }
     }
     return true;
-  };
-  for (const PlaneGroup::Face& face : group.faces) {
-    if (!effort.take()) return std::nullopt;
-    if (holds_piece(face)) return face.number;
   }
-  return std::nullopt;
-}
+
+  const PlaneGroup& group_;
+  int axis_;
+  const ExactPoints& points_;
+  std::vector<Extent> boxes_;
+};
 
 }  // namespace
 
@@ -173,6 +206,7 @@ std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints&
     }
   }
   const std::vector<int> multiplicity = multiplicities(triangulation, counts);
+  const FacesOfGroup group_faces(group, axis, points);
   std::vector<PlanePiece> pieces;
   for (std::size_t n = 0; n < multiplicity.size(); ++n) {
     if (multiplicity[n] == 0) continue;
@@ -180,7 +214,7 @@ std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints&
     std::ranges::transform(triangulation.faces()[n].corners, piece.begin(),
                            [&](std::uint32_t corner) { return triangulation.point(corner); });
     if (multiplicity[n] < 0) std::swap(piece[1], piece[2]);
-    const std::optional<std::uint32_t> face = face_of(piece, group, axis, points, effort);
+    const std::optional<std::uint32_t> face = group_faces.first_with(piece, effort);
     if (!face) return std::nullopt;
     pieces.push_back({piece, *face, std::abs(multiplicity[n])});
   }

@@ -20,8 +20,8 @@ class Arrangement {
  public:
   // None where more than `most_pairs` pairs of faces meet beyond what they share, or cutting them takes too long, as it
   // may where very many meet one. The same for any number of threads, of which pairs are looked for by those that
-  // ThreadLimit allows. Preconditions: `mesh` is welded, its used vertices are finite, and some triangle has an area;
-  // it stays. Needs DefaultFloatingPoint.
+  // ThreadLimit allows. Preconditions: `mesh` is welded, and its used vertices are below 2^1020; it stays. Needs
+  // DefaultFloatingPoint.
   [[nodiscard]] static std::optional<Arrangement> of(const TriangleMesh& mesh, std::size_t most_pairs);
 
   // Corners below the number of the mesh's vertices are these.

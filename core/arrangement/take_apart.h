@@ -19,13 +19,13 @@ struct ApartOptions {
 };
 
 // Makes a 2-manifold of the border of a solid: where it touches itself in a vertex or along an edge, each part of the
-// solid gets a vertex of its own, which all of them but one have moved into their insides by the distance, or along
-// the way given. Where there is no way into a part, its corner is cut off, by 2^-12 of each edge. Faces along an edge
-// belong together where the solid is between them. An edge along which that leaves two parts the same two ends is
-// halved. `sources`: of each triangle, and so of its halves. False, and the border is left half done, where it has no
-// two sides, as where of more than two faces at an edge one lies on another, or two parts cannot be moved, nor be cut
-// off. Whether what is moved meets nothing must be looked at after it. Precondition: every edge has as many faces in
-// either direction. Needs DefaultFloatingPoint.
+// solid gets a vertex of its own, which all of them but one have moved into their insides by the distance, or out of
+// them where that is the way to go, or along the way given. Where there is no way into a part, its corner is cut off,
+// by 2^-12 of each edge. Faces along an edge belong together where the solid is between them. An edge along which that
+// leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. False, and the
+// border is left half done, where it has no two sides, as where of more than two faces at an edge one lies on another,
+// or two parts cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after it.
+// Precondition: every edge has as many faces in either direction. Needs DefaultFloatingPoint.
 [[nodiscard]] bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options);
 
 }  // namespace raycone

@@ -18,14 +18,15 @@ class ExactPoints {
  public:
   using Number = std::uint32_t;
 
-  // For a mesh whose used vertices are finite, and not all zero.
+  // For a mesh whose used vertices are below 2^1020.
   explicit ExactPoints(const TriangleMesh& mesh);
   ExactPoints(ExactPoints&&) noexcept;
   ExactPoints& operator=(ExactPoints&&) noexcept;
   ~ExactPoints();
 
   [[nodiscard]] Number size() const;
-  // The nearest doubles; so of equal points the same ones.
+  // The nearest doubles, or one beside them where these are subnormal; so of equal points the same ones, and the order
+  // of coordinates stays.
   [[nodiscard]] const Vec3& rounded(Number point) const;
 
   // A used vertex of the mesh.

@@ -23,7 +23,8 @@ struct SelfIntersections {
 // How triangles are sorted for the search. Only `first` depends on it, and the time.
 enum class SearchOrder {
   kRuns,   // in runs that medians cut, whatever their sizes and places
-  kCurve,  // along a curve through equal cubes: sooner where sizes are much the same, as on surfaces of lattices
+  kCurve,  // along a curve through equal cubes: sooner where sizes are much the same, as on surfaces of lattices; of
+           // those that lie in one of 2048^3 cubes, as beside a triangle far away, in no order
 };
 
 // The pairs of triangles that meet_beyond_shared() (core/intersections/triangle_pair.h). Exact. The same for any number

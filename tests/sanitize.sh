@@ -41,7 +41,7 @@ asan_ubsan() {
   cmake --preset asan-ubsan
   phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
   # Not: what watches the threads of unoptimised code, or memory; and what asks for SIMD levels that this build leaves
-  # out. Leaks are looked for below, where files are hostile and disks full: it doubles the time of a short run.
+  # out. Leaks are looked for below, by fuzz corpora and where disks are full: it doubles the time of a short run.
   export ASAN_OPTIONS=$tls:detect_leaks=0
   black_box asan-ubsan -E "NeverMoreThreadsAreBusyThanAllowed|$of_memory|Engines\.AgreeOn"
   export ASAN_OPTIONS=$tls

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <mutex>
+#include <numeric>
 #include <span>
 #include <utility>
 
+#include "core/data/box.h"
 #include "core/exact/volume_sign.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
@@ -114,17 +117,28 @@ class ClosedComponents {
   [[nodiscard]] std::uint64_t count_reversed() const {
     const auto negative = static_cast<std::uint64_t>(std::ranges::count(signs_, -1));
     if (negative == 0 || components_.count == 1) return negative;
-    const std::vector<Part> parts = closed_parts();
-    std::vector<const ClosedSurface*> surfaces;
-    std::vector<std::uint32_t> negative_ones;
-    for (const Part& part : parts) {
-      if (part.is_negative) negative_ones.push_back(static_cast<std::uint32_t>(surfaces.size()));
-      surfaces.push_back(&part.surface);
+    std::vector<Part> parts = closed_components();
+    const std::vector<std::uint32_t> outermost = outermost_negative(parts);
+    const std::vector<bool> may_be_several = overlapping_another(parts);
+    std::uint64_t reversed = 0;
+    std::vector<Triangle> in_doubt;
+    for (const std::uint32_t n : outermost) {
+      if (!may_be_several[n]) {
+        ++reversed;
+        continue;
+      }
+      in_doubt.insert(in_doubt.end(), parts[n].surface.faces.begin(), parts[n].surface.faces.end());
+      parts[n].surface.faces.clear();
     }
-    std::vector<std::uint32_t> reversed = not_surrounded(std::move(negative_ones), surfaces, mesh_.vertices);
-    for (std::uint32_t& part : reversed) part = parts[part].component;
-    std::ranges::sort(reversed);
-    return static_cast<std::uint64_t>(std::unique(reversed.begin(), reversed.end()) - reversed.begin());
+    if (in_doubt.empty()) return reversed;
+    std::erase_if(parts, [](const Part& part) { return part.surface.faces.empty(); });
+    for (Part& part : parts) part.is_negative = false;  // settled
+    std::ranges::move(parts_of(in_doubt), std::back_inserter(parts));
+    std::vector<std::uint32_t> components;
+    for (const std::uint32_t n : outermost_negative(parts)) components.push_back(parts[n].component);
+    std::ranges::sort(components);
+    return reversed +
+           static_cast<std::uint64_t>(std::unique(components.begin(), components.end()) - components.begin());
   }
 
   // Precondition: no component is open.
@@ -138,8 +152,7 @@ class ClosedComponents {
   }
 
  private:
-  // A closed component; of those of negative volume, faces that are joined through edges: a cavity may touch a solid at
-  // a vertex.
+  // A closed component, or faces of it that are joined through edges: a cavity may touch a solid at a vertex.
   struct Part {
     std::uint32_t component = 0;
     bool is_negative = false;
@@ -195,22 +208,52 @@ class ClosedComponents {
     }
   }
 
-  [[nodiscard]] std::vector<Part> closed_parts() const {
-    std::vector<ClosedSurface> surfaces(components_.count);
-    std::vector<Triangle> negative;  // faces
+  [[nodiscard]] std::vector<Part> closed_components() const {
+    std::vector<Part> parts(components_.count);
     for (const Triangle& t : mesh_.triangles) {
-      const std::uint32_t component = component_of(t);
-      if (open_[component]) continue;
-      (signs_[component] < 0 ? negative : surfaces[component].faces).push_back(t);
+      if (const std::uint32_t component = component_of(t); !open_[component]) {
+        parts[component].surface.faces.push_back(t);
+      }
     }
-    std::vector<Part> parts = parts_of(negative);
     for (std::uint32_t c = 0; c < components_.count; ++c) {
-      if (!surfaces[c].faces.empty()) parts.push_back({c, false, std::move(surfaces[c])});
+      parts[c].component = c;
+      parts[c].is_negative = signs_[c] < 0;
     }
+    std::erase_if(parts, [](const Part& part) { return part.surface.faces.empty(); });
     return parts;
   }
 
-  // Of components of negative volume.
+  // Of parts, by number, those of negative volume that lie within no other one.
+  [[nodiscard]] std::vector<std::uint32_t> outermost_negative(const std::vector<Part>& parts) const {
+    std::vector<const ClosedSurface*> surfaces;
+    std::vector<std::uint32_t> negative;
+    for (const Part& part : parts) {
+      if (part.is_negative) negative.push_back(static_cast<std::uint32_t>(surfaces.size()));
+      surfaces.push_back(&part.surface);
+    }
+    return not_surrounded(std::move(negative), surfaces, mesh_.vertices);
+  }
+
+  // Whether the box of each part meets that of another one.
+  [[nodiscard]] std::vector<bool> overlapping_another(const std::vector<Part>& parts) const {
+    std::vector<Box> boxes;
+    for (const Part& part : parts) boxes.push_back(bounding_box(part.surface.faces, mesh_.vertices));
+    std::vector<std::uint32_t> order(parts.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return boxes[i].lower.x; });
+    std::vector<bool> overlaps(parts.size(), false);
+    std::vector<std::uint32_t> met;
+    for (const std::uint32_t i : order) {
+      std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper.x < boxes[i].lower.x; });
+      for (const std::uint32_t j : met) {
+        if (overlap(boxes[i], boxes[j])) overlaps[i] = overlaps[j] = true;
+      }
+      met.push_back(i);
+    }
+    return overlaps;
+  }
+
+  // The faces of components of negative volume, as they are joined through edges.
   [[nodiscard]] std::vector<Part> parts_of(const std::vector<Triangle>& faces) const {
     DisjointSets joined(faces.size());
     const std::vector<FaceEdge> edges = face_edges(faces);

@@ -13,7 +13,8 @@ struct MeshDefects {
   std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that run along them in the same direction
   std::uint64_t cancelling_pairs = 0;    // pairs of faces with the same three vertices and opposite orientations
   // Components (faces joined through vertices) that are closed, have a negative volume, and do not lie within another
-  // closed component (nesting.h): a cavity is none. Where cavities and solids touch at vertices, each by itself.
+  // closed component (nesting.h): a cavity is none. One of negative volume is split where its faces meet only at
+  // vertices, and each part looked at by itself; one of positive volume is not.
   std::uint64_t reversed_components = 0;
   bool negative_volume = false;  // the mesh as a whole is closed, and its volume is negative
 };

@@ -1,9 +1,11 @@
 #include "core/orientation/ray_sums.h"
 
+#include <cmath>
 #include <limits>
 #include <mutex>
 
 #include "core/crossings/crossings.h"
+#include "core/data/box.h"
 #include "core/machine/threads.h"
 #include "core/mesh/ray_grid.h"
 
@@ -14,13 +16,25 @@ namespace {
 struct RayHit {
   std::size_t point;
   int sigma;
-  bool on_surface;
+  bool on_surface, is_near;
 };
+
+// Calls visit(i) for the points that are so near to the plane of a triangle, in its box.
+template <class Visit>
+void for_each_near(const RayGrid& grid, std::span<const Vec3> points, const Vec3& a, const Vec3& b, const Vec3& c,
+                   double near, const Visit& visit) {
+  const Box box = widened(box_of(a, b, c), near);
+  const Vec3 normal = cross(b - a, c - a);
+  const double most = near * norm(normal);
+  grid.for_each_ray(box.lower, box.upper, box.upper, box.lower.x, [&](std::size_t i) {  // as of a flat triangle
+    if (std::abs(dot(points[i] - a, normal)) <= most) visit(i);
+  });
+}
 
 }  // namespace
 
 std::vector<RaySum> ray_sums(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
-                             std::span<const Vec3> points) {
+                             std::span<const Vec3> points, double near) {
   std::vector<RaySum> sums(points.size());
   if (points.empty()) return sums;
   const RayGrid grid(points);
@@ -35,13 +49,17 @@ std::vector<RaySum> ray_sums(const std::vector<Triangle>& faces, const std::vect
         const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}, 0.0}, nullptr);
         const bool on_surface = crossing.on_begin < crossing.on_end;
         if (crossing.crossed > 0 || on_surface)
-          hits.push_back({i, crossing.crossed > 0 ? crossing.sigma : 0, on_surface});
+          hits.push_back({i, crossing.crossed > 0 ? crossing.sigma : 0, on_surface, false});
       });
+      if (near > 0.0) {
+        for_each_near(grid, points, a, b, c, near, [&](std::size_t i) { hits.push_back({i, 0, false, true}); });
+      }
     }
     const std::lock_guard<std::mutex> lock(mutex);
     for (const RayHit& hit : hits) {
       sums[hit.point].winding += hit.sigma;
       if (hit.on_surface) sums[hit.point].on_surface = true;
+      if (hit.on_surface || hit.is_near) sums[hit.point].is_near = true;
     }
   });
   return sums;

@@ -11,10 +11,11 @@ namespace raycone {
 
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
 // side of the field's threshold as the double it stands for, compared as it is stored, as float or as double, and
-// likewise of every half-integer: a positive one stands only for numbers that reach it, a negative one, which some
-// rules compare by magnitude, only for itself. Half-integers beyond 2^23 are not floats. Where a threshold lies beyond
-// all that can be stored, numbers beyond that become the largest on their side of 0. Negative distances stay negative,
-// and bounds are rounded up.
+// likewise of every half-integer, unless the threshold forbids it: a positive one stands only for numbers that reach
+// it, a negative one, which some rules compare by magnitude, only for itself. Half-integers beyond 2^23 are not floats.
+// Where a threshold lies beyond all that can be stored, numbers beyond that become the largest on their side of 0.
+// Negative distances stay negative, and bounds are rounded up. What needs no rounding stays as it is, also where a
+// threshold becomes equal to it.
 class Narrowing {
  public:
   explicit Narrowing(const FieldDescription& field)

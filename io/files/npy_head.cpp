@@ -16,12 +16,12 @@ constexpr std::size_t kMaxHead = std::size_t{1} << 16;
 std::string_view value_of(std::string_view dictionary, std::string_view name) {
   for (const char quote : {'\'', '"'}) {
     const std::string key = quote + std::string(name) + quote;
-    std::size_t position = dictionary.find(key);
-    if (position == std::string_view::npos) continue;
-    position = dictionary.find_first_not_of(" \t", position + key.size());
-    if (position == std::string_view::npos || dictionary[position] != ':') continue;
-    position = dictionary.find_first_not_of(" \t", position + 1);
-    if (position != std::string_view::npos) return dictionary.substr(position);
+    for (std::size_t at = dictionary.find(key); at != std::string_view::npos; at = dictionary.find(key, at + 1)) {
+      std::size_t position = dictionary.find_first_not_of(" \t", at + key.size());
+      if (position == std::string_view::npos || dictionary[position] != ':') continue;  // a field of that name
+      position = dictionary.find_first_not_of(" \t", position + 1);
+      if (position != std::string_view::npos) return dictionary.substr(position);
+    }
   }
   return {};
 }
@@ -47,7 +47,7 @@ class HeadParser {
     if (value.front() == '[') return std::string(value.substr(0, end_of_list(value)));
     const std::size_t end = value.find(value.front(), 1);
     if (end == std::string_view::npos || (value.front() != '\'' && value.front() != '"')) {
-      fail("type " + excerpt(value) + ", expected a text");
+      fail("type " + excerpt(value) + ", expected a text or a list");
     }
     return std::string(value.substr(1, end - 1));
   }
@@ -55,9 +55,19 @@ class HeadParser {
   // Behind the bracket that closes the first one.
   static std::size_t end_of_list(std::string_view text) {
     std::size_t depth = 0;
+    char quote = '\0';  // within a text: how it ends
     for (std::size_t n = 0; n < text.size(); ++n) {
-      if (text[n] == '[') ++depth;
-      if (text[n] == ']' && --depth == 0) return n + 1;
+      const char c = text[n];
+      if (quote != '\0') {
+        if (c == '\\') ++n;
+        if (c == quote) quote = '\0';
+      } else if (c == '\'' || c == '"') {
+        quote = c;
+      } else if (c == '[') {
+        ++depth;
+      } else if (c == ']' && --depth == 0) {
+        return n + 1;
+      }
     }
     return text.size();
   }

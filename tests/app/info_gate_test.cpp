@@ -208,7 +208,7 @@ TEST_F(InfoGate, MarksAreNotWrittenForAMeshThatCannotBeRead) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "marks.ply"));
 }
 
-// All boxes meet: a count would look at 8 * 10^8 pairs, for minutes.
+// All boxes meet: a count would look at 5 * 10^7 pairs, for longer than the second that it gets.
 TEST_F(InfoGate, AHostileSoupIsRefusedAtItsFirstPair) {
   std::string text;
   for (int i = 0; i < 10000; ++i) {

@@ -125,11 +125,12 @@ class VolumeInfo(CommandCase):
         self.assertIn("no lattice           not a readable volume: dimension, expected", self.info("a.nrrd"))
 
     def test_structured_arrays_are_listed(self):
-        head = "{'descr': [('x', '<f8'), ('y', '<i4', (2,))], 'fortran_order': False, 'shape': (2,), }\n"
+        kind = "[('shape', '<f8'), ('a]', [('fortran_order', '<i4', (2,))])]"
+        head = "{'descr': %s, 'fortran_order': False, 'shape': (2,), }\n" % kind
         with zipfile.ZipFile("s.npz", "w") as archive:
             archive.writestr("s.npy", b"\x93NUMPY\x01\0" + len(head).to_bytes(2, "little") + head.encode() + bytes(32))
         self.assertEqual(self.facts("s.npz")["arrays"],
-                         [{"name": "s", "type": "[('x', '<f8'), ('y', '<i4', (2,))]", "shape": [2]}])
+                         [{"name": "s", "type": kind, "shape": [2]}])
 
     def test_numbers_of_nrrd_may_have_tabs_and_plus_signs(self):
         with open("plain.nrrd", "w") as file:

@@ -474,8 +474,8 @@ MUTANTS = [
         ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
          "as_stored == 2 ? as_stored * turn[parent]")]),
     Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
-        ("core/orientation/nesting.cpp", "if (!sum->on_surface) (sum->winding == 0 ? verdict.misses : verdict.hits) = true;",
-         "if (!sum->on_surface && sum->winding != 0) verdict.hits = true;")]),
+        ("core/orientation/nesting.cpp", "(winding == 0 ? misses : hits) = true;",
+         "if (winding != 0) hits = true;")]),
     Mutant("copies_vote_for_the_first", "faces that are there both ways have no opinion", [
         ("core/orientation/unique_faces.cpp", "votes += as_first ? 1 : -1;",
          "votes += as_first ? 1 : 0;")]),
@@ -491,9 +491,9 @@ MUTANTS = [
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
         ("core/orientation/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
     Mutant("touching_is_within", "a vertex on another component does not tell whether it lies within", [
-        ("core/orientation/nesting.cpp", "if (!sum->on_surface) (sum->winding", "(sum->winding")]),
+        ("core/orientation/nesting.cpp", "if (!sums[at].is_near) verdicts[n].clear", "verdicts[n].clear")]),
     Mutant("vertices_alone_tell", "points beside faces tell what lies within, too", [
-        ("core/orientation/nesting.cpp", "if (look == Look::kFew) continue;", "continue;")]),
+        ("core/orientation/nesting.cpp", "points.insert(points.end(), on_faces.begin(), on_faces.end());", "")]),
     Mutant("marks_are_forgotten", "triangles of the same corners mark the same bits at their lowest vertex", [
         ("core/mesh/exterior_edges.cpp", "last_waits, last), as_marks(other_mark))", "last_waits, last), as_marks(0))")]),
     Mutant("crowded_edges_are_lost", "edges that find no place to wait are kept beside", [

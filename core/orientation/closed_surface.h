@@ -1,0 +1,30 @@
+// A closed part of a mesh, and points that tell where it lies.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/data/box.h"
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// Faces whose directed edges cancel.
+struct ClosedSurface {
+  std::vector<Triangle> faces;
+};
+
+// By halves, which do not overflow.
+[[nodiscard]] double half_longest_side(const Box& box);
+
+// The vertices of a surface, each once.
+[[nodiscard]] std::vector<Vec3> vertices_of(const ClosedSurface& surface, const std::vector<Vec3>& vertices);
+
+// Points within the faces of a surface with that box, as near to them as numbers are, `most` at most: of each face from
+// 1 to 256, by its size; of more faces than points the largest ones have one each. The same for any order of faces and
+// of their corners.
+[[nodiscard]] std::vector<Vec3> points_on_faces(const ClosedSurface& surface, const std::vector<Vec3>& vertices,
+                                                const Box& box, std::size_t most);
+
+}  // namespace raycone

@@ -8,8 +8,8 @@
 #include "app/options/info_command.h"
 #include "core/data/triangle_mesh.h"
 #include "core/intersections/self_intersections.h"
-#include "core/orientation/mesh_defects.h"
 #include "core/mesh/mesh_statistics.h"
+#include "core/orientation/mesh_defects.h"
 
 namespace raycone {
 

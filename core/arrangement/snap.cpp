@@ -148,7 +148,7 @@ bool split_at_corners_on_triangles(RuleBorder& border, double distance) {
   return border.sources.size() > count;
 }
 
-// Cuts triangles at corners of flat ones. Whether there were any. Does nothing where that would make too many.
+// Cuts triangles at corners of flat ones. Whether it did: not where there are none, nor where that makes too many.
 bool split_at_flat_triangles(RuleBorder& border, double distance) {
   constexpr std::uint64_t kMostTimes = 8;
   const Splits splits = splits_at_flat_triangles(border.mesh, distance);

@@ -23,8 +23,8 @@ struct SelfIntersections {
 // How triangles are sorted for the search. Only `first` depends on it, and the time.
 enum class SearchOrder {
   kRuns,   // in runs that medians cut, whatever their sizes and places
-  kCurve,  // along a curve through equal cubes: sooner where sizes are much the same, as on surfaces of lattices; of
-           // those that lie in one of 2048^3 cubes, as beside a triangle far away, in no order
+  kCurve,  // along a curve through 2048^3 equal cubes: sooner where sizes are much the same, as on surfaces of
+           // lattices. Triangles of one cube are in no order; beside one far away, all others may be in one
 };
 
 // The pairs of triangles that meet_beyond_shared() (core/intersections/triangle_pair.h). Exact. The same for any number

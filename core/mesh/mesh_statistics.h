@@ -11,7 +11,7 @@ namespace raycone {
 struct MeshStatistics {
   std::uint64_t exterior_edges = 0;      // undirected edges whose faces do not cancel
   std::uint64_t inconsistent_edges = 0;  // edges of exactly two faces that run along them in the same direction
-  std::uint64_t nonmanifold_edges = 0;   // edges of more than two faces, one of two equal corners counted twice
+  std::uint64_t nonmanifold_edges = 0;   // edges of more than two faces; one of two equal corners counts twice
   std::uint64_t degenerate_faces = 0;    // zero area, decided exactly
   std::uint64_t duplicate_faces = 0;     // beyond the first of the same three vertices, in either orientation
   std::uint64_t components = 0;          // sets of faces that are joined through vertices

@@ -1,6 +1,7 @@
 #include "core/mesh/used_part.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace raycone {

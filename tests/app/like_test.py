@@ -269,7 +269,7 @@ class Files(Like):
                                            [2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)],
                                            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c]])
                     displaced = abs(decoded - turn) @ (numpy.array(counts) - 1)
-                    self.assertLess(displaced.max(), 0.0625 + 1e-6, (counts, axis, short))
+                    self.assertLess(displaced.max(), 0.0625 + 1e-6, (counts, axis, short))  # 2000 roundings of a spacing of 1
                     shown.append(1)
         self.assertTrue(0 < sum(shown) < len(shown), shown)
 

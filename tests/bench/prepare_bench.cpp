@@ -17,10 +17,10 @@
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/orientation/mesh_defects.h"
 #include "core/mesh/triangle_runs.h"
 #include "core/mesh/vertex_links.h"
 #include "core/mesh/weld.h"
+#include "core/orientation/mesh_defects.h"
 #include "io/mesh/read_mesh.h"
 
 namespace raycone::bench {

@@ -1,6 +1,5 @@
 #include "core/surface/mesh_as_surface.h"
 #include "core/mesh/components.h"
-#include "core/mesh/used_part.h"
 #include "core/surface/border_components.h"
 
 #include <gtest/gtest.h>
@@ -17,6 +16,7 @@
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
 #include "core/surface/seen_by_nodes.h"

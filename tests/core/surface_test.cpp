@@ -1,6 +1,5 @@
 // The closed surface between nodes: closed, embedded and where the mesh is, for any labels of nodes and any points.
 #include "core/surface/surface.h"
-#include "core/mesh/used_part.h"
 #include "core/surface/contour.h"
 
 #include <gtest/gtest.h>
@@ -27,6 +26,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
+#include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
 #include "core/surface/checked_sharpen.h"
 #include "core/surface/edge_crossing.h"

@@ -119,6 +119,7 @@ class ClosedComponents {
     if (negative == 0 || components_.count == 1) return negative;
     std::vector<Part> parts = closed_components();
     const std::vector<std::uint32_t> outermost = outermost_negative(parts);
+    if (outermost.empty()) return 0;
     const std::vector<bool> may_be_several = overlapping_another(parts);
     std::uint64_t reversed = 0;
     std::vector<Triangle> in_doubt;

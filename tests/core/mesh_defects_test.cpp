@@ -250,8 +250,8 @@ TEST(MeshDefects, CavityMayTouchASolidOutsideAtAVertex) {
   EXPECT_EQ(reversed_in(joined(room, joined(facing(inner, 1), facing(outer, 1)))), 1U);
 }
 
-// Of their boxes an eighth of an eighth hold each other, but no strand lies within another. With AddressSanitizer 20
-// seconds are enough on a busy machine; each looked at by all others took a minute.
+// One of 64 boxes holds another one, but no strand lies within another. A second or two; the limit is for sanitizers on
+// busy machines.
 TEST(MeshDefects, ReversedStrandsTakeNoLongTime) {
   Random random(41);
   TriangleMesh strands;

@@ -24,8 +24,6 @@ Colour colour_of(const EdgeUse& edge) {
   return edge.is_nonmanifold() ? kNonmanifold : edge.is_inconsistent() ? kInconsistent : kExterior;
 }
 
-double length_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
-
 std::uint32_t add_vertex(ColouredMesh& marked, const Vec3& position, const Colour& colour) {
   marked.vertices.push_back({position, colour});
   return static_cast<std::uint32_t>(marked.vertices.size() - 1);
@@ -53,7 +51,7 @@ void add_triangles(ColouredMesh& marked, const TriangleMesh& mesh, const std::ve
 
 // Nothing where the edge has no length, or one beyond doubles.
 void add_bar(ColouredMesh& marked, const Vec3& from, const Vec3& to, double radius_of_box, const Colour& colour) {
-  const double length = length_of(to - from);
+  const double length = safe_norm(to - from);
   const double radius = std::min(radius_of_box, kRadiusOfEdge * length);
   if (!(radius > 0.0) || !std::isfinite(length)) return;
   const Vec3 along = (1.0 / length) * (to - from);
@@ -61,7 +59,7 @@ void add_bar(ColouredMesh& marked, const Vec3& from, const Vec3& to, double radi
   const double x = std::abs(along.x), y = std::abs(along.y), z = std::abs(along.z);
   const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
   const Vec3 across = cross(along, axis);
-  const Vec3 u = (radius / length_of(across)) * across, v = cross(along, u);
+  const Vec3 u = (radius / safe_norm(across)) * across, v = cross(along, u);
   const double half = 0.5, root = std::sqrt(0.75);
   std::array<std::uint32_t, 6> ring{};  // the three at `from`, then those at `to`
   std::size_t next = 0;
@@ -83,7 +81,7 @@ ColouredMesh marked_mesh(const TriangleMesh& mesh, const std::vector<bool>& inte
   ColouredMesh marked;
   add_triangles(marked, mesh, intersecting);
   const Box box = bounding_box(mesh);
-  const double radius = kRadiusOfBox * length_of(box.upper - box.lower);
+  const double radius = kRadiusOfBox * safe_norm(box.upper - box.lower);
   for (const EdgeUse& edge : flawed_edges(mesh)) {
     const Colour colour = colour_of(edge);
     const Vec3 &from = mesh.vertices[edge.low], &to = mesh.vertices[edge.high];

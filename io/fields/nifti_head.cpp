@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "io/fields/nifti_fields.h"
 #include "io/fields/quaternion.h"
 #include "io/fields/volume_error.h"
 #include "io/files/ascii.h"
@@ -14,9 +15,11 @@ namespace {
 
 // By the head's first number; nothing where it is none.
 std::optional<std::endian> nifti_order(std::string_view head) {
-  if (head.size() < kNiftiHead || (head.substr(344, 3) != "n+1" && head.substr(344, 3) != "ni1")) return std::nullopt;
+  if (head.size() < nifti::kHeadSize) return std::nullopt;
+  const std::string_view magic = head.substr(nifti::kMagic, 3);
+  if (magic != "n+1" && magic != "ni1") return std::nullopt;
   for (const std::endian order : {std::endian::little, std::endian::big}) {
-    if (load<std::int32_t>(head.data(), order) == kNiftiHead) return order;
+    if (load<std::int32_t>(head.data(), order) == nifti::kHeadSize) return order;
   }
   return std::nullopt;
 }
@@ -25,7 +28,7 @@ std::optional<std::endian> nifti_order(std::string_view head) {
 
 std::optional<NiftiHead> nifti_head(std::string_view bytes) {
   const std::optional<std::endian> order = nifti_order(bytes);
-  return order ? std::optional(NiftiHead(bytes.substr(0, kNiftiHead), *order)) : std::nullopt;
+  return order ? std::optional(NiftiHead(bytes.substr(0, nifti::kHeadSize), *order)) : std::nullopt;
 }
 
 bool is_nifti2(std::string_view bytes) {
@@ -43,26 +46,42 @@ std::string NiftiHead::text(std::size_t offset, std::size_t room) const {
   return bytes_.substr(offset, std::min(room, bytes_.find('\0', offset) - offset));
 }
 
+namespace {
+
+// Three numbers, one behind the other.
+Vec3 parts_at(const NiftiHead& head, std::size_t offset) {
+  return {head.real(offset), head.real(offset + 4), head.real(offset + 8)};
+}
+
+Vec3 sform_column(const NiftiHead& head, std::size_t column) {
+  const auto part = [&](std::size_t row) { return head.real(nifti::kSRow + nifti::kRowSize * row + 4 * column); };
+  return {part(0), part(1), part(2)};
+}
+
+}  // namespace
+
 PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
-  if (head.integer(40) < 3)
-    fail_as_volume(path, "its dimension, expected at least 3, found " + std::to_string(head.integer(40)));
-  const std::array<std::int64_t, 3> counts{head.integer(42), head.integer(44), head.integer(46)};
+  const int dimension = head.integer(nifti::kDim);
+  if (dimension < 3) fail_as_volume(path, "its dimension, expected at least 3, found " + std::to_string(dimension));
+  std::array<std::int64_t, 3> counts{};
+  for (std::size_t a = 0; a < 3; ++a) counts[a] = head.integer(nifti::kDim + 2 * (a + 1));
   std::array<Vec3, 3> steps;
-  if (head.integer(254) > 0) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      steps[a] = {head.real(280 + 4 * a), head.real(296 + 4 * a), head.real(312 + 4 * a)};
-    }
-    return {{head.real(292), head.real(308), head.real(324)}, steps, {0, 0, 0}, counts};
+  if (head.integer(nifti::kSFormCode) > 0) {
+    for (std::size_t a = 0; a < 3; ++a) steps[a] = sform_column(head, a);
+    return {sform_column(head, 3), steps, {0, 0, 0}, counts};
   }
-  if (!(head.integer(252) > 0)) fail_as_volume(path, "it has neither sform nor qform, expected a place in the world");
-  steps = columns_of({head.real(256), head.real(260), head.real(264)});
+  if (!(head.integer(nifti::kQFormCode) > 0))
+    fail_as_volume(path, "it has neither sform nor qform, expected a place in the world");
+  const Vec3 parts = parts_at(head, nifti::kQuatern);
+  steps = columns_of({parts.x, parts.y, parts.z});
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(head.real(80 + 4 * a) > 0.0))
-      fail_as_volume(path, "its spacing, expected positive numbers, found " + shortest_text(head.real(80 + 4 * a)));
-    steps[a] = head.real(80 + 4 * a) * steps[a];
+    const double spacing = head.real(nifti::kPixDim + 4 * (a + 1));
+    if (!(spacing > 0.0))
+      fail_as_volume(path, "its spacing, expected positive numbers, found " + shortest_text(spacing));
+    steps[a] = spacing * steps[a];
   }
-  if (head.real(76) < 0.0) steps[2] = -1.0 * steps[2];
-  return {{head.real(268), head.real(272), head.real(276)}, steps, {0, 0, 0}, counts};
+  if (head.real(nifti::kPixDim) < 0.0) steps[2] = -1.0 * steps[2];
+  return {parts_at(head, nifti::kQOffset), steps, {0, 0, 0}, counts};
 }
 
 NiftiFacts nifti_facts(const NiftiHead& head) {
@@ -73,15 +92,15 @@ NiftiFacts nifti_facts(const NiftiHead& head) {
       {2048, "complex256"}, {2304, "rgba32"}};
   constexpr int kMostAxes = 7;
   NiftiFacts facts;
-  const int code = head.integer(70);
+  const int code = head.integer(nifti::kDataType);
   const auto type = kTypes.find(code);
   facts.type = type == kTypes.end() ? "type " + std::to_string(code) : type->second;
-  const int axes = std::clamp<int>(head.integer(40), 0, kMostAxes);
+  const int axes = std::clamp<int>(head.integer(nifti::kDim), 0, kMostAxes);
   for (int n = 1; n <= axes; ++n) {
     facts.shape.push_back(
-        static_cast<std::uint64_t>(std::max<int>(head.integer(40 + 2 * static_cast<std::size_t>(n)), 0)));
+        static_cast<std::uint64_t>(std::max<int>(head.integer(nifti::kDim + 2 * static_cast<std::size_t>(n)), 0)));
   }
-  facts.description = head.text(148, 80);
+  facts.description = head.text(nifti::kDescrip, nifti::kDescripRoom);
   return facts;
 }
 

@@ -13,12 +13,10 @@
 
 namespace raycone {
 
-inline constexpr std::size_t kNiftiHead = 348;  // bytes
-
 // Its fields, by their offsets.
 class NiftiHead {
  public:
-  // `bytes`: kNiftiHead of them.
+  // `bytes`: nifti::kHeadSize of them.
   NiftiHead(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
 
   [[nodiscard]] std::int16_t integer(std::size_t offset) const;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <system_error>
 
+#include "io/fields/nifti_fields.h"
 #include "io/fields/volume_error.h"
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
@@ -16,7 +17,7 @@ namespace {
 
 InputBuffer open_image(const std::string& path) {
   InputBuffer input(path, unpacked(open_source(path), path));
-  while (input.pending().size() < kNiftiHead && input.fill()) continue;
+  while (input.pending().size() < nifti::kHeadSize && input.fill()) continue;
   return input;
 }
 

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,8 +14,8 @@
 
 #include "io/fields/array_elements.h"
 #include "io/fields/format_writers.h"
+#include "io/fields/index_range.h"
 #include "io/files/ascii.h"
-#include "io/files/file_error.h"
 #include "io/files/seekable_output.h"
 
 namespace raycone {
@@ -56,42 +55,39 @@ std::string type_name(std::string_view descriptor) {
   return std::string(std::ranges::find(kNames, descriptor, [](const auto& name) { return name.first; })->second);
 }
 
-void check_indices(const Lattice& lattice, const std::string& name) {
-  using Index = std::numeric_limits<std::int32_t>;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)], last = lattice.index_max(axis);
-    if (first >= Index::min() && last <= Index::max()) continue;
-    throw OutputError(name + ": lattice indices " + std::to_string(first) + " to " + std::to_string(last) +
-                      " do not fit in the 32 bits of VTK");
-  }
+// An array whose bytes begin at `offset` behind the head.
+std::string declaration_of(const FieldDescription& field, std::string_view descriptor, std::uint64_t offset) {
+  return "        <DataArray type=\"" + type_name(descriptor) + "\" Name=\"" + field.name + '"' +
+         (field.components() > 1 ? " NumberOfComponents=\"3\"" : "") + " format=\"appended\" offset=\"" +
+         std::to_string(offset) + "\"/>\n";
+}
+
+// All that stands before the arrays. `first`: the field that ParaView shows.
+std::string head_of(const PlacedLattice& lattice, const FieldDescription& first, const std::string& declarations) {
+  const std::string extent = extent_of(lattice.grid);
+  return "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "  <ImageData WholeExtent=\"" +
+         extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.grid.spacing) + '"' +
+         direction_of(lattice) + ">\n    <Piece Extent=\"" + extent + "\">\n      <PointData " +
+         (first.components() > 1 ? "Vectors" : "Scalars") + "=\"" + first.name + "\">\n" + declarations +
+         "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
 }
 
 class VtiWriter final : public LatticeWriter {
  public:
   VtiWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description) : output_(output) {
-    check_indices(lattice.grid, output.name());
     const auto samples = static_cast<std::uint64_t>(whole(lattice.grid).size());
     std::string declarations;
     std::uint64_t offset = 0;  // behind the head
     for (const FieldDescription& field : description.fields) {
       auto elements = make_array_elements(field, description.precision.value_or(Precision::kSingle), output.name());
-      declarations += "        <DataArray type=\"" + type_name(elements->descriptor()) + "\" Name=\"" + field.name +
-                      '"' + (field.components() > 1 ? " NumberOfComponents=\"3\"" : "") +
-                      " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+      declarations += declaration_of(field, elements->descriptor(), offset);
       const ArraySize bytes = samples * elements->size();
       arrays_.push_back({std::move(elements), offset, bytes});
-      offset += sizeof(ArraySize) + arrays_.back().bytes;
+      offset += sizeof(ArraySize) + bytes;
     }
-    const std::string extent = extent_of(lattice.grid);
-    const std::string head =
-        "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-        "  <ImageData WholeExtent=\"" +
-        extent + "\" Origin=\"" + text_of(lattice.origin) + "\" Spacing=\"" + text_of(lattice.grid.spacing) + '"' +
-        direction_of(lattice) + ">\n    <Piece Extent=\"" + extent + "\">\n      <PointData " +
-        (description.fields.front().components() > 1 ? "Vectors" : "Scalars") + "=\"" +
-        description.fields.front().name + "\">\n" + declarations +
-        "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
+    const std::string head = head_of(lattice, description.fields.front(), declarations);
     output_.write_at(0, head.data(), head.size());
     for (Array& array : arrays_) {
       array.next += head.size();
@@ -144,6 +140,7 @@ class VtiWriter final : public LatticeWriter {
 
 std::unique_ptr<LatticeWriter> make_vti_lattice_writer(OutputFile& output, const PlacedLattice& lattice,
                                                        const OutputDescription& description) {
+  check_32_bit_indices(lattice.grid, "VTK", output.name());
   return std::make_unique<VtiWriter>(output, lattice, description);
 }
 

@@ -1,26 +1,14 @@
 #include "io/vdb/check_lattice.h"
 
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <limits>
 
+#include "io/fields/index_range.h"
 #include "io/files/file_error.h"
 #include "io/files/half.h"
 
 namespace raycone::vdb {
 namespace {
-
-void check_indices(const Lattice& lattice, const std::string& name) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t first = lattice.index_min[static_cast<std::size_t>(axis)];
-    const std::int64_t last = lattice.index_max(axis);
-    if (first < std::numeric_limits<std::int32_t>::min() || last > std::numeric_limits<std::int32_t>::max()) {
-      throw OutputError(name + ": lattice indices " + std::to_string(first) + " to " + std::to_string(last) +
-                        " do not fit in the 32 bits of OpenVDB");
-    }
-  }
-}
 
 // Of the voxel that OpenVDB gives to copies of a grid, also while it writes one: the difference of two positions.
 double copied_volume(PlacedLattice lattice) {
@@ -68,7 +56,7 @@ void check_half(const OutputDescription& description, const Lattice& lattice, co
 }  // namespace
 
 void check_lattice(const PlacedLattice& lattice, const OutputDescription& description, const std::string& name) {
-  check_indices(lattice.grid, name);
+  check_32_bit_indices(lattice.grid, "OpenVDB", name);
   check_voxels(lattice, name);
   check_half(description, lattice.grid, name);
 }

@@ -20,42 +20,36 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
 
-// Each type here turns a field's Number into an Element.
+// Each type here turns a field's Numbers into Elements.
 
-struct ByteElement {
-  using Number = std::uint8_t;
-  using Element = std::uint8_t;
+// As they are. Adding 0 turns -0 into 0, here and below.
+template <typename Type>
+struct Kept {
+  using Number = Type;
+  using Element = Type;
+  void operator()(std::span<const Number> numbers, Element* elements) const {
+    for (std::size_t n = 0; n < numbers.size(); ++n) elements[n] = static_cast<Element>(numbers[n] + 0);
+  }
+};
+
+struct ByteElement : Kept<std::uint8_t> {
   static constexpr const char* kDescriptor = "|b1";  // NumPy's bool is a byte
-  Element operator()(Number flag) const { return flag; }
 };
-
-struct IntegerElement {
-  using Number = std::int64_t;
-  using Element = std::int64_t;
+struct IntegerElement : Kept<std::int64_t> {
   static constexpr const char* kDescriptor = "<i8";
-  Element operator()(Number count) const { return count; }
 };
-
-struct LabelElement {
-  using Number = std::int32_t;
-  using Element = std::int32_t;
+struct LabelElement : Kept<std::int32_t> {
   static constexpr const char* kDescriptor = "<i4";
-  Element operator()(Number label) const { return label; }
 };
-
-// Adding 0 turns -0 into 0, here and below.
-struct DoubleElement {
-  using Number = double;
-  using Element = double;
+struct DoubleElement : Kept<double> {
   static constexpr const char* kDescriptor = "<f8";
-  Element operator()(Number number) const { return number + 0.0; }
 };
 
 struct FloatElement {
   using Number = double;
   using Element = float;
   static constexpr const char* kDescriptor = "<f4";
-  Element operator()(Number number) const { return narrowing(number) + 0.0F; }
+  void operator()(std::span<const double> numbers, float* elements) const { narrowing.store(numbers, elements); }
   Narrowing narrowing;
 };
 
@@ -63,7 +57,15 @@ struct HalfElement {
   using Number = double;
   using Element = std::uint16_t;
   static constexpr const char* kDescriptor = "<f2";
-  Element operator()(Number number) const { return bits_of_half(narrowing(number)); }
+  void operator()(std::span<const double> numbers, std::uint16_t* elements) const {
+    constexpr std::size_t kPiece = 256;
+    std::array<float, kPiece> stored;
+    for (std::size_t begin = 0; begin < numbers.size(); begin += kPiece) {
+      const std::span<const double> piece = numbers.subspan(begin, std::min(kPiece, numbers.size() - begin));
+      narrowing.store(piece, stored.data());
+      for (std::size_t n = 0; n < piece.size(); ++n) elements[begin + n] = bits_of_half(stored[n]);
+    }
+  }
   Narrowing narrowing;
 };
 
@@ -73,7 +75,12 @@ struct VectorElement {
   using Number = Vec3;
   using Element = std::array<typename Convert::Element, 3>;
   static constexpr const char* kDescriptor = Convert::kDescriptor;
-  Element operator()(const Vec3& vector) const { return {convert(vector.x), convert(vector.y), convert(vector.z)}; }
+  void operator()(std::span<const Vec3> vectors, Element* elements) const {
+    for (std::size_t n = 0; n < vectors.size(); ++n) {
+      const std::array components{vectors[n].x, vectors[n].y, vectors[n].z};
+      convert(components, elements[n].data());
+    }
+  }
   Convert convert;
 };
 
@@ -95,7 +102,9 @@ class TypedElements final : public ArrayElements {
     check_range(numbers);
     elements_.resize(numbers.size());
     constexpr std::size_t kGrain = std::size_t{1} << 14;
-    parallel_for_each(numbers.size(), kGrain, [&](std::size_t n) { elements_[n] = convert_(numbers[n]); });
+    parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      convert_(numbers.subspan(begin, end - begin), &elements_[begin]);
+    });
     return bytes();
   }
 
@@ -110,19 +119,26 @@ class TypedElements final : public ArrayElements {
   }
 
  private:
+  // Tile by tile, each of which is read, converted and written by itself: reading waits for memory, and many reads wait
+  // at the same time where nothing else is between them.
   void transpose_row(const LatticeBlock& block, std::span<const Number> numbers, std::size_t y, std::size_t x_begin,
                      std::size_t x_end) {
     constexpr std::size_t kTile = 16;  // a tile's cache lines on both sides fit in the first-level cache
+    std::array<Number, kTile * kTile> tile;
+    std::array<Element, kTile * kTile> converted;
     const auto nx = static_cast<std::size_t>(block.counts[0]);
     const auto ny = static_cast<std::size_t>(block.counts[1]);
     const auto nz = static_cast<std::size_t>(block.counts[2]);
-    for (std::size_t z_tile = 0; z_tile < nz; z_tile += kTile) {
-      const std::size_t z_end = std::min(z_tile + kTile, nz);
-      for (std::size_t x_tile = x_begin; x_tile < x_end; x_tile += kTile) {
-        for (std::size_t x = x_tile; x < std::min(x_tile + kTile, x_end); ++x) {
-          for (std::size_t z = z_tile; z < z_end; ++z) {
-            elements_[((x - x_begin) * ny + y) * nz + z] = convert_(numbers[(z * ny + y) * nx + x]);
-          }
+    for (std::size_t z = 0; z < nz; z += kTile) {
+      const std::size_t lines = std::min(kTile, nz - z);
+      for (std::size_t x = x_begin; x < x_end; x += kTile) {
+        const std::size_t columns = std::min(kTile, x_end - x);
+        for (std::size_t k = 0; k < lines; ++k)
+          std::copy_n(&numbers[((z + k) * ny + y) * nx + x], columns, &tile[k * columns]);
+        convert_({tile.data(), lines * columns}, converted.data());
+        for (std::size_t i = 0; i < columns; ++i) {
+          Element* const line = &elements_[((x + i - x_begin) * ny + y) * nz + z];
+          for (std::size_t k = 0; k < lines; ++k) line[k] = converted[k * columns + i];
         }
       }
     }
@@ -154,7 +170,7 @@ std::unique_ptr<ArrayElements> make_vector_elements(const FieldDescription& fiel
   };
   if (precision == Precision::kDouble) return made(DoubleElement{});
   if (precision == Precision::kSingle) return made(FloatElement{Narrowing(field)});
-  return made(HalfElement{Narrowing(field, &nearest_half, &next_half_above)});
+  return made(HalfElement{Narrowing(field, Digits::kHalf)});
 }
 
 }  // namespace
@@ -189,10 +205,9 @@ std::unique_ptr<ArrayElements> make_array_elements(const FieldDescription& field
     const double largest = field.kind == FieldKind::kDistance ? kLargestFloat : kAny;
     return std::make_unique<TypedElements<FloatElement>>(FloatElement{Narrowing(field)}, largest, output);
   }
-  const Narrowing narrowing(field, &nearest_half, &next_half_above);
   // Winding numbers beyond are stored as the largest half.
   const double largest = field.kind == FieldKind::kDistance ? kLargestHalf : kAny;
-  return std::make_unique<TypedElements<HalfElement>>(HalfElement{narrowing}, largest, output);
+  return std::make_unique<TypedElements<HalfElement>>(HalfElement{Narrowing(field, Digits::kHalf)}, largest, output);
 }
 
 }  // namespace raycone

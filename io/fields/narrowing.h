@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "io/fields/field_writer.h"
+#include "io/files/half.h"
 
 namespace raycone {
+
+enum class Digits { kSingle, kHalf };  // 32 and 16 bits
 
 // Rounds the numbers of a field to float so that no rule decides otherwise about what is stored: a float is on the same
 // side of the field's threshold as the double it stands for, compared as it is stored, as float or as double, and
@@ -18,69 +22,48 @@ namespace raycone {
 // threshold becomes equal to it.
 class Narrowing {
  public:
-  explicit Narrowing(const FieldDescription& field)
-      : Narrowing(field, field.kind == FieldKind::kVector ? &float_in_range : &nearest_float, &next_float) {}
+  explicit Narrowing(const FieldDescription& field, Digits digits = Digits::kSingle);
 
-  // `nearest`: the stored value nearest to a double, itself a float; `next`: the stored value after another, upwards,
-  // or itself where it is the largest.
-  Narrowing(const FieldDescription& field, float (*nearest)(double), float (*next)(float))
-      : keeps_sides_(field.kind == FieldKind::kReal || field.kind == FieldKind::kDensity),
-        keeps_negative_(field.kind == FieldKind::kDistance),
-        is_bound_(field.kind == FieldKind::kBound),
-        of_magnitude_(field.threshold_of_magnitude),
-        threshold_(field.threshold),
-        low_(std::min(
-            {threshold_, static_cast<double>(static_cast<float>(threshold_)), stored(threshold_, nearest, next)})),
-        high_(std::max(
-            {threshold_, static_cast<double>(static_cast<float>(threshold_)), stored(threshold_, nearest, next)})),
-        nearest_(nearest),
-        next_(next) {}
+  // With Digits::kHalf one of those floats that are halves.
+  [[nodiscard]] float operator()(double value) const;
 
-  [[nodiscard]] float operator()(double value) const {
-    const float stored = nearest_(value);
-    if (is_bound_) return static_cast<double>(stored) < value ? up(stored) : stored;
-    if (keeps_negative_ && value < 0.0) return std::min(stored, down(0.0F));
-    if (!keeps_sides_ || static_cast<double>(stored) == value) return stored;
-    if (of_magnitude_) return std::copysign(on_side(std::abs(stored), std::abs(value)), stored);
-    return on_side(stored, value);
-  }
+  // Sets stored[n] to what it makes of values[n], with -0 as 0.
+  void store(std::span<const double> values, float* stored) const;
 
  private:
-  static float nearest_float(double value) { return static_cast<float>(value); }
-  static float float_in_range(double value) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(value, -kMost, kMost));
-  }
-  // The threshold as readers have it who compare in the precision of what is stored; itself beyond that.
-  static double stored(double threshold, float (*nearest)(double), float (*next)(float)) {
-    const float as_stored = nearest(threshold), size = std::abs(as_stored);
-    return next(size) == size ? threshold : static_cast<double>(as_stored);
-  }
-  static float next_float(float value) { return std::nextafter(value, std::numeric_limits<float>::infinity()); }
-  [[nodiscard]] float up(float value) const { return next_(value); }
-  [[nodiscard]] float down(float value) const { return -next_(-value); }
+  [[nodiscard]] float nearest(double value) const;
+  [[nodiscard]] float up(float value) const;  // the next one that can be stored; of the largest, that
+  [[nodiscard]] float down(float value) const { return -up(-value); }
+  [[nodiscard]] double as_stored(double threshold) const;
+  [[nodiscard]] float on_side(float stored, double value) const;
 
-  [[nodiscard]] float on_side(float stored, double value) const {
-    const double number = stored, nearest_integer = (number + 0x1.8p52) - 0x1.8p52;
-    if (std::abs(number - nearest_integer) == 0.5 && (number > value || number < 0.0)) {
-      stored = number > value ? down(stored) : up(stored);
-    }
-    const bool reaches = value >= threshold_;
-    while (reaches ? static_cast<double>(stored) < high_ : static_cast<double>(stored) >= low_) {
-      const float next = reaches ? up(stored) : down(stored);
-      if (next == stored) break;
-      stored = next;
-    }
-    return stored;
-  }
+  void store_nearest(std::span<const double> values, float* stored) const;
+  [[nodiscard]] bool are_right(std::span<const double> values, const float* nearest) const;
+  [[nodiscard]] bool are_on_their_sides(std::span<const double> values, const float* nearest) const;
 
+  Digits digits_;
   bool keeps_sides_;
   bool keeps_negative_;
   bool is_bound_;
+  bool is_clamped_;
   bool of_magnitude_;
-  double threshold_, low_, high_;
-  float (*nearest_)(double);
-  float (*next_)(float);
+  double threshold_;
+  double low_ = 0.0, high_ = 0.0;  // the threshold as readers may have it: no stored number is between
 };
+
+inline float Narrowing::nearest(double value) const {
+  if (digits_ == Digits::kHalf) return nearest_half(value);
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return static_cast<float>(is_clamped_ ? std::clamp(value, -kMost, kMost) : value);
+}
+
+inline float Narrowing::operator()(double value) const {
+  const float stored = nearest(value);
+  if (is_bound_) return static_cast<double>(stored) < value ? up(stored) : stored;
+  if (keeps_negative_) return value < 0.0 && stored == 0.0F ? down(0.0F) : stored;
+  if (!keeps_sides_ || static_cast<double>(stored) == value) return stored;
+  if (of_magnitude_) return std::copysign(on_side(std::abs(stored), std::abs(value)), static_cast<float>(value));
+  return on_side(stored, value);
+}
 
 }  // namespace raycone

@@ -139,11 +139,17 @@ class LeafLayer {
     Stored* const leaf = &values_[n * kLeafVoxels];
     for (std::int64_t z = planes.z_begin; z < planes.z_end; ++z) {
       for (std::int64_t leaf_y = y.begin; leaf_y < y.end; ++leaf_y) {
-        const Number* const line = planes.line(leaf_y, z);
-        Stored* const column = leaf + (leaf_y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1));
-        for (std::int64_t leaf_x = x.begin; leaf_x < x.end; ++leaf_x) {
-          column[(leaf_x & (kLeafSize - 1)) * kLeafSize * kLeafSize] = store(line[leaf_x - planes.slab.first[0]]);
+        const Number* const line = planes.line(leaf_y, z) + (x.begin - planes.slab.first[0]);
+        const auto count = static_cast<std::size_t>(x.end - x.begin);
+        std::array<Stored, kLeafSize> stored;
+        if constexpr (requires { store(std::span(line, count), stored.data()); }) {
+          store(std::span(line, count), stored.data());
+        } else {
+          std::transform(line, line + count, stored.begin(), store);
         }
+        Stored* const column = leaf + (leaf_y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1)) +
+                               (x.begin & (kLeafSize - 1)) * kLeafSize * kLeafSize;
+        for (std::size_t i = 0; i < count; ++i) column[i * kLeafSize * kLeafSize] = stored[i];
       }
     }
   }

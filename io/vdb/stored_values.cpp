@@ -5,14 +5,10 @@
 #include "io/files/half.h"
 
 namespace raycone::vdb {
+
 bool has_chosen_precision(FieldKind kind) {
   return kind == FieldKind::kReal || kind == FieldKind::kDensity || kind == FieldKind::kDistance ||
          kind == FieldKind::kVector;
-}
-
-Narrowing narrowing_of(const FieldDescription& field, bool half) {
-  if (!half) return Narrowing(field);
-  return {field, &nearest_half, &next_half_above};
 }
 
 template <typename Value>

@@ -1,9 +1,11 @@
-// What grids keep of the numbers of a field. Each type here turns a field's Number into a grid's Stored value.
+// What grids keep of the numbers of a field. Each type here turns a field's Number into a grid's Stored value; one of
+// them does so faster with many.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "io/fields/field_writer.h"
 #include "io/fields/narrowing.h"
@@ -12,9 +14,6 @@ namespace raycone::vdb {
 
 // Whether the user chooses the precision of fields of this kind: of all but diagnostics.
 [[nodiscard]] bool has_chosen_precision(FieldKind kind);
-
-// Rounds to floats, with `half` to those that fit in 16 bits.
-[[nodiscard]] Narrowing narrowing_of(const FieldDescription& field, bool half);
 
 // The least value that is no narrower than the band, also as OpenVDB's checkLevelSet measures it: in voxels. With
 // `half`, of those that fit in 16 bits. Value: float or double.
@@ -50,6 +49,7 @@ struct StoreFloat {
   using Number = double;
   using Stored = float;
   Stored operator()(Number number) const { return narrowing(number) + 0.0F; }
+  void operator()(std::span<const Number> numbers, Stored* stored) const { narrowing.store(numbers, stored); }
   Narrowing narrowing;
 };
 

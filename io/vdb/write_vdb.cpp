@@ -343,7 +343,7 @@ std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan, const 
 
 // Of 32 or 16 bits, as the user chose.
 vdb::StoreFloat narrow_store(const GridPlan& plan) {
-  return {vdb::narrowing_of(plan.field, plan.description.is(Precision::kHalf))};
+  return {Narrowing(plan.field, plan.description.is(Precision::kHalf) ? Digits::kHalf : Digits::kSingle)};
 }
 
 // Components as Store keeps numbers.

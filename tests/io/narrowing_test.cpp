@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -122,7 +123,7 @@ TEST(Narrowing, StopsAtTheLargestHalf) {
   for (const double threshold : {65503.7, 65504.0, 65504.5, 70000.0, 131008.0, 140000.0, 1e12}) {
     for (const Rule& rule : {Rule{RuleKind::kThreshold, threshold}, Rule{RuleKind::kThreshold, -threshold},
                              Rule{RuleKind::kAbs, threshold}}) {
-      const Narrowing narrowing(winding_of(rule), &nearest_half, &next_half_above);
+      const Narrowing narrowing(winding_of(rule), Digits::kHalf);
       for (const double value : values_about({1.0, 65504.0, 65504.5, 70000.0, 131008.0, 140000.0, 1e12})) {
         const double stored = narrowing(value);
         ASSERT_TRUE(std::abs(stored) <= kLargestHalf) << value << " for " << threshold;
@@ -154,31 +155,49 @@ TEST(Narrowing, RoundsBoundsUp) {
   EXPECT_EQ(narrowing(0x1p-50), 0x1p-50F);
 }
 
-// Eleven binary digits, as halves between 2^-14 and 65504 have.
-float nearest_short(double value) {
-  if (value == 0.0) return 0.0F;
-  const int exponent = std::ilogb(value) - 10;
-  return static_cast<float>(std::scalbn(std::nearbyint(std::scalbn(value, -exponent)), exponent));
-}
-float next_short(float value) {
-  const float step = std::scalbn(1.0F, (value == 0.0F ? -14 : std::ilogb(value)) - 10);
-  const float power = std::scalbn(1.0F, value == 0.0F ? -14 : std::ilogb(value));
-  return value == -power ? value + step / 2 : value + step;
-}
-
-TEST(Narrowing, TakesAnyNumberOfDigits) {
+TEST(Narrowing, ChangesNoRulesMindAsHalf) {
   for (const Rule& rule : kRules) {
     if (rule.threshold == 1e-30) continue;  // beyond their range
-    const Narrowing narrowing(winding_of(rule), &nearest_short, &next_short);
+    const Narrowing narrowing(winding_of(rule), Digits::kHalf);
     for (const double value : values_about({0.5, 1.5, 2.5, 7.5, 0.3, 0.7, 1.0, 1.0 / 3})) {
       const float stored = narrowing(value);
-      EXPECT_EQ(nearest_short(stored), stored);
+      EXPECT_EQ(nearest_half(stored), stored);
       EXPECT_EQ(holds(rule, static_cast<double>(stored)), holds(rule, value)) << value << " as " << stored;
-      const Rule as_short{rule.kind, static_cast<double>(nearest_short(rule.threshold))};  // as NumPy compares halves
+      const Rule as_short{rule.kind, static_cast<double>(nearest_half(rule.threshold))};  // as NumPy compares halves
       EXPECT_EQ(holds(as_short, static_cast<double>(stored)), holds(rule, value)) << value << " as " << stored;
       EXPECT_LE(std::abs(static_cast<double>(stored) - value), 2e-3 * std::max(1.0, std::abs(value)));
     }
   }
+}
+
+// Pieces without a number that needs care, with one, and with many take different ways.
+TEST(Narrowing, StoresManyAsOneByOne) {
+  Random random(5);
+  std::vector<double> values(600, 0.0);
+  const std::vector<double> critical = values_about(kCritical);
+  values.insert(values.end(), critical.begin(), critical.end());
+  for (int n = 0; n < 3000; ++n) values.push_back(test::uniform(random, -4, 4));
+  values.insert(values.end(), {-0.0, 1e-320, -1e-320, 1e-60, -1e-60, 1e5, -1e5, 2049.5, -2049.5});
+  for (int n = 0; n < 500; ++n) values.push_back(std::ldexp(test::uniform(random, -1, 1), -n));
+  int cares = 0;
+  for (const FieldKind kind :
+       {FieldKind::kReal, FieldKind::kDensity, FieldKind::kDistance, FieldKind::kBound, FieldKind::kVector}) {
+    for (const Digits digits : {Digits::kSingle, Digits::kHalf}) {
+      for (const Rule& rule : kRules) {
+        FieldDescription field = winding_of(rule);
+        field.kind = kind;
+        const Narrowing narrowing(field, digits);
+        std::vector<float> stored(values.size());
+        narrowing.store(values, stored.data());
+        for (std::size_t n = 0; n < values.size(); ++n) {
+          ASSERT_EQ(stored[n], narrowing(values[n])) << values[n];
+          ASSERT_FALSE(stored[n] == 0.0F && std::signbit(stored[n])) << values[n];
+          cares += stored[n] != (digits == Digits::kHalf ? nearest_half(values[n]) : static_cast<float>(values[n]));
+        }
+      }
+    }
+  }
+  EXPECT_GT(cares, 1000);
 }
 
 }  // namespace

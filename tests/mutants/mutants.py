@@ -43,10 +43,10 @@ MUTANTS = [
 
     # --- Numbers of 16 bits ---
     Mutant("half_ties_upwards", "a double becomes the nearest half, of two the even one", [
-        ("io/files/half.cpp", "std::nearbyint(clamped / step)", "std::floor(clamped / step + 0.5)")]),
+        ("io/files/half.h", "(clamped + large) - large", "(clamped + large * 0x1p-60 + large) - large")]),
     Mutant("half_across_the_threshold", "a stored number is on the threshold's side", [
-        ("io/fields/array_elements.cpp", "return bits_of_half(narrowing(number));",
-         "return bits_of_half(nearest_half(number));")]),
+        ("io/fields/array_elements.cpp", "elements[begin + n] = bits_of_half(stored[n]);",
+         "elements[begin + n] = bits_of_half(nearest_half(piece[n]));")]),
 
     # --- Exact signs, shared ---
     Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [

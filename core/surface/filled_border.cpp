@@ -1,5 +1,6 @@
 #include "core/surface/filled_border.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -11,6 +12,12 @@
 
 namespace raycone {
 namespace {
+
+// Whether holes are everywhere: what fills them lies across itself then, and is not fitted for all the time it takes.
+bool is_mostly_holes(std::size_t faces, std::size_t caps) {
+  constexpr std::size_t kMany = 1000, kPartOfFaces = 4;
+  return caps > kMany && caps * kPartOfFaces > faces;
+}
 
 // Whether caps leave nearly all nodes that are inside where they are. If they do not, the threshold is far from them.
 bool keeps_nodes(const TriangleMesh& closed, const NodeSet& inside, const Rule& rule) {
@@ -27,6 +34,8 @@ std::optional<FilledBorder> filled_border(const TriangleMesh& mesh, const std::v
                                           const FineAndRough& evaluators, const NodeSet& inside,
                                           const SurfaceOptions& options, const BorderLimits& limits) {
   const TriangleMesh closed = closed_by_caps(mesh, edges);
+  const std::size_t caps = closed.triangles.size() - mesh.triangles.size();
+  if (is_mostly_holes(mesh.triangles.size(), caps)) return std::nullopt;
   if (!keeps_nodes(closed, inside, options.rule)) return std::nullopt;
   std::optional<MeshBorder> border = mesh_border(closed, inside, options, limits.cut);
   if (!border) return std::nullopt;

@@ -75,6 +75,13 @@ class FieldRun {
 void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,
                          const RunLimits& limits);
 
+// The same of evaluators of so many parts, as labels of points have them.
+void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits);
+
+// The same of what verification keeps of a run of `samples`, as far as they are known.
+void check_verify_memory(const MeshOptions& options, const FieldOptions& field, double samples,
+                         const RunLimits& limits);
+
 // What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.
 [[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,
                                                const FieldEncoding& encoding);

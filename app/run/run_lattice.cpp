@@ -226,6 +226,7 @@ void prepare(LatticeCommand& command, LoadedMesh& loaded, MeshRun& run, LatticeW
   const PlacedLattice& lattice = *run.report.lattice;
   const bool as_points = !world_order(lattice).has_value();
   if (as_points) check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  check_verify_memory(command.mesh, command.field, static_cast<double>(run.report.samples), run.limits());
   if (loaded.parts) {
     check_memory(run.report.mesh, LabelVolume::bytes(lattice.grid, loaded.parts->size()), run.limits().memory());
   }

@@ -116,6 +116,9 @@ std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const Poi
 
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
   check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  const auto known = static_cast<double>(work.reader->size().value_or(0));
+  check_verify_memory(command.mesh, command.field, known, run.limits());
+  if (parts) check_parts_memory(command.mesh, parts->size(), run.limits());
   work.writer = open_writer(command, *work.reader, run);
   const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
   if (parts) work.labels.emplace(*parts, command.field, points, run);
@@ -125,7 +128,6 @@ void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* par
     mesh = {};
     static_cast<void>(run.take_edges());
   }
-  const auto known = static_cast<double>(work.reader->size().value_or(0));
   work.fields.emplace(run, std::move(mesh), work.field, points, known);
   work.fields->prepare_points();
 }

@@ -58,6 +58,7 @@ double evaluation_memory(const Slice& slice, const FieldOptions& field, const Ru
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
                         const RunLimits& limits) {
   if (!is_on_lattice(slice, command.field)) check_points_memory(command.mesh, report.faces, command.field, limits);
+  if (!slice.lattice) check_parts_memory(command.mesh, report.parts.size(), limits);
   const double values = static_cast<double>(report.samples) * sizeof(double);
   const double picture = slice_picture_bytes(slice.view, command.framed);
   const double bytes = values + std::max(evaluation_memory(slice, command.field, report), picture);

@@ -101,7 +101,7 @@ void ProjectedGrid::find_places(std::span<const Vec3> queries, std::span<Place> 
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const __m128d x = coordinates.x(queries[i]), yz = coordinates.yz(queries[i]);
     const std::uint16_t code = coordinates.morton_code(yz);
-    const int ahead = _mm_comige_ss(_mm_set_ss(farthest_[code]), Coordinates::to_float(x));
+    const int ahead = _mm_comige_ss(_mm_set_ss(farthest(code)), Coordinates::to_float(x));
     places[i] = {code, (coordinates.may_meet_box(x, yz) & ahead) != 0};
   }
 }

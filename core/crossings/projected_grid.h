@@ -108,6 +108,8 @@ class ProjectedGrid {
     return p.y >= lower_.y && p.y <= upper_.y && p.z >= lower_.z && p.z <= upper_.z && p.x <= upper_.x;
   }
 
+  [[nodiscard]] float farthest(std::uint16_t morton_code) const { return farthest_[morton_code >> 2 * coarser_]; }
+
   static constexpr std::uint32_t kCodesPerSide = 256;
   // Of the codes along y, in the lower half of v, and along z, in the upper one: they alternate in its bits.
   static std::uint16_t interleaved(std::uint32_t v) {
@@ -124,7 +126,9 @@ class ProjectedGrid {
   std::vector<Grid> grids_;  // the first one covers all
   std::vector<Cell> cells_;
   std::unique_ptr<Entry[]> entries_;
-  std::vector<float> farthest_;  // per Morton code: upper_x of all entries of its rays
+  // Per square of 4^coarser_ Morton codes: upper_x of all entries of its rays. Small meshes have large squares.
+  std::vector<float> farthest_;
+  int coarser_ = 0;
   // The mesh's triangles along the Z-curve, so that neighbours lie together in memory, and their filters.
   std::vector<std::uint32_t> triangles_;
   std::unique_ptr<Filter[]> filters_;

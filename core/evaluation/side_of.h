@@ -1,15 +1,19 @@
-// On which side of a rule a winding number is.
+// On which side of a rule winding numbers are.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/boundary/sample_tile.h"
 #include "core/data/rule.h"
 #include "core/evaluation/scaled_mesh.h"
 
 namespace raycone {
 
-// Settles values that are too close to a threshold. Thread-safe.
+// A rule of a mesh's winding numbers, which must outlive it. Thread-safe.
 class SideOf {
  public:
   SideOf(const ScaledMesh& mesh, const Rule& rule)
@@ -18,14 +22,19 @@ class SideOf {
         thresholds_(mesh.is_closed() ? std::vector<double>() : thresholds_to_settle(rule)),
         doubt_(mesh.doubt()) {}
 
+  [[nodiscard]] const ScaledMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Rule& rule() const { return rule_; }
+  [[nodiscard]] std::span<const double> thresholds() const { return thresholds_; }
 
-  // 1 where the rule holds, else 0; `w` as the mesh's set_values() sets it at the query.
-  [[nodiscard]] std::uint8_t operator()(const Vec3& scaled_query, double w) const {
+  // Whether w, as the mesh's set_values() sets it, may be on the wrong side of a threshold.
+  [[nodiscard]] bool may_be_across(double w, double threshold) const {
+    return raycone::may_be_across(w, threshold, doubt_);
+  }
+  [[nodiscard]] bool is_doubtful(double w) const {
     for (const double threshold : thresholds_) {
-      if (may_be_across(w, threshold, doubt_)) w = mesh_.boundary().settle(scaled_query, w, threshold);
+      if (may_be_across(w, threshold)) return true;
     }
-    return holds(rule_, w) ? 1 : 0;
+    return false;
   }
 
  private:
@@ -33,6 +42,32 @@ class SideOf {
   Rule rule_;
   std::vector<double> thresholds_;
   double doubt_;
+};
+
+// Sets sides of samples, 1 where the rule holds, else 0. Values that are too close to a threshold wait for others, as
+// they are settled together. Arguments of the constructor must outlive this. Needs DefaultFloatingPoint; not
+// thread-safe.
+class SideSetter {
+ public:
+  SideSetter(const SideOf& side, std::span<std::uint8_t> sides) : side_(side), sides_(sides) {}
+
+  // `w` as the mesh's set_values() sets it at the query.
+  void set(std::size_t index, const Vec3& scaled_query, double w) {
+    if (side_.is_doubtful(w)) return wait(index, scaled_query, w);
+    sides_[index] = holds(side_.rule(), w) ? 1 : 0;
+  }
+
+  // Of those that wait.
+  void finish();
+
+ private:
+  void wait(std::size_t index, const Vec3& scaled_query, double w);
+
+  const SideOf& side_;
+  std::span<std::uint8_t> sides_;
+  SampleTile waiting_;
+  std::array<double, kTile> values_;
+  std::array<std::size_t, kTile> indices_;
 };
 
 }  // namespace raycone

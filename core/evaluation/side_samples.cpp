@@ -77,7 +77,8 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
 
 // Samples that share a ray are cheaper together.
 void SideSamples::evaluate_rows(const SampleBox& box) const {
-  RowTiles tiles(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
+  SideSetter setter(side_, sides_);
+  RowTiles tiles(mesh_, [&setter](std::size_t index, const Vec3& q, double w) { setter.set(index, q, w); });
   for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
     for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
       const std::size_t row = row_of(j, k);
@@ -91,6 +92,7 @@ void SideSamples::evaluate_rows(const SampleBox& box) const {
     }
   }
   tiles.finish();
+  setter.finish();
 }
 
 // The far field takes much the same way for neighbours.
@@ -108,12 +110,14 @@ void SideSamples::evaluate_each(std::span<const SampleBox> boxes) const {
     }
   }
   std::ranges::sort(places, {}, &Place::code);
-  LatticeTile tile(mesh_, [this](std::size_t index, const Vec3& q, double w) { sides_[index] = side_(q, w); });
+  SideSetter setter(side_, sides_);
+  LatticeTile tile(mesh_, [&setter](std::size_t index, const Vec3& q, double w) { setter.set(index, q, w); });
   for (const Place& place : places) {
     const auto& [i, j, k] = place.sample;
     add(tile, row_of(j, k) * rows_.xs.size() + i, place.sample);
   }
   tile.evaluate();
+  setter.finish();
 }
 
 }  // namespace raycone

@@ -41,9 +41,11 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
   const SideOf side(mesh, rule);
   const std::size_t samples = rows.xs.size();
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    SideSetter setter(side, sides);
     for (std::size_t n = begin * samples; n < end * samples; ++n) {
-      sides[n] = side(rows.row(n / samples).query(n % samples), values[n]);
+      setter.set(n, rows.row(n / samples).query(n % samples), values[n]);
     }
+    setter.finish();
   });
   return tally;
 }

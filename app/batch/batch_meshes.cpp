@@ -52,7 +52,7 @@ std::size_t most_meshes() {
 // What a directory holds that may be a mesh, by names relative to it.
 class DirectorySearch {
  public:
-  // Throws LimitError when there are more than `most`.
+  // Throws LimitError when there are more than `most`, or more directories.
   DirectorySearch(std::string root, std::size_t most) : root_(std::move(root)), most_(most) {}
 
   std::vector<BatchMesh> meshes() && {
@@ -68,6 +68,7 @@ class DirectorySearch {
     if (stat(path.c_str(), &status) != 0) return add(name);
     const DirectoryIdentity identity{status.st_dev, status.st_ino};
     if (std::ranges::count(ancestors_, identity) > 0) return;  // a link to a directory above
+    if (++directories_ > most_) refuse(" directories");
     std::error_code error;
     fs::directory_iterator entries(path, error);
     if (error) return add(name);
@@ -92,15 +93,18 @@ class DirectorySearch {
   }
 
   void add(const std::string& name) {
-    if (meshes_.size() >= most_) {
-      throw LimitError(root_ + ": more than " + std::to_string(most_) +
-                       " meshes, links to directories followed, for the memory that there is, expected fewer");
-    }
+    if (meshes_.size() >= most_) refuse(" meshes");
     meshes_.push_back({path_of(name), name.empty() ? own_name(path_of("") + '/') : name, "", stamp_of(path_of(name))});
+  }
+
+  [[noreturn]] void refuse(const char* what) const {
+    throw LimitError(root_ + ": more than " + std::to_string(most_) + what +
+                     ", links to directories followed, for the memory that there is, expected fewer");
   }
 
   std::string root_;
   std::size_t most_;
+  std::size_t directories_ = 0;  // looked into, also again by other links
   std::vector<DirectoryIdentity> ancestors_;
   std::vector<BatchMesh> meshes_;
 };

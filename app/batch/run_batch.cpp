@@ -28,6 +28,7 @@
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
+#include "app/run/grid_lattice.h"
 #include "app/run/written_files.h"
 #include "app/text/plain_text.h"
 #include "io/files/file_error.h"
@@ -152,6 +153,7 @@ SupervisorOptions supervisor_options(const BatchCommand& command) {
 
 PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& limits) {
   const GridReference* const grid = grid_of(command.for_each);
+  if (grid) static_cast<void>(lattice_of_grid(*grid));  // what no mesh could have is told once
   return {.written = [&command](const BatchMesh& mesh) { return paths_written(command, mesh); },
           .writes = command.writes,
           .retry_failed = command.retry_failed,

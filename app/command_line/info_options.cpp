@@ -1,6 +1,7 @@
 #include "app/command_line/info_options.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -30,8 +31,13 @@ std::vector<Requirement> parse_requirements(const std::string& text) {
 }
 
 std::vector<MeshOptions> parse_meshes(const Values& values) {
-  std::vector<MeshOptions> meshes;
-  for (const std::string& path : values.texts("MESH")) meshes.push_back(parse_mesh(values.with("MESH", {path})));
+  const std::vector<std::string> paths = values.texts("MESH");
+  const MeshOptions first = parse_mesh(values.with("MESH", {paths.front()}));
+  std::vector<MeshOptions> meshes(paths.size(), first);
+  for (std::size_t n = 1; n < paths.size(); ++n) {
+    if (paths[n].empty()) throw UsageError("MESH: expected a file, not an empty name");
+    meshes[n].path = paths[n];
+  }
   if (std::ranges::count(meshes, "-", &MeshOptions::path) > 1) {
     throw UsageError("-: standard input can be read once, expected one -");
   }

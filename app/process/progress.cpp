@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -32,7 +33,8 @@ std::string progress_line(std::uint64_t done, std::optional<std::uint64_t> total
 }  // namespace
 
 std::string readable_time(double seconds) {
-  const long long whole = std::llround(seconds);
+  constexpr double kMost = 1e15;  // more than anybody waits for
+  const long long whole = std::llround(std::clamp(seconds, 0.0, kMost));
   char text[48];
   if (whole < 3600) {
     std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);

@@ -166,7 +166,7 @@ VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
   dup2(nowhere, STDERR_FILENO);
   fcntl(answer, F_SETFD, 0);  // stays open
   execv("/proc/self/exe", words);
-  _exit(kNotStarted);
+  _exit(errno == ENOMEM || errno == EAGAIN ? kNotStarted : kNotExecuted);
 }
 
 std::string read_to_end(int descriptor) {
@@ -187,6 +187,7 @@ std::string end_of(pid_t process, const std::string& path) {
   if (WIFSIGNALED(state) && WTERMSIG(state) == SIGKILL) fail_disturbed(path);  // no fault of the file's
   if (WIFSIGNALED(state)) return strsignal(WTERMSIG(state));
   const int status = WEXITSTATUS(state);
+  if (status == kNotExecuted) throw UnavailableError(path + ": cannot start another process: execution was refused");
   if (status == kNotStarted || status == static_cast<int>(ExitCode::kLimit)) throw std::bad_alloc();
   return status == 0 ? "" : "exit status " + std::to_string(status);
 }

@@ -178,6 +178,8 @@ ExitCode status_of(InfoRun& run, const MeshOptions& options, const RunLimits& li
     return report_current_exception();
   } catch (const LimitError&) {
     return report_current_exception();
+  } catch (const ReplacesFileError&) {
+    return report_current_exception();
   }
 }
 

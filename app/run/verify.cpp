@@ -229,7 +229,8 @@ double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& 
   // No mesh has more exterior edges than sides of faces, whatever the evaluator says.
   constexpr double u = 0x1p-53;
   const double most = 3 * u * static_cast<double>(mesh.triangles.size());
-  return std::clamp(evaluator.accuracy(), 1e-10, std::max({1e-10, most, tolerance}));
+  const double asked = tolerance >= kLeastTolerance ? tolerance : 1e-10;
+  return std::clamp(evaluator.accuracy(), asked, std::max(asked, most));
 }
 
 }  // namespace

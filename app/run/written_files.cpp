@@ -89,9 +89,15 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
   const bool regular = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found;
   if (!nifti || !command.field.has(Field::kLabel) || path == "-" || !regular) return std::nullopt;
   for (const std::string end : {".nii", ".nii.gz"}) {
-    if (ends_with_word(path, end)) return path.substr(0, path.size() - end.size()) + ".json";
+    if (!ends_with_word(path, end)) continue;
+    path.resize(path.size() - end.size());
+    break;
   }
-  return path + ".json";
+  path += ".json";
+  const std::optional<std::string>& report = command.output.report;
+  const std::optional<FileIdentity> identity = identity_of_output(path);
+  const bool is_report = report && (*report == path || (identity && identity == identity_of_output(*report)));
+  return is_report ? std::nullopt : std::optional(path);
 }
 
 std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group) {
@@ -116,7 +122,7 @@ void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std:
     }
     for (std::size_t before = 0; before < n; ++before) {
       const std::string& other = written[before].path;
-      if (path == other || (identity && identity == identity_of_output(other))) {
+      if (path == other || (identity && identity == identity_of_output(other)) || are_one_pipe(path, other)) {
         throw ReplacesFileError(name_of_output(path) + ": is " + written[before].role + " and " + role);
       }
     }

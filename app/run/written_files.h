@@ -34,7 +34,7 @@ struct WrittenFile {
 [[nodiscard]] std::vector<std::string> inputs_of(const SurfaceCommand& command);
 
 // Where the names of labels go, beside a NIfTI image of them: its name with .json in place of .nii or .nii.gz. Nothing
-// where no such file is written.
+// where no such file is written, or it is that of the report, which has the names, too.
 [[nodiscard]] std::optional<std::string> label_names_path(const LatticeCommand& command);
 // Null where there is none. Throws OutputError.
 [[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group);

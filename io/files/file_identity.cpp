@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <climits>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -44,6 +45,17 @@ std::optional<FileIdentity> identity_of_output(const std::string& path) {
   const std::string target = follow_links(path);
   if (stat(directory_of(target).c_str(), &status) != 0) return std::nullopt;
   return FileIdentity{status.st_dev, status.st_ino, lower_case(target.substr(target.rfind('/') + 1))};
+}
+
+bool are_one_pipe(const std::string& path, const std::string& other) {
+  const auto status_of = [](const std::string& name) {
+    struct stat status {};
+    const int result = name == "-" ? fstat(STDOUT_FILENO, &status) : stat(name.c_str(), &status);
+    return result == 0 && S_ISFIFO(status.st_mode) ? std::optional(std::pair(status.st_dev, status.st_ino))
+                                                   : std::nullopt;
+  };
+  const auto pipe = status_of(path);
+  return pipe && pipe == status_of(other);
 }
 
 std::string follow_links(std::string path) {

@@ -24,6 +24,9 @@ struct FileIdentity {
 [[nodiscard]] std::optional<FileIdentity> identity_of_input(const std::string& path);
 [[nodiscard]] std::optional<FileIdentity> identity_of_output(const std::string& path);
 
+// Whether two names of outputs ("-": standard output) are one pipe.
+[[nodiscard]] bool are_one_pipe(const std::string& path, const std::string& other);
+
 // `path` with symbolic links in its last component followed, also a dangling one, as far as a descriptor's name.
 [[nodiscard]] std::string follow_links(std::string path);
 

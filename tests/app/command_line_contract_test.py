@@ -157,6 +157,13 @@ class Everywhere(Contract):
                 self.assertEqual(piped.stdout, file.read(), name)
 
 
+def write_large_soup(path):
+    """Its 9009 boundary edges may round by 1.0002e-12."""
+    with open(path, "w", encoding="ascii") as file:
+        for n in range(3003):
+            file.write("v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n))
+
+
 class Tolerances(Contract):
     def test_tolerances_that_count_as_none_are_there(self):
         for tolerance in ("0", "1e-13"):
@@ -164,15 +171,26 @@ class Tolerances(Contract):
         self.refused([*WORKING["lattice"], "--tolerance", "-1"], "--tolerance -1: expected")
 
     def test_a_tolerance_that_is_not_kept_is_said(self):
-        def warned(mesh, *words):
-            result = run(["lattice", os.path.join(MESHES, mesh), "-o", "out.csv", "--resolution", "3", *words])
-            return result.returncode, ": tolerance: values are expected within 1e-10 " in result.stderr
+        write_large_soup("soup.obj")
 
-        self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12"), (0, True))
-        self.assertEqual(warned("open_box.obj", "--tolerance", "1e-12", "--strict"), (2, True))
-        for words in ([], ["--tolerance", "0"], ["--tolerance", "1e-12", "--field", "inside"]):
-            self.assertEqual(warned("open_box.obj", *words), (0, False), words)
-        self.assertEqual(warned("cube.obj", "--tolerance", "1e-12"), (0, False))
+        def warned(mesh, *words):
+            result = run(["lattice", mesh, "-o", "out.csv", "--resolution", "3", *words])
+            return result.returncode, ": tolerance: values are expected within 1e-12 " in result.stderr
+
+        box, cube = (os.path.join(MESHES, name) for name in ("open_box.obj", "cube.obj"))
+        self.assertEqual(warned("soup.obj", "--tolerance", "1e-12"), (0, True))
+        self.assertEqual(warned("soup.obj", "--tolerance", "1e-12", "--strict"), (2, True))
+        for words in ([], ["--tolerance", "0"], ["--tolerance", "2e-12"],
+                      ["--tolerance", "1e-12", "--field", "inside"]):
+            self.assertEqual(warned("soup.obj", *words), (0, False), words)
+        for mesh in (box, cube):
+            self.assertEqual(warned(mesh, "--tolerance", "1e-12"), (0, False))
+
+    def test_the_report_bounds_what_a_tolerance_allows(self):
+        for tolerance, bound in (("0", 1e-12), ("1e-12", 1e-12), ("1e-11", 1e-11), ("1e-4", 1e-4)):
+            self.works([*WORKING["lattice"], "--tolerance", tolerance, "--report", "report.json"])
+            with open("report.json", encoding="utf-8") as file:
+                self.assertIn(json.load(file)["largest_error_bound"], (0, bound))
 
         self.refused([*WORKING["lattice"], "--field", "sdf", "--band", "al"], "--band al: expected a positive number")
 
@@ -227,8 +245,8 @@ class Messages(Contract):
             self.assertEqual((result.returncode, "flat-box" in result.stderr), (0, flat), result.stderr)
 
     def test_tolerances_that_count_as_0_are_promises_of_nothing(self):
-        open_box = os.path.join(MESHES, "open_box.obj")
-        for words in (["points", open_box, "points.csv"], ["slice", open_box, "-o", "a.png", "--values", "a.npy"]):
+        write_large_soup("soup.obj")
+        for words in (["points", "soup.obj", "points.csv"], ["slice", "soup.obj", "-o", "a.png", "--values", "a.npy"]):
             for tolerance, status in (("0", 0), ("9e-13", 0), ("1e-12", 2)):
                 result = run([*words, "--tolerance", tolerance, "--strict"])
                 self.assertEqual((result.returncode, "tolerance: " in result.stderr), (status, status == 2), words)
@@ -323,7 +341,63 @@ class Messages(Contract):
         self.assertEqual(self.works(["report", "done", "--quiet"]).stderr, "")
 
 
+class Limits(Contract):
+    def is_limited(self, words, found):
+        """Refused before the work, with the number."""
+        result = run(words)
+        self.assertEqual((result.returncode, result.stdout), (4, ""), words)
+        self.assertRegex(result.stderr, found)
+        self.assertNotIn("out of memory", result.stderr)
+
+    def test_pixels_that_nobody_can_count(self):
+        for padding in ("9223372036854775807v", "-9223372036854775808v"):
+            self.is_limited([*WORKING["slice"], "--padding", padding], "too many pixels")
+
+    def test_what_verification_keeps(self):
+        words = ["--verify", "1000000000", "--memory-limit", "1G"]
+        needs = "needs about [0-9.]+ GB of memory, but the limit is 1 GB"
+        self.is_limited(["lattice", CUBE, "-o", "v.npy", "--resolution", "256", *words], needs)
+        self.is_limited(["points", CUBE, "--sample", "uniform=20000000", "-o", "v.npz", *words], needs)
+        self.works(["points", CUBE, "--sample", "uniform=20", "-o", "v.npz", *words])
+
+    def test_parts_at_points(self):
+        with open("parts.obj", "w", encoding="ascii") as file:
+            for n in range(5000):
+                file.write("g %d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n, n))
+        words = ["points", "parts.obj", "--sample", "uniform=5", "-o", "p.npz", "--field", "label", "--parts", "group"]
+        self.is_limited([*words, "--memory-limit", "24M"], "needs about [0-9.]+ MB")
+        self.works([*words, "--memory-limit", "100M"])
+
+    def test_what_no_lattice_is_like(self):
+        os.mkfifo("pipe.vdb")
+        with open("junk.vdb", "w", encoding="ascii") as file:
+            file.write("junk")
+        for grid in ("pipe.vdb", "junk.vdb", "/dev/zero"):
+            for more in ([], ["--dry-run"]):
+                result = run(["batch", CUBE, "--out-dir", "like", "--like", grid, *more])
+                self.assertEqual((result.returncode, result.stdout), (2, ""), result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1)
+                self.assertFalse(os.path.exists("like"))
+
+
 class Pipes(Contract):
+    def test_two_outputs_are_not_mixed_in_one(self):
+        words = ["lattice", CUBE, "-o", "-", "--format", "csv", "--resolution", "2", "--report", "/dev/stdout"]
+        self.refused(words, "/dev/stdout: is output and report")
+
+    def test_an_array_of_meshes_ends_whatever_becomes_of_them(self):
+        with open("scene.gltf", "w", encoding="ascii") as file:
+            json.dump({"asset": {"version": "2.0"}, "buffers": [{"uri": "out.json", "byteLength": 36}],
+                       "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                       "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}, file)
+        with open("out.json", "wb") as out:
+            status = subprocess.run([RAYCONE, "info", CUBE, "scene.gltf", CUBE, "--json"], stdout=out,
+                                    stderr=subprocess.DEVNULL, timeout=PATIENCE).returncode
+        with open("out.json", encoding="utf-8") as out:
+            self.assertEqual((status, len(json.load(out))), (1, 2))
+
     def test_a_mesh_comes_through_a_pipe_that_does_not_wait(self):
         """As some parents leave standard input."""
         theirs, ours = os.pipe()

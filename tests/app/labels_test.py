@@ -419,7 +419,9 @@ class Formats(Labels):
         self.assertEqual(sorted(name for name in os.listdir() if name.endswith(".json")), ["a.json", "b.json"])
         self.works(words + " -o weird --format nii")
         self.assertTrue(os.path.exists("weird.json"))
-        self.refused(words + " -o a.nii --report a.json", 1, "a.json: is report and label names")
+        self.works(words + " -o a.nii --report a.json")  # which has the names, too
+        self.assertEqual([part["name"] for part in json.loads(read("a.json"))["parts"]], list(PARTS))
+        self.refused(words + " -o a.nii --depfile a.json", 1, "a.json: is depfile and label names")
         self.refused(words + " -o x.nii --no-clobber --memory-limit 1", 4, "limit")
         self.write("y.json", "mine")
         self.refused(words + " -o y.nii --no-clobber", 3, "y.json")

@@ -55,6 +55,16 @@ TEST_F(Makefile, AFailureCostsItsTargetOnly) {
   EXPECT_EQ(Command(make("8")).wait().status, 2);
 }
 
+TEST_F(Makefile, NamesAreNoCommands) {
+  for (const char* const name : {"a`id>A`.obj", "b$(id>B).obj", "c&id>C&.obj", "d'e.obj", "f$g.obj", "-h.obj"})
+    put(name);
+  EXPECT_EQ(Command(make("4")).wait().status, 0);
+  EXPECT_TRUE(fs::exists(out_ + "/d'e.obj.vdb"));
+  EXPECT_TRUE(fs::exists(out_ + "/f$g.obj.vdb"));
+  EXPECT_TRUE(fs::exists(out_ + "/-h.obj.vdb"));
+  for (const char* const made : {"A", "B", "C"}) EXPECT_FALSE(fs::exists(made)) << made;
+}
+
 TEST_F(Makefile, AnInterruptLeavesNoPartialFile) {
   put("a.obj", triangle_soup(2000));
   put("b.obj", triangle_soup(2000));

@@ -27,11 +27,15 @@ def mutated_texts(mutant, tree):
     return texts
 
 
+class DoesNotCompile(Exception):
+    """What the compiler says."""
+
+
 def build(build_directory):
     command = ["cmake", "--build", build_directory, "--parallel", str(os.cpu_count())]
     result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if result.returncode != 0:
-        sys.exit(f"A mutant does not compile:\n{result.stdout}")
+        raise DoesNotCompile(result.stdout)
 
 
 def first_failing_test(build_directory):
@@ -57,11 +61,12 @@ def test_mutant(mutant, tree, build_directory):
     originals = {name: (tree / name).read_text() for name, _, _ in mutant.edits}
     for name, text in mutated_texts(mutant, tree).items():
         (tree / name).write_text(text)
-    build(build_directory)
-    noticed_by = first_failing_test(build_directory)
-    for name, text in originals.items():
-        (tree / name).write_text(text)
-    return noticed_by
+    try:
+        build(build_directory)
+        return first_failing_test(build_directory)
+    finally:
+        for name, text in originals.items():
+            (tree / name).write_text(text)
 
 
 def chosen_mutants(names):
@@ -92,17 +97,21 @@ def main():
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
         if failing := test_mutant(mutants.Mutant("none", "", []), tree, build_directory):
             sys.exit(f"The core fails {failing} without any mutation.")
-        survivors = []
+        complaints = []
         print(f"{'mutant':<34} noticed by")
         for mutant in chosen:
-            noticed_by = test_mutant(mutant, tree, build_directory)
+            try:
+                noticed_by = test_mutant(mutant, tree, build_directory)
+                if not noticed_by:
+                    complaints.append(f"No test notices {mutant.name}: {mutant.breaks}")
+            except DoesNotCompile as error:
+                noticed_by = "NOBODY, as it does not compile"
+                complaints.append(f"{mutant.name} does not compile:\n{error}")
             print(f"{mutant.name:<34} {noticed_by or 'NOBODY'}", flush=True)
-            if not noticed_by:
-                survivors.append(mutant)
-    for mutant in survivors:
-        print(f"No test notices {mutant.name}: {mutant.breaks}", file=sys.stderr)
-    print(f"{len(chosen) - len(survivors)} of {len(chosen)} mutants noticed")
-    return 1 if survivors else 0
+    for complaint in complaints:
+        print(complaint, file=sys.stderr)
+    print(f"{len(chosen) - len(complaints)} of {len(chosen)} mutants noticed")
+    return 1 if complaints else 0
 
 
 if __name__ == "__main__":

@@ -72,7 +72,7 @@ MUTANTS = [
         ("core/crossings/projected_grid.cpp", "6.01 * v *", "0.06 * v *"), ("core/crossings/projected_grid.cpp", "3.01 * v *", "0.03 * v *")]),
     Mutant("grid_without_lines", "a triangle is listed where the lines of its edges tie, too", [
         ("core/crossings/projected_grid_builder.cpp", "      if (intersection(slab, edge.z).empty()) continue;\n",
-         "      if (intersection(slab, edge.z).empty()) { parts[i] = kNothing; continue; }\n")]),
+         "      if (intersection(slab, edge.z).empty()) { parts[i] = kEmptyInterval; continue; }\n")]),
     Mutant("grid_cuts_too_early", "rays from behind a triangle alone miss it", [
         ("core/crossings/projected_grid_builder.cpp", "rounded_up(largest(a.x, b.x, c.x))",
          "static_cast<float>(largest(a.x, b.x, c.x) - 0x1p-30)")]),
@@ -389,8 +389,8 @@ MUTANTS = [
     Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [
         ("core/evaluation/settler.cpp", " + std::nearbyint(value - direct[i])", "")]),
     Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
-        ("core/evaluation/side_of.h", "if (may_be_across(w, threshold, doubt_))",
-         "if (may_be_across(w, threshold, -2 - doubt_))")]),
+        ("core/evaluation/side_of.h", "return raycone::may_be_across(w, threshold, doubt_);",
+         "return raycone::may_be_across(w, threshold, -2 - doubt_);")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",
          "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), hn::Mul(hn::Set(d, 3.0), square));")]),

@@ -88,7 +88,7 @@ OptionSpec rule_option() {
 
 OptionSpec parts_option() {
   return {"--parts", "file|group|component",
-          "What a part is, for label: a MESH (default), a group of one, or a connected component"};
+          "What a part is, for label: a MESH (default; not in a batch), a group of one, or a connected component"};
 }
 
 OptionSpec priority_option() {

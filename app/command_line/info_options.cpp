@@ -67,7 +67,7 @@ CommandSpec info_spec() {
   OperandSpec meshes = mesh_operand();
   meshes.count = OperandCount::kMany;
   return {.name = "info",
-          .description = "Describe meshes, check them, estimate the cost of evaluating them; describe files of values",
+          .description = "Describe meshes, check them, estimate the cost of evaluating them; describe volumes",
           .operands = {meshes},
           .groups = {mesh_group(),
                      {"Output",

@@ -23,8 +23,7 @@ namespace {
 
 void print(const std::string& text) {
   OutputFile standard_output("-");
-  standard_output.write(text.data(), text.size());
-  standard_output.commit();
+  write_all(standard_output, text);
 }
 
 RunReport evaluate(const LatticeCommand& command, const RunLimits& limits) { return run_lattice(command, limits); }

@@ -59,7 +59,7 @@ std::optional<FileStamp> stamp_from(std::span<const std::string, kStampFields> f
   return FileStamp{static_cast<std::uint64_t>(size), modified, changed, static_cast<std::uint64_t>(inode), recent != 0};
 }
 
-std::string content_of(const std::string& path) {
+std::string hash_of_file(const std::string& path) {
   static std::map<std::string, StampedFile> known;
   StampedFile& file = known[path];
   const FileStamp now = stamp_of(path);
@@ -70,7 +70,7 @@ std::string content_of(const std::string& path) {
 bool is_unchanged(StampedFile& file) {
   const FileStamp now = stamp_of(file.path);
   if (is_certainly_same(file.stamp, now)) return true;
-  if (file.sha256.empty() || content_of(file.path) != file.sha256) return false;
+  if (file.sha256.empty() || hash_of_file(file.path) != file.sha256) return false;
   file.stamp = now;
   return true;
 }
@@ -78,7 +78,7 @@ bool is_unchanged(StampedFile& file) {
 StampedFile file_as_at(const std::string& path, std::int64_t time) {
   const FileStamp before = stamp_of(path);
   if (std::max(before.modified, before.changed) > time - kCoarsestTime) return {.path = path};
-  const std::string content = content_of(path);
+  const std::string content = hash_of_file(path);
   return {.path = path, .sha256 = stamp_of(path) == before ? content : ""};
 }
 

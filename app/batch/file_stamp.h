@@ -45,7 +45,7 @@ inline constexpr const char* kNoFile = "none";
 
 // The hash of what is there, or kNoFile. Reads it, but only once as long as its stamp tells that it is the same. Not
 // for several threads.
-[[nodiscard]] std::string content_of(const std::string& path);
+[[nodiscard]] std::string hash_of_file(const std::string& path);
 
 // A file that was read or looked for, and the hash of what was there.
 struct StampedFile {

@@ -361,9 +361,7 @@ std::size_t write_report_page(const ReportCommand& command) {
   }
   if (!command.run.quiet) warn_of_unreadable_rows(command.directory);
   OutputFile output(command.output, command.no_clobber);
-  const std::string html = page(command.directory, records);
-  output.write(html.data(), html.size());
-  output.commit();
+  write_all(output, page(command.directory, records));
   return records.size();
 }
 

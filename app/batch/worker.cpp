@@ -188,14 +188,14 @@ JobResult result_of(const Failure& failure, const std::string& mesh) {
 JobResult evaluate(const LatticeCommand& command, const RunLimits& limits) {
   Thumbnail thumbnail;
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
-  const std::string grid_before = grid ? content_of(grid->path) : "";  // read by another process, job after job
+  const std::string grid_before = grid ? hash_of_file(grid->path) : "";  // read by another process, job after job
   const RunReport report =
       run_lattice(command, limits,
                   [&thumbnail](const PlacedLattice& lattice, const LatticeBlock& block,
                                std::span<const double> values) { thumbnail.add(lattice.grid, block, values); });
   JobResult result = result_of(report, thumbnail.bmp());
   result.written = stamps_of(files_written(command), report.placed);
-  if (grid && content_of(grid->path) == grid_before) result.grid = grid_before;  // else it changed meanwhile
+  if (grid && hash_of_file(grid->path) == grid_before) result.grid = grid_before;  // else it changed meanwhile
   return result;
 }
 
@@ -278,7 +278,7 @@ JobResult inputs_of(const InputsRequest& request) {
   JobResult result;
   result.row.status = MeshStatus::kInvalid;  // it has no figures
   const MeshOptions& mesh = mesh_of(request.command);
-  const std::string content = content_of(mesh.path);
+  const std::string content = hash_of_file(mesh.path);
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(mesh.path, error);
   std::optional<std::vector<StampedFile>> buffers{std::in_place};
@@ -302,7 +302,7 @@ JobResult answer_to(const Message& message) {
 }  // namespace
 
 ExitCode run_worker() {
-  leave_signals_to_supervisor();
+  ignore_interruptions();
   std::set_terminate(end_without_memory);
   Connection supervisor(take_socket());
   while (const std::optional<Message> message = supervisor.receive()) {

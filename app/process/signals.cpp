@@ -136,7 +136,7 @@ void set_up_process() {
   pthread_sigmask(SIG_UNBLOCK, &ours, nullptr);
 }
 
-void leave_signals_to_supervisor() {
+void ignore_interruptions() {
   for (const int signal : kInterruptions) ::signal(signal, SIG_IGN);
   for (const Fault& fault : kFaults) {
     if (is_set_to(fault.signal, clean_up_and_crash)) ::signal(fault.signal, SIG_DFL);

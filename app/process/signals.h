@@ -12,9 +12,9 @@ namespace raycone {
 // occupied, so that no file is opened in their place.
 void set_up_process();
 
-// For a process whose supervisor decides when it ends, tells how it did, and removes its temporary files.
-// Async-signal-safe.
-void leave_signals_to_supervisor();
+// For a process whose parent decides when it ends, tells how it did, and removes its temporary files: signals that ask
+// for an end do nothing. They are ignored by what it executes, too. Async-signal-safe.
+void ignore_interruptions();
 
 // Ends the process with status 4 and a message about `name` after so many seconds.
 void start_timeout(double seconds, const std::string& name);

@@ -157,7 +157,7 @@ VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
 // In the child: async-signal-safe calls only.
 [[noreturn]] void become_reader(int answer, pid_t parent, char* const* words) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  leave_signals_to_supervisor();
+  ignore_interruptions();
   if (getppid() != parent) _exit(1);  // it died before this could notice
   constexpr rlimit kNone{0, 0};
   setrlimit(RLIMIT_CORE, &kNone);

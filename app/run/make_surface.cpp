@@ -34,9 +34,9 @@ void check_inside(const std::string& name, const NodeSet& inside, const SurfaceO
   }
 }
 
-// What `make` returns, which may find that numbers do not do.
+// What `make` returns. Where it finds that numbers do not do, throws LimitError, which names `name`.
 template <class Make>
-auto within_limits(const std::string& name, const SurfaceOptions& options, const Make& make) {
+auto with_surface_errors(const std::string& name, const SurfaceOptions& options, const Make& make) {
   try {
     return make();
   } catch (const LatticeTooFine& error) {
@@ -134,7 +134,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   }
   const FineAndRough evaluators =
       at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*evaluator);
-  FinishedSurface closed = within_limits(name, options, [&] {
+  FinishedSurface closed = with_surface_errors(name, options, [&] {
     std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
     if (itself) return *std::move(itself);
     check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);

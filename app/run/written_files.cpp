@@ -105,11 +105,6 @@ std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, Outp
   return path ? std::make_unique<OutputFile>(*path, command.output.no_clobber, &group) : nullptr;
 }
 
-void write_all(OutputFile& file, const std::string& text) {
-  file.write(text.data(), text.size());
-  file.commit();
-}
-
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {
   std::vector<std::optional<FileIdentity>> read;
   for (const std::string& input : inputs) read.push_back(identity_of_input(input));

@@ -38,8 +38,6 @@ struct WrittenFile {
 [[nodiscard]] std::optional<std::string> label_names_path(const LatticeCommand& command);
 // Null where there is none. Throws OutputError.
 [[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group);
-// Writes and completes it.
-void write_all(OutputFile& file, const std::string& text);
 
 // Throws ReplacesFileError where one of `written` would replace or grow one of `inputs` ("-": standard input) or
 // another of `written`, by whatever names: a slip of the keyboard must not cost the user an input. To be called before

@@ -5,6 +5,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace raycone {
@@ -55,6 +56,12 @@ class OutputFile {
   struct State;
   std::shared_ptr<State> state_;
 };
+
+// Writes all that it is to hold, and commits it.
+inline void write_all(OutputFile& file, std::string_view text) {
+  file.write(text.data(), text.size());
+  file.commit();
+}
 
 // Files that appear together: those that have been committed wait for commit() of the group. Where one of them cannot
 // be written, none appears. Members may be destroyed before.

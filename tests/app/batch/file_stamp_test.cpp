@@ -77,11 +77,11 @@ TEST(FileStamp, ContentIsReadAnewWhereItsFileChanged) {
   const TemporaryDirectory directory;
   const std::string path = directory / "a";
   std::ofstream(path) << "one";
-  EXPECT_EQ(content_of(path), sha256("one"));
+  EXPECT_EQ(hash_of_file(path), sha256("one"));
   std::ofstream(path) << "two";
-  EXPECT_EQ(content_of(path), sha256("two")) << "of the same size, perhaps within one tick";
+  EXPECT_EQ(hash_of_file(path), sha256("two")) << "of the same size, perhaps within one tick";
   std::filesystem::remove(path);
-  EXPECT_EQ(content_of(path), kNoFile);
+  EXPECT_EQ(hash_of_file(path), kNoFile);
 }
 
 TEST(FileStamp, OutputsAreKnownBySizeAndTime) {

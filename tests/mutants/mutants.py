@@ -348,7 +348,7 @@ MUTANTS = [
         ("core/distance/distance.cpp", "const double unit_band = std::min(to_unit(band), 4 * kFar);",
          "const double unit_band = std::min(to_unit(band), kFar);"),
         ("core/distance/distance.cpp", "visit_band(nearest(), rows, std::min(to_unit(band), 4 * kFar), phase, kY, visitor);",
-         "visit_band(nearest(), rows, std::min(to_unit(band), kFar), phase, visitor);")]),
+         "visit_band(nearest(), rows, std::min(to_unit(band), kFar), phase, kY, visitor);")]),
     Mutant("origin_has_a_size", "squares of distances to a mesh without a size underflow", [
         ("core/distance/distance.cpp", "if (is_origin) far_beyond = -1.0;", "(void)is_origin;")]),
     Mutant("distances_without_care", "next to the surface or a needle rounding shows", [

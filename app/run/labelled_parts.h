@@ -50,6 +50,7 @@ class LabelledParts {
  private:
   void note(const MeshToEvaluate& part);
   void warn_about_file();
+  void warn_of_empty_parts();
 
   MeshRun& run_;
   const MeshOptions& mesh_;

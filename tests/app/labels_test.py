@@ -493,7 +493,7 @@ class Refusals(Labels):
         warnings = [line for line in text.split("\n") if "warning" in line]
         self.assertEqual(len(warnings), 2, text)
         self.assertRegex(warnings[0], r"\Araycone: warning: turned\.obj: reversed: 1 closed")
-        self.assertRegex(warnings[1], r"\Araycone: warning: left_lobe\.obj: empty: 1 part has no sample inside by the rule threshold=0\.5 \(turned\)")
+        self.assertRegex(warnings[1], r"\Araycone: warning: turned\.obj: empty: 1 part has no sample inside by the rule threshold=0\.5 \(turned\)")
         self.assertEqual(json.loads(read("r.json"))["warnings"], ["reversed", "empty"])
         self.refused("lattice left_lobe.obj turned.obj -o s.npy --field label --strict" + BOX, 2, "turned.obj: reversed")
         self.assertFalse(os.path.exists("s.npy"))

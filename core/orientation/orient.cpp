@@ -9,6 +9,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/equal_vertices.h"
 #include "core/orientation/closed_patches.h"
+#include "core/orientation/doubled_quads.h"
 #include "core/orientation/face_neighbours.h"
 #include "core/orientation/open_bodies.h"
 #include "core/orientation/open_patches.h"
@@ -218,8 +219,13 @@ std::vector<std::uint32_t> positions(const TriangleMesh& mesh, bool is_welded) {
 
 OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   const DefaultFloatingPoint guard;
-  const UniqueFaces unique = unique_faces(mesh, positions(mesh, is_welded));
-  const FaceNeighbours neighbours(unique.corners, mesh.vertices.size());
+  const std::vector<std::uint32_t> position = positions(mesh, is_welded);
+  UniqueFaces unique = unique_faces(mesh, position);
+  FaceNeighbours neighbours(unique.corners, mesh.vertices.size());
+  if (match_diagonals(mesh, unique, neighbours)) {
+    unique = unique_faces(mesh, position);
+    neighbours = FaceNeighbours(unique.corners, mesh.vertices.size());
+  }
   const Patches patches = find_patches(unique.corners, neighbours, mesh.vertices);
   const Pieces pieces = find_pieces(patches, neighbours, unique.vote);
   const std::vector<Vec3> vertices = scaled_vertices(mesh);

@@ -467,6 +467,10 @@ MUTANTS = [
          "first = found_first;")]),
 
     # --- Orientation ---
+    Mutant("doubled_quads_of_any_height", "the four faces of a tetrahedron are no quadrilateral twice", [
+        ("core/orientation/doubled_quads.cpp", "height <= std::max(kFlat * longest, rounding_)", "height <= longest")]),
+    Mutant("doubled_quads_that_are_walls", "walls between cells are not cut as the other side", [
+        ("core/orientation/doubled_quads.cpp", "doubled < faces - faces / kPart", "doubled == 0")]),
     Mutant("copies_with_marks_of_their_order", "faces of the same corners mark the same bits, whatever their order", [
         ("core/orientation/unique_faces.cpp", "square(t[0]) + square(t[1]) + square(t[2])",
          "square(t[0]) + 3 * square(t[1]) + square(t[2])")]),

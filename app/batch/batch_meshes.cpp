@@ -52,7 +52,7 @@ std::size_t most_meshes() {
 // What a directory holds that may be a mesh, by names relative to it.
 class DirectorySearch {
  public:
-  // Throws LimitError when there are more than `most`, or more directories.
+  // Throws LimitError when there are more than `most`, or more than kMostDirectories are looked into.
   DirectorySearch(std::string root, std::size_t most) : root_(std::move(root)), most_(most) {}
 
   std::vector<BatchMesh> meshes() && {
@@ -68,7 +68,7 @@ class DirectorySearch {
     if (stat(path.c_str(), &status) != 0) return add(name);
     const DirectoryIdentity identity{status.st_dev, status.st_ino};
     if (std::ranges::count(ancestors_, identity) > 0) return;  // a link to a directory above
-    if (++directories_ > most_) refuse(" directories");
+    if (++directories_ > kMostDirectories) refuse(kMostDirectories, " directories");
     std::error_code error;
     fs::directory_iterator entries(path, error);
     if (error) return add(name);
@@ -93,13 +93,15 @@ class DirectorySearch {
   }
 
   void add(const std::string& name) {
-    if (meshes_.size() >= most_) refuse(" meshes");
+    if (meshes_.size() >= most_) refuse(most_, " meshes for the memory that there is");
     meshes_.push_back({path_of(name), name.empty() ? own_name(path_of("") + '/') : name, "", stamp_of(path_of(name))});
   }
 
-  [[noreturn]] void refuse(const char* what) const {
-    throw LimitError(root_ + ": more than " + std::to_string(most_) + what +
-                     ", links to directories followed, for the memory that there is, expected fewer");
+  static constexpr std::size_t kMostDirectories = std::size_t{1} << 20;  // a minute's work or so
+
+  [[noreturn]] void refuse(std::size_t most, const char* what) const {
+    throw LimitError(root_ + ": more than " + std::to_string(most) + what +
+                     ", links to directories followed, expected fewer");
   }
 
   std::string root_;

@@ -144,7 +144,8 @@ FieldEncoding parse_encoding(const Values& values, const OutputFiles& output, co
 OptionGroup run_group() {
   return {"Run",
           {{"--threads", "T", "Number of threads (default: RAYCONE_THREADS, else the available CPUs)"},
-           {"--memory-limit", "SIZE", "Refuse work that needs more memory: bytes, or with K, M, G, T, each 1024-fold (default: what is available)"},
+           {"--memory-limit", "SIZE",
+            "Refuse work that needs more memory; bytes, or K, M, G, T of 1024 (default: what is available)"},
            {"--timeout", "S", "Give up after S seconds"},
            {"--progress", "always|never|auto", "Show progress on standard error (default: auto, on a terminal)"},
            {"--quiet", "", "Print errors only"},

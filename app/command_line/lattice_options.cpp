@@ -160,7 +160,8 @@ std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& 
 
 CommandSpec lattice_spec() {
   OptionGroup output = output_group("vdb|csv|npy|npz|vti|nrrd|nii|nii.gz");
-  output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in all formats but CSV; f16 in VDB, NPY, NPZ (default: f32)"});
+  output.options.push_back(
+      {"--dtype", "f16|f32|f64", "Type of values in all formats but CSV; f16 in VDB, NPY, NPZ (default: f32)"});
   output.options.push_back({"--double", "", "The same as --dtype f64"});
   output.options.push_back({"--half", "", "The same as --dtype f16 (VDB only)"});
   output.options.push_back(pack_bits_option());

@@ -113,13 +113,13 @@ void check_points_memory(const MeshOptions& options, std::uint64_t triangles, co
 }
 
 void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits) {
-  constexpr double kPerPart = 4096.0;  // of a tetrahedron; measured: 4.2 to 4.8 kB
+  constexpr double kPerPart = 4096.0;  // less than any measured, so that nothing that fits is refused: 4.2 to 4.8 kB
   check_memory(options.path, kPerPart * static_cast<double>(parts), limits.memory());
 }
 
 void check_verify_memory(const MeshOptions& options, const FieldOptions& field, double samples,
                          const RunLimits& limits) {
-  constexpr double kPerSample = 600.0, kPerLabel = 300.0;  // measured: 630 to 650, and 310, bytes
+  constexpr double kPerSample = 600.0, kPerLabel = 300.0;  // likewise: 630 to 650, and 310, bytes
   const double each = field.labels_only() ? kPerLabel : kPerSample;
   check_memory(options.path, each * std::min(static_cast<double>(field.verify), samples), limits.memory());
 }

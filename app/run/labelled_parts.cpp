@@ -84,15 +84,13 @@ void LabelledParts::found(bool inside, bool expected) {
 
 void LabelledParts::spent(const FieldEvaluator& evaluator) { terms_ += evaluator.winding_number().terms(); }
 
-// About their file, or where they are of several, about the first one.
+// About the file of the first of them.
 void LabelledParts::warn_of_empty_parts() {
   const std::string parts = empty_.size() == 1 ? "1 part has" : std::to_string(empty_.size()) + " parts have";
   const std::string text = parts + " no sample inside by the rule " + name_of(field_.rule) + " (" +
                            listed_names(empty_, parts_) +
                            "); --orient auto helps where faces are reversed, a finer lattice where parts are thin";
-  const bool of_one_file = parts_.file_of(empty_.front()) == parts_.file_of(empty_.back());
-  const std::size_t file = of_one_file ? parts_.file_of(empty_.front()) : 0;
-  run_.warn_about(parts_.files()[file].read.path, {{"empty", text}});
+  run_.warn_about(parts_.files()[parts_.file_of(empty_.front())].read.path, {{"empty", text}});
 }
 
 void LabelledParts::finish(std::span<const std::uint64_t> samples) {

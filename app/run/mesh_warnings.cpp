@@ -97,11 +97,12 @@ bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
 
 std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
   if (!(tolerance >= kLeastTolerance) || bound <= tolerance) return std::nullopt;
+  constexpr double kUpwards = 1.005;  // to three digits
   char text[200];
   std::snprintf(text, sizeof text,
-                "values are expected within %.2g of the true ones, not within %.2g, because sums round; --diagnostics "
+                "values are expected within %.3g of the true ones, not within %.3g, because sums round; --diagnostics "
                 "bounds each value",
-                bound, tolerance);
+                kUpwards * bound, tolerance);
   return Warning{"tolerance", text};
 }
 

@@ -62,7 +62,8 @@ void refuse_outside(const AxisPlane& plane, double at, const Box& box) {
 
 void add_pixels(std::int64_t& count, std::int64_t padding) {
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
-  if (padding < -kMost || padding > kMost) throw LimitError("--padding " + std::to_string(padding) + "v: too many pixels");
+  if (padding < -kMost || padding > kMost)
+    throw LimitError("--padding " + std::to_string(padding) + "v: too many pixels");
   count += 2 * padding;
   if (count < 1) throw UsageError("--padding " + std::to_string(padding) + "v: leaves no pixel");
 }

@@ -94,9 +94,9 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
     break;
   }
   path += ".json";
+  const auto canonical = [&](const std::string& name) { return std::filesystem::weakly_canonical(name, error); };
   const std::optional<std::string>& report = command.output.report;
-  const std::optional<FileIdentity> identity = identity_of_output(path);
-  const bool is_report = report && (*report == path || (identity && identity == identity_of_output(*report)));
+  const bool is_report = report && (*report == path || canonical(*report) == canonical(path));
   return is_report ? std::nullopt : std::optional(path);
 }
 

@@ -381,10 +381,11 @@ void ProjectedGridBuilder::join(const std::vector<Cells>& blocks, const std::vec
 
 // From the cells of the first grid that the rays of a square of codes may be in.
 void ProjectedGridBuilder::set_farthest() {
-  constexpr std::size_t kCodesPerTriangle = 16, kMostCoarser = 5;  // of each triangle there are as many cells
+  constexpr std::size_t kNumbersPerTriangle = 16;  // at least: few beside what a triangle takes itself
+  constexpr int kMostCoarser = 5;
   int& coarser = result_.coarser_;
-  while (coarser < static_cast<int>(kMostCoarser) &&
-         ProjectedGrid::kMortonCodes >> 2 * (coarser + 1) >= kCodesPerTriangle * mesh_.triangles.size()) {
+  while (coarser < kMostCoarser &&
+         ProjectedGrid::kMortonCodes >> 2 * (coarser + 1) >= kNumbersPerTriangle * mesh_.triangles.size()) {
     ++coarser;
   }
   const std::uint32_t squares_per_side = ProjectedGrid::kCodesPerSide >> coarser;

@@ -102,6 +102,8 @@ class ScaledMesh {
   // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 
+  // That of the accuracy, where it is of use: more would not be settled at half-integers.
+  [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   // No value is off by more, but for its last rounding (BoundaryTerm::doubt()).
   [[nodiscard]] double doubt() const {
     return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
@@ -160,8 +162,6 @@ class ScaledMesh {
 
  private:
   [[nodiscard]] double doubt_of_far_field() const;
-  // That of the accuracy, where it is of use: more would not be settled at half-integers.
-  [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   // The far field for so many more samples; null: they are summed directly.
   [[nodiscard]] const FarField* far_field_for(std::size_t samples) const;
   [[nodiscard]] std::unique_ptr<const FarField> make_far_field() const;

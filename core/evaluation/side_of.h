@@ -13,10 +13,10 @@
 
 namespace raycone {
 
-// A rule of a mesh's winding numbers, which must outlive it. Thread-safe.
-class SideOf {
+// A rule, and which winding numbers of a mesh are too close to its thresholds. The mesh must outlive it. Thread-safe.
+class MeshRule {
  public:
-  SideOf(const ScaledMesh& mesh, const Rule& rule)
+  MeshRule(const ScaledMesh& mesh, const Rule& rule)
       : mesh_(mesh),
         rule_(rule),
         thresholds_(mesh.is_closed() ? std::vector<double>() : thresholds_to_settle(rule)),
@@ -44,12 +44,12 @@ class SideOf {
   double doubt_;
 };
 
-// Sets sides of samples, 1 where the rule holds, else 0. Values that are too close to a threshold wait for others, as
-// they are settled together. Arguments of the constructor must outlive this. Needs DefaultFloatingPoint; not
-// thread-safe.
+// Sets sides of samples, 1 where the rule holds, else 0. Values too close to a threshold wait until there are kTile of
+// them, or finish() is called, and are settled together. The constructor's arguments must outlive this. Needs
+// DefaultFloatingPoint; not thread-safe.
 class SideSetter {
  public:
-  SideSetter(const SideOf& side, std::span<std::uint8_t> sides) : side_(side), sides_(sides) {}
+  SideSetter(const MeshRule& side, std::span<std::uint8_t> sides) : side_(side), sides_(sides) {}
 
   // `w` as the mesh's set_values() sets it at the query.
   void set(std::size_t index, const Vec3& scaled_query, double w) {
@@ -63,7 +63,7 @@ class SideSetter {
  private:
   void wait(std::size_t index, const Vec3& scaled_query, double w);
 
-  const SideOf& side_;
+  const MeshRule& side_;
   std::span<std::uint8_t> sides_;
   SampleTile waiting_;
   std::array<double, kTile> values_;

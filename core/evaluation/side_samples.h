@@ -93,7 +93,7 @@ class SideSamples {
 
   const ScaledMesh& mesh_;
   const LatticeRows& rows_;
-  const SideOf side_;
+  const MeshRule side_;
   const LatticeSums& crossings_;
   const LatticeSums& cap_crossings_;
   std::span<std::uint8_t> sides_;

@@ -38,7 +38,7 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
                       std::atomic<std::uint64_t>* done) {
   std::vector<double> values(sides.size());
   const Tally tally = evaluate_block(meshes, lattice, block, values, done, nullptr);
-  const SideOf side(mesh, rule);
+  const MeshRule side(mesh, rule);
   const std::size_t samples = rows.xs.size();
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     SideSetter setter(side, sides);

@@ -54,7 +54,7 @@ double WindingNumberEvaluator::doubt() const { return implementation_->scaled().
 double WindingNumberEvaluator::accuracy() const {
   constexpr double u = 0x1p-53;
   const ScaledMesh& mesh = implementation_->scaled();
-  return std::max({kLeastTolerance, mesh.options().accuracy.tolerance, u * mesh.boundary().total_multiplicity()});
+  return std::max({kLeastTolerance, mesh.tolerance(), u * mesh.boundary().total_multiplicity()});
 }
 
 // Each face is scanned once, and each sample written once.

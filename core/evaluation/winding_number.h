@@ -139,8 +139,9 @@ class WindingNumberEvaluator {
 
   // What values are expected to be off by at most, turns: the tolerance, or kLeastTolerance where that is less. From
   // 9000 exterior edges on, counted with multiplicity, it is 2^-53 times their number at least: doubles of such values
-  // can do no better. What a tolerance leaves out is within it. What sums round beside it is below doubt(), and measured
-  // far below; docs/method.md, "What is guaranteed", says what of this is proved. Diagnostics bound each value.
+  // can do no better. What a tolerance leaves out is within it. What sums round beside it is below doubt(), and
+  // measured far below; docs/method.md, "What is guaranteed", says what of this is proved. Diagnostics bound each
+  // value.
   [[nodiscard]] double accuracy() const;
 
   // Values are right about half-integers. A value is exactly 0.5, 1.5, -0.5 ... where w cannot be told from it

@@ -1,10 +1,12 @@
 #include "core/surface/filled_border.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
 #include "core/evaluation/winding_number.h"
+#include "core/mesh/disjoint_sets.h"
 #include "core/surface/fill_check.h"
 #include "core/surface/hole_fill.h"
 #include "core/surface/mesh_border.h"
@@ -13,10 +15,21 @@
 namespace raycone {
 namespace {
 
+// How many borders hang together, about as many as there are holes.
+std::size_t count_borders(const std::vector<ExteriorEdge>& edges, std::size_t vertices) {
+  DisjointSets sets(vertices);
+  for (const ExteriorEdge& e : edges) sets.join(e.from, e.to);
+  std::vector<std::uint32_t> borders;
+  for (const ExteriorEdge& e : edges) borders.push_back(sets.lowest(e.from));
+  std::ranges::sort(borders);
+  return static_cast<std::size_t>(std::ranges::unique(borders).begin() - borders.begin());
+}
+
 // Whether holes are everywhere: what fills them lies across itself then, and is not fitted for all the time it takes.
-bool is_mostly_holes(std::size_t faces, std::size_t caps) {
-  constexpr std::size_t kMany = 1000, kPartOfFaces = 4;
-  return caps > kMany && caps * kPartOfFaces > faces;
+bool is_mostly_holes(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, std::size_t caps) {
+  constexpr std::size_t kManyBorders = 64, kManyCaps = 1000, kPartOfFaces = 4;
+  return caps > kManyCaps && caps * kPartOfFaces > mesh.triangles.size() &&
+         count_borders(edges, mesh.vertices.size()) > kManyBorders;
 }
 
 // Whether caps leave nearly all nodes that are inside where they are. If they do not, the threshold is far from them.
@@ -34,8 +47,7 @@ std::optional<FilledBorder> filled_border(const TriangleMesh& mesh, const std::v
                                           const FineAndRough& evaluators, const NodeSet& inside,
                                           const SurfaceOptions& options, const BorderLimits& limits) {
   const TriangleMesh closed = closed_by_caps(mesh, edges);
-  const std::size_t caps = closed.triangles.size() - mesh.triangles.size();
-  if (is_mostly_holes(mesh.triangles.size(), caps)) return std::nullopt;
+  if (is_mostly_holes(mesh, edges, closed.triangles.size() - mesh.triangles.size())) return std::nullopt;
   if (!keeps_nodes(closed, inside, options.rule)) return std::nullopt;
   std::optional<MeshBorder> border = mesh_border(closed, inside, options, limits.cut);
   if (!border) return std::nullopt;

@@ -26,11 +26,11 @@ struct FilledBorder {
 };
 
 // Closes the mesh by caps, takes the border of that (mesh_border()), fits what caps left to the threshold
-// (fit_to_threshold()), and takes the border again. None where one of these is not to be had, there are more than a
-// thousand caps, and more than a quarter as many as triangles of the mesh, more than an eighth of the nodes are
-// elsewhere at first, or the result is not near the threshold, or has lost what separates (fill_check). The same for
-// any number of threads. Preconditions: as of closed_surface(); `edges` are the exterior edges of the mesh. Needs
-// DefaultFloatingPoint.
+// (fit_to_threshold()), and takes the border again. None where one of these is not to be had, the mesh is mostly
+// boundary (more than 64 borders, with more than a thousand caps and a quarter as many as triangles), more than an
+// eighth of the nodes are elsewhere at first, or the result is not near the threshold, or has lost what separates
+// (fill_check). The same for any number of threads. Preconditions: as of closed_surface(); `edges` are the exterior
+// edges of the mesh. Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<FilledBorder> filled_border(const TriangleMesh& mesh,
                                                         const std::vector<ExteriorEdge>& edges,
                                                         const FineAndRough& evaluators, const NodeSet& inside,

@@ -107,7 +107,7 @@ class ThresholdFit {
   // Until all faces are along the threshold, or nothing more can be done about them. Returns whether there are not too
   // many.
   bool divide_bent() {
-    constexpr int kMostRounds = 32;  // some ten to twenty are enough, as sides are halved
+    constexpr int kMostRounds = 64;  // ten to twenty mostly do, as sides are halved; bites out of spheres take over 32
     for (int round = 0; round < kMostRounds; ++round) {
       unsettle(fill_.flip_edges());
       const std::vector<Part> bent = without_neighbours(bent_parts());

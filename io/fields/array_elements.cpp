@@ -20,15 +20,16 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "elements are written as they are in memory");
 
-// Each type here turns a field's Numbers into Elements.
+// Each type here turns a field's Numbers into Elements, one, or many at once.
 
 // As they are. Adding 0 turns -0 into 0, here and below.
 template <typename Type>
 struct Kept {
   using Number = Type;
   using Element = Type;
+  Element operator()(Number number) const { return static_cast<Element>(number + 0); }
   void operator()(std::span<const Number> numbers, Element* elements) const {
-    for (std::size_t n = 0; n < numbers.size(); ++n) elements[n] = static_cast<Element>(numbers[n] + 0);
+    for (std::size_t n = 0; n < numbers.size(); ++n) elements[n] = (*this)(numbers[n]);
   }
 };
 
@@ -49,6 +50,7 @@ struct FloatElement {
   using Number = double;
   using Element = float;
   static constexpr const char* kDescriptor = "<f4";
+  float operator()(double number) const { return narrowing(number) + 0.0F; }
   void operator()(std::span<const double> numbers, float* elements) const { narrowing.store(numbers, elements); }
   Narrowing narrowing;
 };
@@ -57,6 +59,7 @@ struct HalfElement {
   using Number = double;
   using Element = std::uint16_t;
   static constexpr const char* kDescriptor = "<f2";
+  std::uint16_t operator()(double number) const { return bits_of_half(narrowing(number)); }
   void operator()(std::span<const double> numbers, std::uint16_t* elements) const {
     constexpr std::size_t kPiece = 256;
     std::array<float, kPiece> stored;
@@ -76,10 +79,9 @@ struct VectorElement {
   using Element = std::array<typename Convert::Element, 3>;
   static constexpr const char* kDescriptor = Convert::kDescriptor;
   void operator()(std::span<const Vec3> vectors, Element* elements) const {
-    for (std::size_t n = 0; n < vectors.size(); ++n) {
-      const std::array components{vectors[n].x, vectors[n].y, vectors[n].z};
-      convert(components, elements[n].data());
-    }
+    std::ranges::transform(vectors, elements, [this](const Vec3& v) {
+      return Element{convert(v.x), convert(v.y), convert(v.z)};
+    });
   }
   Convert convert;
 };

@@ -81,7 +81,8 @@ void Narrowing::store_nearest(std::span<const double> values, float* stored) con
   }
 }
 
-// Whether all of the nearest are surely what is to be stored. All are compared: lanes know no break.
+// Whether all of the nearest are surely what is to be stored. There is no early exit, so that
+// compilers can use lanes.
 bool Narrowing::are_right(std::span<const double> values, const float* nearest) const {
   if (are_equal(values, nearest)) return true;  // as they mostly are in closed meshes
   int wrong = 0;

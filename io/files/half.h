@@ -30,8 +30,10 @@ inline constexpr double kLeastHalf = 0x1p-14;  // with all digits
   const std::uint32_t sign = magnitude == 0.0F ? 0 : bits >> 16 & 0x8000U;
   constexpr std::uint32_t kBias = (127 - 15) << 10;  // of exponents, in the place that halves have for them
   const std::uint32_t normal = (bits >> 13 & 0x3FFFFU) - kBias;
-  const auto subnormal = static_cast<std::uint32_t>(static_cast<std::int32_t>(magnitude * 0x1p24F));
-  return static_cast<std::uint16_t>(sign | (magnitude < static_cast<float>(kLeastHalf) ? subnormal : normal));
+  const auto least_normal = static_cast<float>(kLeastHalf);
+  const auto subnormal =
+      static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(magnitude, least_normal) * 0x1p24F));
+  return static_cast<std::uint16_t>(sign | (magnitude < least_normal ? subnormal : normal));
 }
 // And back. Of exponent 31 infinity, or NaN where digits follow.
 [[nodiscard]] float half_from_bits(std::uint16_t bits);

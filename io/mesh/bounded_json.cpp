@@ -40,7 +40,8 @@ std::string reason_of(const std::string& message) {
 // quadratic in the length of an array.
 class DocumentBuilder : public nlohmann::json_sax<Json> {
  public:
-  DocumentBuilder(const JsonText& text, IsWanted is_wanted) : text_(text), is_wanted_(is_wanted) {}
+  DocumentBuilder(const JsonText& text, IsWanted is_wanted, UnwindingReserve& reserve)
+      : text_(text), is_wanted_(is_wanted), reserve_(reserve) {}
 
   [[nodiscard]] Json take() { return std::move(document_); }
 
@@ -76,10 +77,13 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   }
 
  private:
+  static constexpr std::size_t kFirstReserve = 1024;  // values
+
   [[nodiscard]] bool skipping() const { return skipped_from_ != 0; }
 
   // Puts a value where the parser is; the result is valid until the next value of the same array.
   Json* put(Json value) {
+    if (++values_ > reserve_.covered()) reserve_.cover(kFirstReserve + values_ + values_ / 4);
     if (open_.empty()) return &(document_ = std::move(value));
     Json& container = *open_.back();
     if (container.is_object()) return &(*member_ = std::move(value));
@@ -116,6 +120,8 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
 
   const JsonText& text_;
   IsWanted is_wanted_;
+  UnwindingReserve& reserve_;
+  std::size_t values_ = 0;  // kept
   Json document_;
   std::vector<Json*> open_;       // containers the parser is in; nullptr for skipped ones
   Json* member_ = nullptr;        // of the innermost object, named by the last key
@@ -125,8 +131,8 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
 
 }  // namespace
 
-nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted) {
-  DocumentBuilder builder(text, is_wanted);
+nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted, UnwindingReserve& reserve) {
+  DocumentBuilder builder(text, is_wanted, reserve);
   Json::sax_parse(text.json.begin(), text.json.end(), &builder);
   return builder.take();
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/mesh/unwinding_reserve.h"
+
 namespace raycone {
 
 // A text, and where it stands, for messages.
@@ -22,6 +24,7 @@ using IsWanted = bool (*)(std::size_t depth, std::string_view key);
 
 // The members wanted. Others cost no memory, and nothing but their syntax and depth can be wrong with them. Throws
 // InputError, also where an object has two members of one name, LimitError where the objects and arrays are too many.
-[[nodiscard]] nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted);
+// `reserve` covers the values that are kept; it must outlive them.
+[[nodiscard]] nlohmann::json parse_bounded_json(const JsonText& text, IsWanted is_wanted, UnwindingReserve& reserve);
 
 }  // namespace raycone

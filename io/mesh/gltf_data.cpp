@@ -18,12 +18,16 @@
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/mesh/gltf_resources.h"
+#include "io/mesh/unwinding_reserve.h"
 
 namespace raycone {
 namespace {
 
 std::shared_ptr<const tinygltf::Model> load_model(const std::string& json, const std::string& file) {
   if (json.size() > std::numeric_limits<unsigned>::max()) throw LimitError(file + ": JSON of more than 4 GiB");
+  UnwindingReserve reserve;  // tinygltf parses with nlohmann-json
+  const auto comes_before_value = [](char c) { return c == ',' || c == '[' || c == '{'; };
+  reserve.cover(1 + static_cast<std::size_t>(std::ranges::count_if(json, comes_before_value)));
   auto model = std::make_shared<tinygltf::Model>();
   std::string error, warning;
   const auto size = static_cast<unsigned>(json.size());

@@ -314,7 +314,8 @@ GltfDocument adapted(Json root) {
 }  // namespace
 
 GltfDocument parse_gltf_document(const JsonText& text) {
-  Json root = parse_bounded_json(text, is_wanted);
+  UnwindingReserve reserve;
+  Json root = parse_bounded_json(text, is_wanted, reserve);
   if (!root.is_object()) throw InputError(text.file + ": " + kRootPlace + " is not an object");
   Checker checker(text.file, root);
   Json asset = root.value("asset", Json::object());

@@ -145,7 +145,7 @@ class LeafLayer {
         if constexpr (requires { store(std::span(line, count), stored.data()); }) {
           store(std::span(line, count), stored.data());
         } else {
-          std::transform(line, line + count, stored.begin(), store);
+          for (std::size_t i = 0; i < stored.size() && i < count; ++i) stored[i] = store(line[i]);
         }
         Stored* const column = leaf + (leaf_y & (kLeafSize - 1)) * kLeafSize + (z & (kLeafSize - 1)) +
                                (x.begin & (kLeafSize - 1)) * kLeafSize * kLeafSize;

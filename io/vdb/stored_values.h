@@ -1,5 +1,5 @@
-// What grids keep of the numbers of a field. Each type here turns a field's Number into a grid's Stored value; one of
-// them does so faster with many.
+// What grids keep of the numbers of a field. Each type here turns a field's Number into a grid's Stored value.
+// StoreFloat also takes many at once, which is faster.
 #pragma once
 
 #include <algorithm>

@@ -421,6 +421,8 @@ class Formats(Labels):
         self.assertTrue(os.path.exists("weird.json"))
         self.works(words + " -o a.nii --report a.json")  # which has the names, too
         self.assertEqual([part["name"] for part in json.loads(read("a.json"))["parts"]], list(PARTS))
+        self.works(words + " -o A.nii --report a.json")
+        self.assertTrue(os.path.exists("A.json"))  # another file
         self.refused(words + " -o a.nii --depfile a.json", 1, "a.json: is depfile and label names")
         self.refused(words + " -o x.nii --no-clobber --memory-limit 1", 4, "limit")
         self.write("y.json", "mine")

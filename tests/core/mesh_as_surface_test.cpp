@@ -158,6 +158,24 @@ TEST(MeshAsSurface, HasSamplesOnItsFacesOnTheirSides) {
   }
 }
 
+// Many caps are not many holes.
+TEST(MeshAsSurface, TakesAFinelyDividedRimForOneHole) {
+  constexpr std::uint32_t kSides = 1200;
+  TriangleMesh cup;
+  for (std::uint32_t n = 0; n < kSides; ++n) {
+    const double angle = 2 * std::numbers::pi * n / kSides;
+    cup.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+    cup.vertices.push_back({std::cos(angle), std::sin(angle), 1});
+    const std::uint32_t low = 2 * n, next = 2 * ((n + 1) % kSides);
+    cup.triangles.push_back({low, next, next + 1});
+    cup.triangles.push_back({low, next + 1, low + 1});
+    if (n > 0 && n + 1 < kSides) cup.triangles.push_back({0, next, low});
+  }
+  const std::optional<FinishedSurface> made = kept(cup, 20);
+  ASSERT_TRUE(made);
+  EXPECT_LT(made->surface.mesh.triangles.size(), 2 * cup.triangles.size());
+}
+
 TEST(MeshAsSurface, MergesFacesOfAPlane) {
   std::vector<std::array<int, 3>> cells;
   for (int n = 0; n < 27; ++n) cells.push_back({n % 3, n / 3 % 3, n / 9});

@@ -95,8 +95,11 @@ def main():
         configure = ["cmake", "-S", tree / "tests/mutants", "-B", build_directory, "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
                      "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2"]  # with assertions
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
-        if failing := test_mutant(mutants.Mutant("none", "", []), tree, build_directory):
-            sys.exit(f"The core fails {failing} without any mutation.")
+        try:
+            if failing := test_mutant(mutants.Mutant("none", "", []), tree, build_directory):
+                sys.exit(f"The core fails {failing} without any mutation.")
+        except DoesNotCompile as error:
+            sys.exit(f"The core does not compile without any mutation:\n{error}")
         complaints = []
         print(f"{'mutant':<34} noticed by")
         for mutant in chosen:

@@ -56,13 +56,26 @@ TEST_F(Makefile, AFailureCostsItsTargetOnly) {
 }
 
 TEST_F(Makefile, NamesAreNoCommands) {
-  for (const char* const name : {"a`id>A`.obj", "b$(id>B).obj", "c&id>C&.obj", "d'e.obj", "f$g.obj", "-h.obj"})
-    put(name);
+  for (const char* const made : {"A", "B", "C"}) fs::remove(made);
+  for (const char* const name : {"a`id>A`.obj", "b$(id>B).obj", "c&id>C&.obj", "d'e.obj", "f$g.obj"}) put(name);
   EXPECT_EQ(Command(make("4")).wait().status, 0);
   EXPECT_TRUE(fs::exists(out_ + "/d'e.obj.vdb"));
   EXPECT_TRUE(fs::exists(out_ + "/f$g.obj.vdb"));
-  EXPECT_TRUE(fs::exists(out_ + "/-h.obj.vdb"));
   for (const char* const made : {"A", "B", "C"}) EXPECT_FALSE(fs::exists(made)) << made;
+}
+
+// What quotation cannot hide from Make itself.
+TEST_F(Makefile, RefusesNamesThatMakeReadsOtherwise) {
+  put("a1.obj");
+  for (const char* const name : {"x;id>D;.obj", "a[12].obj", "a*.obj", "a?.obj", "a|b.obj", "a:b.obj", "a%b.obj"}) {
+    const std::string path = put(name);
+    const CommandResult result = Command(make("4")).wait();
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.err.find("is in the name of a mesh"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(out_)) << name;
+    fs::remove(path);
+  }
+  EXPECT_FALSE(fs::exists("D"));
 }
 
 TEST_F(Makefile, AnInterruptLeavesNoPartialFile) {

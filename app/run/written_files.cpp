@@ -94,7 +94,9 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
     break;
   }
   path += ".json";
-  const auto canonical = [&](const std::string& name) { return std::filesystem::weakly_canonical(name, error); };
+  const auto canonical = [&](const std::string& name) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name, error), error);
+  };
   const std::optional<std::string>& report = command.output.report;
   const bool is_report = report && (*report == path || canonical(*report) == canonical(path));
   return is_report ? std::nullopt : std::optional(path);

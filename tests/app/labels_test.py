@@ -421,6 +421,9 @@ class Formats(Labels):
         self.assertTrue(os.path.exists("weird.json"))
         self.works(words + " -o a.nii --report a.json")  # which has the names, too
         self.assertEqual([part["name"] for part in json.loads(read("a.json"))["parts"]], list(PARTS))
+        for report in ("./f.json", os.path.abspath("f.json")):
+            self.works(words + " -o f.nii --report " + report)
+            self.assertIn("parts", json.loads(read("f.json")))
         self.works(words + " -o A.nii --report a.json")
         self.assertTrue(os.path.exists("A.json"))  # another file
         self.refused(words + " -o a.nii --depfile a.json", 1, "a.json: is depfile and label names")

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
-#include <tuple>
+#include <utility>
 
 #include "core/data/box.h"
 #include "core/data/vec3.h"
@@ -68,8 +71,11 @@ bool have_one_corner(const Quad& a, const Quad& b) {
 
 class Matcher {
  public:
-  Matcher(TriangleMesh& mesh, const UniqueFaces& unique)
-      : mesh_(mesh), unique_(unique), rounding_(0x1p-22 * largest_coordinate(bounding_box(mesh))) {}
+  Matcher(std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices, const UniqueFaces& unique)
+      : triangles_(triangles),
+        vertices_(vertices),
+        unique_(unique),
+        rounding_(0x1p-22 * largest_coordinate(bounding_box(triangles, vertices))) {}
 
   [[nodiscard]] bool are_copies(const Quad& first, const Quad& second) const {
     return !have_one_corner(first, second) && is_flat(first) && is_flat(second);
@@ -78,7 +84,7 @@ class Matcher {
   // Whether its diagonal does. The order of faces must not decide.
   [[nodiscard]] bool ends_at_lowest_corner(const Quad& quad) const {
     const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
-      return lexicographic_order(mesh_.vertices[a], mesh_.vertices[b]) < 0;
+      return lexicographic_order(vertices_[a], vertices_[b]) < 0;
     };
     const std::uint32_t lowest = *std::ranges::min_element(quad.corners, is_before);
     return std::ranges::count(quad.diagonal, lowest) > 0;
@@ -86,7 +92,7 @@ class Matcher {
 
   // Along the other diagonal.
   void cut_anew(const Quad& quad) {
-    Triangle &t = mesh_.triangles[unique_.first[quad.one]], &u = mesh_.triangles[unique_.first[quad.other]];
+    Triangle &t = triangles_[unique_.first[quad.one]], &u = triangles_[unique_.first[quad.other]];
     const std::uint32_t a = t[quad.corner], c = t[next(quad.corner)], x = t[last(quad.corner)];
     const std::uint32_t representative = unique_.corners[quad.one][quad.corner];
     const std::uint32_t y = u[last(corner_before(unique_.corners[quad.other], representative))];
@@ -96,19 +102,19 @@ class Matcher {
 
  private:
   [[nodiscard]] Vec3 normal(std::uint32_t face) const {
-    const Triangle& t = mesh_.triangles[unique_.first[face]];
-    const Vec3& a = mesh_.vertices[t[0]];
-    return cross(mesh_.vertices[t[1]] - a, mesh_.vertices[t[2]] - a);
+    const Triangle& t = triangles_[unique_.first[face]];
+    const Vec3& a = vertices_[t[0]];
+    return cross(vertices_[t[1]] - a, vertices_[t[2]] - a);
   }
 
   // Whether its two triangles are in one plane, and look the same way.
   [[nodiscard]] bool is_flat(const Quad& quad) const {
     constexpr double kFlat = 0x1p-20;
     const Vec3 one = normal(quad.one), other = normal(quad.other);
-    const Vec3& a = mesh_.vertices[quad.corners[0]];
+    const Vec3& a = vertices_[quad.corners[0]];
     double longest = 0.0, height = 0.0;
     for (const std::uint32_t corner : quad.corners) {
-      const Vec3 way = mesh_.vertices[corner] - a;
+      const Vec3 way = vertices_[corner] - a;
       longest = std::max(longest, safe_norm(way));
       for (const Vec3& n : {one, other}) {
         if (const double size = safe_norm(n); size > 0.0) height = std::max(height, std::abs(dot(n, way)) / size);
@@ -117,7 +123,8 @@ class Matcher {
     return dot(one, other) > 0.0 && height <= std::max(kFlat * longest, rounding_);
   }
 
-  TriangleMesh& mesh_;
+  std::vector<Triangle>& triangles_;
+  const std::vector<Vec3>& vertices_;
   const UniqueFaces& unique_;
   double rounding_;
 };
@@ -142,13 +149,14 @@ std::vector<Quad> second_copies(const std::vector<Quad>& quads, std::size_t face
 
 }  // namespace
 
-bool match_diagonals(TriangleMesh& mesh, const UniqueFaces& unique, const FaceNeighbours& neighbours) {
+bool match_diagonals(std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices, const UniqueFaces& unique,
+                     const FaceNeighbours& neighbours) {
   constexpr std::size_t kPart = 16;
   const std::vector<Quad> quads = quads_at_crowded_edges(unique.corners, neighbours);
   if (quads.empty()) return false;
-  Matcher matcher(mesh, unique);
+  Matcher matcher(triangles, vertices, unique);
   const std::vector<Quad> seconds = second_copies(quads, unique.corners.size(), matcher);
-  const std::size_t doubled = 4 * seconds.size() + unique.copies.size(), faces = mesh.triangles.size();
+  const std::size_t doubled = 4 * seconds.size() + unique.copies.size(), faces = triangles.size();
   if (seconds.empty() || doubled < faces - faces / kPart) return false;
   for (const Quad& quad : seconds) matcher.cut_anew(quad);
   return true;

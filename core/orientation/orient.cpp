@@ -222,13 +222,13 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   const std::vector<std::uint32_t> position = positions(mesh, is_welded);
   UniqueFaces unique = unique_faces(mesh, position);
   FaceNeighbours neighbours(unique.corners, mesh.vertices.size());
-  if (match_diagonals(mesh, unique, neighbours)) {
+  const std::vector<Vec3> vertices = scaled_vertices(mesh);
+  if (match_diagonals(mesh.triangles, vertices, unique, neighbours)) {
     unique = unique_faces(mesh, position);
     neighbours = FaceNeighbours(unique.corners, mesh.vertices.size());
   }
   const Patches patches = find_patches(unique.corners, neighbours, mesh.vertices);
   const Pieces pieces = find_pieces(patches, neighbours, unique.vote);
-  const std::vector<Vec3> vertices = scaled_vertices(mesh);
   const std::vector<int> turn_of_piece = PieceTurner(faces_of_pieces(unique, patches, pieces), pieces, vertices).turn();
   std::vector<std::int8_t> turn(patches.sign);
   for (std::size_t face = 0; face < turn.size(); ++face) {

@@ -82,6 +82,14 @@ std::vector<std::array<Vec3, 3>> sorted_faces(const TriangleMesh& mesh) {
   return faces;
 }
 
+TEST(DoubledQuads, AreOneFaceAtAnyScale) {
+  for (const double scale : {1e-300, 1e-200, 1e150, 1e300}) {
+    TriangleMesh mesh = double_sided(0, true);
+    for (Vec3& v : mesh.vertices) v = scale * v;
+    EXPECT_EQ(orient(mesh, Orient::kAuto).counts.dropped_duplicates, 12U) << scale;
+  }
+}
+
 TEST(DoubledQuads, AreCutByCoordinatesAlone) {
   test::Random random(2);
   const TriangleMesh mesh = double_sided(0, true);

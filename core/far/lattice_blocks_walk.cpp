@@ -21,10 +21,10 @@ constexpr double kTruncationShare = 0.05;
 constexpr double kNodeShare = 0.15;
 
 // Times, in units of that of a triangle at a sample.
-constexpr double kFitting = 8000.0;  // of making a block's polynomial, beside the triangles at its nodes
-constexpr double kPolynomial = 3.0;  // of the polynomial at a sample, all along rows, ...
-constexpr double kAtPoint = 16.0;    // ... and at a scattered point
-constexpr double kInPatch = 0.75;    // of a near triangle, where boundaries may be summed in their place
+constexpr double kFitting = 8000.0;          // of making a block's polynomial, beside the triangles at its nodes
+constexpr double kPolynomial = 3.0;          // of the polynomial at a sample, all along rows, ...
+constexpr double kPolynomialAtPoint = 16.0;  // ... and at a scattered point
+constexpr double kInPatch = 0.75;            // of a near triangle, where boundaries may be summed in their place
 
 // In samples. Blocks smaller than this are not divided, larger ones if that pays, ...
 constexpr double kSmallBlock = 0x1p12;
@@ -43,6 +43,19 @@ double making_cost(double far, bool parent) {
 std::size_t middle_of(const SampleBlock& block, std::size_t axis) {
   const std::size_t half = block.count(axis) / 2, step = kSubBlock[axis];
   return block.first[axis] + (half < step ? half : (half + step / 2) / step * step);
+}
+
+// By how much the nodes of a fit are moved along an axis at most, half sides: they are coordinates, which are rounded.
+double most_moved(const Cube& cube) {
+  return 0x1.00001p-53 * (largest_coordinate(cube.centre) + 2 * cube.half) / cube.half;
+}
+
+// What that changes of the fit of a dipole of unit strength, in the units of dipole_error(): the dipole's field changes
+// by at most 1 / (2 pi r^3) times the way, and the fit by its weights times that (docs/method.md, "Rounding").
+double moved_nodes_error(double distance, double moved) {
+  constexpr double kPerWay = HarmonicFit::kLargestWeights * 0.27567;  // sqrt(3) / (2 pi)
+  const double gap = distance - 1.0 - moved;
+  return kPerWay * moved / (gap * gap * gap);
 }
 
 Box box_around(const Cube& cube) {
@@ -152,10 +165,9 @@ Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_
   return cover;
 }
 
-// Whether the nodes of a fit are where they should be, nearly: they are coordinates, which are rounded.
+// Whether the nodes of a fit are where they should be, nearly. What that changes is in error_of().
 bool LatticeBlocksWalk::can_fit_in(const Cube& cube) const {
-  const double most_moved = std::max(0x1p-36, blocks_.tolerance_ / 128);  // half sides (docs/method.md, "Rounding")
-  return most_moved * cube.half >= 0x1p-53 * largest_coordinate(cube.centre);
+  return most_moved(cube) <= std::max(0x1p-36, blocks_.tolerance_ / 128);
 }
 
 double LatticeBlocksWalk::far_budget() const { return kFarShare * blocks_.tolerance_; }
@@ -199,12 +211,13 @@ std::vector<LatticeBlocksWalk::Together> LatticeBlocksWalk::harmless_of(const Cu
                                                                         std::span<const std::uint32_t> triangles,
                                                                         double budget) const {
   constexpr std::size_t kMany = 1 << 11;  // measured: of fewer, the finer choice leaves less near
+  const double moved = most_moved(cube);
   std::vector<Together> harmless;
   for (std::size_t begin = 0, end = 0; begin < triangles.size(); begin = end) {
     const std::uint32_t leaf_end = triangles.size() >= kMany ? blocks_.leaf_ends_[triangles[begin]] : 0;
     double error = 0.0;
     do {
-      error += error_of(blocks_.sources_[triangles[end++]], cube);
+      error += error_of(blocks_.sources_[triangles[end++]], cube, moved);
     } while (end < triangles.size() && triangles[end] < leaf_end);
     const std::size_t count = end - begin;
     if (error <= budget) harmless.push_back({error / static_cast<double>(count), begin, count, error});
@@ -213,7 +226,7 @@ std::vector<LatticeBlocksWalk::Together> LatticeBlocksWalk::harmless_of(const Cu
 }
 
 // By how much the block's polynomial is off at most because of a triangle; infinite or NaN if that is not known.
-double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube) {
+double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cube, double moved) {
   constexpr double kLeastHalf = 0x1p-400;  // squares of less lose bits, as areas of sources of that size do
   if (cube.half < kLeastHalf) return std::numeric_limits<double>::infinity();
   double distance = 0.0;
@@ -221,8 +234,8 @@ double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cub
     distance =
         std::max({distance, source.box.lower[axis] - cube.centre[axis], cube.centre[axis] - source.box.upper[axis]});
   }
-  // Rounding of the quotients must make it no larger.
-  return source.area / (cube.half * cube.half) * dipole_error(distance / cube.half * (1 - 0x1p-40));
+  distance *= (1 - 0x1p-40) / cube.half;  // rounding of the quotients must make it no larger
+  return source.area / (cube.half * cube.half) * (dipole_error(distance) + moved_nodes_error(distance, moved));
 }
 
 Cover LatticeBlocksWalk::cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const {
@@ -237,7 +250,7 @@ Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const std::array<std
 // ---- Choosing --------------------------------------------------------------------------------------------------
 
 double LatticeBlocksWalk::near_cost(const SampleBlock& block) const {
-  return (block.near_cost + (axes_of_ == AxesOf::kCells ? kAtPoint : kPolynomial)) * block.size();
+  return (block.near_cost + (axes_of_ == AxesOf::kCells ? kPolynomialAtPoint : kPolynomial)) * block.size();
 }
 
 bool LatticeBlocksWalk::pays(const SampleBlock& block, const Division& division) const {

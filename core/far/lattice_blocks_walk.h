@@ -131,7 +131,7 @@ class LatticeBlocksWalk {
                                                   double budget) const;
   [[nodiscard]] double far_budget_of(const SampleBlock& block) const;
   [[nodiscard]] bool can_fit_in(const Cube& cube) const;
-  static double error_of(const TriangleExtent& source, const Cube& cube);
+  static double error_of(const TriangleExtent& source, const Cube& cube, double moved);
   [[nodiscard]] Cover cover_at_nodes(std::span<const std::uint32_t> far, const Cube& cube) const;
 
   void add_at_nodes(const Cover& far, const Cube& cube, std::size_t place, std::span<double> values) const;

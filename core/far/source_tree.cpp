@@ -24,7 +24,14 @@ constexpr double kNeglected = 100;
 
 Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 
-double area_of(const SolidTriangle& t) { return safe_norm(cross(t.b - t.a, t.c - t.a)) / 2; }
+// No less than the area, but for some roundings of it. A product of differences says nothing of needles; where that is
+// all there is, it is rounded up.
+double area_of(const SolidTriangle& t) {
+  const double exact = safe_norm(t.normal) / 2;
+  if (!std::isnan(exact)) return exact;
+  const Vec3 ab = t.b - t.a, ac = t.c - t.a;
+  return safe_norm(cross(ab, ac)) / 2 + 0x1p-49 * safe_norm(ab) * safe_norm(ac);
+}
 
 // Of the coefficients up to this degree.
 std::size_t numbers_of(int order) { return 2 * (coefficient_index(order, order) + 1); }

@@ -757,9 +757,12 @@ MUTANTS = [
         ("core/far/harmonic_error.cpp", "&Entry::distance))->error;", "&Entry::distance))->error / 8;")]),
     Mutant("levels_forget_what_is_spent", "what is far at all levels together keeps the budget", [
         ("core/far/lattice_blocks_walk.cpp", "block.spent += far.error;", "block.spent = far.error;")]),
+    Mutant("nodes_that_are_not_moved", "what rounding of a fit's nodes changes is within the tolerance", [
+        ("core/far/lattice_blocks_walk.cpp", "return kPerWay * moved / (gap * gap * gap);",
+         "return 0 * kPerWay * moved / (gap * gap * gap);")]),
     Mutant("leaves_as_harmless_as_their_last", "all triangles of a leaf count for its error", [
-        ("core/far/lattice_blocks_walk.cpp", "error += error_of(blocks_.sources_[triangles[end++]], cube);",
-         "error = error_of(blocks_.sources_[triangles[end++]], cube);")]),
+        ("core/far/lattice_blocks_walk.cpp", "error += error_of(blocks_.sources_[triangles[end++]], cube, moved);",
+         "error = error_of(blocks_.sources_[triangles[end++]], cube, moved);")]),
     Mutant("block_values_not_settled", "a value of a block that may be a half-integer is evaluated again", [
         ("core/evaluation/lattice_far.cpp", "if (doubtful != 0)", "if (doubtful < 0)")]),
     Mutant("cells_without_their_ends", "the cube of a block of cells has all points in them", [

@@ -4,11 +4,11 @@
 
 #include "app/batch/worker.h"
 #include "app/command_line/parse_command_line.h"
+#include "app/input/grid_reader.h"
 #include "app/process/exit_code.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "app/process/stack_limit.h"
-#include "app/run/grid_reader.h"
 #include "app/run_command.h"
 #include "core/exact/integer_memory.h"
 

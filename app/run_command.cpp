@@ -6,15 +6,15 @@
 
 #include "app/batch/report_page.h"
 #include "app/batch/run_batch.h"
+#include "app/input/mesh_list.h"
+#include "app/input/run_limits.h"
+#include "app/input/written_files.h"
 #include "app/process/messages.h"
-#include "app/run/mesh_list.h"
 #include "app/run/run_info.h"
 #include "app/run/run_lattice.h"
-#include "app/run/run_limits.h"
 #include "app/run/run_points.h"
 #include "app/run/run_slice.h"
 #include "app/run/run_surface.h"
-#include "app/run/written_files.h"
 #include "io/files/counted.h"
 #include "io/files/output_file.h"
 

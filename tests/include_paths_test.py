@@ -32,8 +32,10 @@ APP = {"app/text": [],
        "app/command_line": ["app/options"],
        "app/report": ["app/process", "io/fields", "io/mesh", "core/evaluation", "core/orientation"],
        "app/picture": ["core/data", "io/fields"],
-       "app/run": ["app/options", "app/report", "app/picture", "io/vdb", "core/distance", "core/intersections",
-                   "core/surface"],
+       "app/input": ["app/options", "io/vdb"],
+       "app/fields": ["app/input", "app/report", "core/distance", "core/surface"],
+       "app/samples": ["app/fields", "app/picture"],
+       "app/run": ["app/samples", "core/intersections"],
        "app/batch": ["app/run"],
        "app/manual": ["app/command_line"]}
 
@@ -115,6 +117,8 @@ def main(build, compiler):
                                   ("io/files", "io/mesh/read_mesh.h", False),
                                   ("app/run", "app/options/lattice_command.h", True),
                                   ("app/run", "app/command_line/parse_command_line.h", False),
+                                  ("app/fields", "app/samples/slabs.h", False),
+                                  ("app/input", "app/fields/fields.h", False),
                                   ("app/options", "app/batch/shard.h", False),
                                   ("app/batch", "app/command_line/batch_options.h", False)]:
         if compiles(compiler, of_folder[folder], header) != works:

@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "app/input/mesh_list.h"
 #include "app/process/limits.h"
 #include "app/process/usage_error.h"
-#include "app/run/mesh_list.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/unpack.h"

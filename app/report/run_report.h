@@ -25,7 +25,7 @@ struct Seconds {
   double total = 0.0;
 };
 
-// What verification found (app/run/verify.h).
+// What verification found (app/fields/verify.h).
 struct Verification {
   std::uint64_t samples = 0;                            // compared
   std::uint64_t on_surface = 0;                         // of these; the value there is that of the perturbed query

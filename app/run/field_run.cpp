@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "app/fields/verify.h"
+#include "app/input/mesh_warnings.h"
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
-#include "app/run/mesh_warnings.h"
-#include "app/run/verify.h"
 #include "app/text/plain_text.h"
 
 namespace raycone {

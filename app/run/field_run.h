@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <span>
 
+#include "app/fields/field_evaluator.h"
+#include "app/fields/fields.h"
+#include "app/fields/label_volume.h"
+#include "app/fields/sample_draw.h"
 #include "app/options/field_options.h"
 #include "app/options/mesh_options.h"
 #include "app/options/output_options.h"
-#include "app/run/field_evaluator.h"
-#include "app/run/fields.h"
-#include "app/run/label_volume.h"
 #include "app/run/mesh_run.h"
-#include "app/run/sample_draw.h"
 #include "core/data/placed_lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "io/fields/field_writer.h"

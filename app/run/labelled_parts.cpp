@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "app/input/mesh_warnings.h"
 #include "app/process/stopwatch.h"
-#include "app/run/mesh_warnings.h"
 
 namespace raycone {
 namespace {

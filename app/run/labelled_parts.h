@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "app/fields/part_evaluator.h"
+#include "app/input/mesh_parts.h"
 #include "app/options/field_options.h"
 #include "app/options/mesh_options.h"
-#include "app/run/mesh_parts.h"
 #include "app/run/mesh_run.h"
-#include "app/run/part_evaluator.h"
 #include "core/orientation/mesh_defects.h"
 #include "core/orientation/orient.h"
 

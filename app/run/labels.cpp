@@ -5,11 +5,11 @@
 #include <numeric>
 #include <utility>
 
+#include "app/fields/label_check.h"
+#include "app/input/mesh_warnings.h"
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
-#include "app/run/label_check.h"
-#include "app/run/mesh_warnings.h"
-#include "app/run/slabs.h"
+#include "app/samples/slabs.h"
 #include "core/data/interval.h"
 
 namespace raycone {

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
+#include "app/fields/fields.h"
+#include "app/fields/label_volume.h"
+#include "app/fields/part_evaluator.h"
+#include "app/fields/sample_draw.h"
 #include "app/options/field_options.h"
-#include "app/run/fields.h"
-#include "app/run/label_volume.h"
 #include "app/run/labelled_parts.h"
 #include "app/run/mesh_run.h"
-#include "app/run/part_evaluator.h"
-#include "app/run/sample_draw.h"
 #include "core/data/placed_lattice.h"
 #include "core/data/triangle_mesh.h"
 

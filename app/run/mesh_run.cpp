@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "app/input/mesh_input.h"
 #include "app/process/limits.h"
 #include "app/report/depfile.h"
 #include "app/report/json.h"
-#include "app/run/mesh_input.h"
 
 namespace raycone {
 

@@ -16,14 +16,14 @@
 #include <utility>
 #include <vector>
 
+#include "app/input/run_limits.h"
+#include "app/input/written_files.h"
 #include "app/options/mesh_options.h"
 #include "app/options/output_options.h"
 #include "app/options/run_options.h"
 #include "app/process/progress.h"
 #include "app/process/stopwatch.h"
 #include "app/report/run_report.h"
-#include "app/run/run_limits.h"
-#include "app/run/written_files.h"
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/exterior_edges.h"
 #include "io/files/output_file.h"

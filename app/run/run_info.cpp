@@ -8,17 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "app/input/mesh_input.h"
+#include "app/input/volume_input.h"
+#include "app/input/written_files.h"
 #include "app/options/field_options.h"
 #include "app/process/messages.h"
 #include "app/process/usage_error.h"
 #include "app/report/info.h"
 #include "app/run/info_listing.h"
-#include "app/run/lattice_choice.h"
-#include "app/run/mesh_input.h"
 #include "app/run/mesh_marks.h"
 #include "app/run/requirements.h"
-#include "app/run/volume_input.h"
-#include "app/run/written_files.h"
+#include "app/samples/lattice_choice.h"
 #include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "core/intersections/self_intersections.h"

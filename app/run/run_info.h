@@ -1,9 +1,9 @@
 // `raycone info`: what meshes are, whether they are what is required, and what evaluation will cost.
 #pragma once
 
+#include "app/input/run_limits.h"
 #include "app/options/command.h"
 #include "app/process/exit_code.h"
-#include "app/run/run_limits.h"
 
 namespace raycone {
 

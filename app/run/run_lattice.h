@@ -4,9 +4,9 @@
 #include <functional>
 #include <span>
 
+#include "app/input/run_limits.h"
 #include "app/options/lattice_command.h"
 #include "app/report/run_report.h"
-#include "app/run/run_limits.h"
 #include "core/data/placed_lattice.h"
 
 namespace raycone {

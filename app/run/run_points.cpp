@@ -12,15 +12,15 @@
 #include <utility>
 #include <vector>
 
+#include "app/input/written_files.h"
 #include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
-#include "app/run/disk_space.h"
 #include "app/run/field_run.h"
 #include "app/run/labels.h"
 #include "app/run/mesh_run.h"
-#include "app/run/sampled_points.h"
-#include "app/run/written_files.h"
+#include "app/samples/disk_space.h"
+#include "app/samples/sampled_points.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/points/read_points.h"

@@ -1,9 +1,9 @@
 // `raycone points`: values at given points.
 #pragma once
 
+#include "app/input/run_limits.h"
 #include "app/options/points_command.h"
 #include "app/report/run_report.h"
-#include "app/run/run_limits.h"
 
 namespace raycone {
 

@@ -1,9 +1,9 @@
 // `raycone slice`: a picture of one cross-section.
 #pragma once
 
+#include "app/input/run_limits.h"
 #include "app/options/slice_command.h"
 #include "app/report/run_report.h"
-#include "app/run/run_limits.h"
 
 namespace raycone {
 

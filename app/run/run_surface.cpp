@@ -7,12 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "app/fields/make_surface.h"
+#include "app/input/grid_lattice.h"
+#include "app/input/written_files.h"
 #include "app/process/stopwatch.h"
-#include "app/run/grid_lattice.h"
-#include "app/run/lattice_choice.h"
-#include "app/run/make_surface.h"
 #include "app/run/mesh_run.h"
-#include "app/run/written_files.h"
+#include "app/samples/lattice_choice.h"
 #include "io/files/file_error.h"
 #include "io/mesh/write_surface.h"
 

@@ -1,9 +1,9 @@
 // `raycone surface`: a closed mesh of the set where a rule holds.
 #pragma once
 
+#include "app/input/run_limits.h"
 #include "app/options/surface_command.h"
 #include "app/report/run_report.h"
-#include "app/run/run_limits.h"
 
 namespace raycone {
 

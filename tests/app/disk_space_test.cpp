@@ -1,6 +1,6 @@
 // Room that is asked for before the work: no more than files take, which would refuse good runs, and of binary ones
 // hardly less.
-#include "app/run/disk_space.h"
+#include "app/samples/disk_space.h"
 
 #include <gtest/gtest.h>
 

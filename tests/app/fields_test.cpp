@@ -1,5 +1,5 @@
 // Names of fields and rules, and what follows from winding numbers.
-#include "app/run/fields.h"
+#include "app/fields/fields.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/run/label_check.h"
+#include "app/fields/label_check.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/run/verify.h"
+#include "app/fields/verify.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-#include "app/run/label_volume.h"
+#include "app/fields/label_volume.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The lattice rules of the command line, on boxes of every kind.
-#include "app/run/lattice_choice.h"
+#include "app/samples/lattice_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/run/make_surface.h"
+#include "app/fields/make_surface.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>

@@ -1,4 +1,4 @@
-#include "app/run/mesh_list.h"
+#include "app/input/mesh_list.h"
 
 #include <gtest/gtest.h>
 

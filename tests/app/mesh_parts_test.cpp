@@ -1,5 +1,5 @@
 // Meshes that are read a second time are the same as at first.
-#include "app/run/mesh_parts.h"
+#include "app/input/mesh_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // How lattices are cut for evaluation.
-#include "app/run/slabs.h"
+#include "app/samples/slabs.h"
 
 #include <gtest/gtest.h>
 

@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/run/field_evaluator.h"
-#include "app/run/fields.h"
-#include "app/run/lattice_choice.h"
-#include "app/run/slabs.h"
+#include "app/fields/field_evaluator.h"
+#include "app/fields/fields.h"
+#include "app/samples/lattice_choice.h"
+#include "app/samples/slabs.h"
 #include "core/exact/direct_distance.h"
 #include "core/exact/direct_sum.h"
 #include "core/machine/threads.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "app/input/run_limits.h"
 #include "app/run/run_lattice.h"
-#include "app/run/run_limits.h"
 #include "tests/app/batch/batch_fixture.h"
 
 namespace raycone::test {

@@ -1,0 +1,43 @@
+#include "app/fields/label_check.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "app/fields/verify.h"
+#include "core/machine/threads.h"
+
+namespace raycone {
+
+LabelCheck::LabelCheck(std::vector<DrawnSample> samples, const Rule& rule, bool first_wins)
+    : samples_(std::move(samples)),
+      rule_(rule),
+      first_wins_(first_wins),
+      labels_(samples_.size()),
+      unresolved_(samples_.size()) {}
+
+void LabelCheck::add(const TriangleMesh& part) {
+  ++parts_;
+  parallel_for_each(samples_.size(), [&](std::size_t n) {
+    const std::optional<bool> inside = inside_by_definition(part, samples_[n].point, rule_);
+    if (!inside) unresolved_[n] = 1;
+    if (inside.value_or(false) && !(first_wins_ && labels_[n] != 0)) labels_[n] = parts_;
+  });
+}
+
+Verification LabelCheck::compare(const std::string& mesh, std::span<const std::int32_t> labels) const {
+  Verification verification;
+  for (std::size_t n = 0; n < samples_.size(); ++n) {
+    if (unresolved_[n] != 0) {
+      ++verification.unresolved;
+      continue;
+    }
+    ++verification.samples;
+    if (labels[n] == labels_[n]) continue;
+    throw VerificationError(mesh + ": " + position_text(samples_[n]) + " has the label " + std::to_string(labels[n]) +
+                            ", expected " + std::to_string(labels_[n]) + " by definition and " + name_of(rule_));
+  }
+  return verification;
+}
+
+}  // namespace raycone

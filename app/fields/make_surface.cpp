@@ -1,0 +1,162 @@
+#include "app/fields/make_surface.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "app/options/field_options.h"
+#include "app/process/limits.h"
+#include "core/distance/distance.h"
+#include "core/surface/mesh_as_surface.h"
+#include "core/surface/surface_measures.h"
+#include "core/surface/thicken.h"
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+// What is inside must be something that a surface can go around.
+void check_inside(const std::string& name, const NodeSet& inside, const SurfaceOptions& options) {
+  const std::string rule = name_of(options.rule);
+  if (inside.empty()) {
+    const bool thickens = options.thickness > 0.0;
+    throw InputError(name + ": no sample is inside by the rule " + rule + (thickens ? ", or within --thicken" : "") +
+                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, " +
+                     (thickens ? "a larger --thicken" : "raycone surface --thicken T") + ")?");
+  }
+  if (inside.reaches_border()) {
+    throw InputError(name + ": what is inside by the rule " + rule +
+                     " reaches the border of the lattice, expected a larger box (--padding P), faces that agree "
+                     "(--orient auto), or another rule");
+  }
+}
+
+// What `make` returns. Where it finds that numbers do not do, throws LimitError, which names `name`.
+template <class Make>
+auto with_surface_errors(const std::string& name, const SurfaceOptions& options, const Make& make) {
+  try {
+    return make();
+  } catch (const LatticeTooFine& error) {
+    const char* const other_format = options.single_precision ? ", or write PLY" : "";
+    throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
+  } catch (const LatticeOutOfRange& error) {
+    throw LimitError(name + ": " + error.what() + "; see --scale");
+  } catch (const std::length_error&) {
+    throw LimitError(name +
+                     ": the surface would have more than 2147483632 faces or edges of the lattice; see --resolution");
+  }
+}
+
+SurfaceReport report_of(const SurfaceMesh& surface, const SurfaceMeasures& measures, const DroppedArea& dropped) {
+  return {surface.mesh.vertices.size(), surface.mesh.triangles.size(),
+          measures.components,          measures.max_distance,
+          measures.hole_area,           dropped.area};
+}
+
+std::vector<Warning> warnings_about(const FinishedSurface& closed, const SurfaceOptions& options) {
+  std::vector<Warning> warnings;
+  if (!closed.merged) {
+    warnings.push_back({"not-merged",
+                        "faces of one plane are not merged: each try made faces that intersect, or that "
+                        "have samples on the wrong side"});
+  }
+  if (closed.bound_too_small) {
+    warnings.push_back({"not-simplified",
+                        "--simplify left all faces: the distance is within what rounding of vertices may move, "
+                        "some billionths of a voxel, or more far from the origin, in single precision, and where "
+                        "the mesh's coordinates are rounded"});
+  } else if (!closed.simplified) {
+    warnings.push_back({"not-simplified", "--simplify left all faces: " + std::to_string(options.rounds) +
+                                              " tries made faces that intersect, expected a smaller distance"});
+  }
+  return warnings;
+}
+
+// What is dropped, though it is a part of the solid.
+std::optional<Warning> warning_about(const ThinParts& thin) {
+  if (!(thin.of_all > 0.0)) return std::nullopt;
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.3g", 100.0 * thin.of_all);
+  std::string text = std::string(percent) + " % of the mesh's area is of parts too thin for the lattice, and left out";
+  if (thin.lost > 0) text += ", " + std::to_string(thin.lost) + (thin.lost == 1 ? " part" : " parts") + " as a whole";
+  return Warning{"thin-parts", text + "; see --resolution, and --thicken of half a voxel's diagonal or more"};
+}
+
+Accuracy for_points(double tolerance, double points) {
+  return {.tolerance = tolerance, .samples = points, .points = points};
+}
+
+EvaluatorOptions options_for(const Accuracy& accuracy, const std::vector<ExteriorEdge>& edges) {
+  return {.accuracy = accuracy, .edges = &edges};
+}
+
+// Of an open mesh, for points: one that finds where surfaces close holes, and a rough one, which is sooner.
+struct PointEvaluators {
+  WindingNumberEvaluator fine, rough;
+
+  PointEvaluators(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const NodeSet& inside,
+                  const Rule& rule)
+      : fine(mesh, options_for(for_points(kTolerance, points_in(inside)), edges)),
+        rough(mesh, options_for(for_points(tolerance_for_sides(rule), points_in(inside)), edges)) {}
+
+ private:
+  static constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
+
+  // How many either is asked for, where there are few holes.
+  static double points_in(const NodeSet& inside) {
+    constexpr double kPerCell = 4.0;
+    return kPerCell * static_cast<double>(mixed_cells(inside));
+  }
+};
+
+}  // namespace
+
+MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
+                         const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
+                         std::atomic<std::uint64_t>* done) {
+  check_memory(name, node_set_bytes(lattice), memory);
+  const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
+                           .samples = static_cast<double>(whole(lattice).size()),
+                           .sides_only = true};
+  std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh, options_for(for_sides, edges));
+  Tally tally;
+  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done, &tally);
+  Terms terms = evaluator->terms();
+  if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
+  check_inside(name, inside, options);
+  std::optional<PointEvaluators> at_points;
+  if (!edges.empty()) {  // values of closed meshes are exact anyway
+    evaluator.reset();   // what it held is free for those that follow
+    at_points.emplace(mesh, edges, inside, options.rule);
+  }
+  const FineAndRough evaluators =
+      at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*evaluator);
+  FinishedSurface closed = with_surface_errors(name, options, [&] {
+    std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
+    if (itself) return *std::move(itself);
+    check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
+    return closed_surface(mesh, evaluators, inside, options);
+  });
+  MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
+  if (options.at_stage) options.at_stage("measuring");
+  const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.single_precision);
+  DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
+                         closed.own ? std::move(closed.own->held) : std::vector<bool>());
+  const DroppedArea dropped = dropped_area(mesh, samples);
+  made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
+  ThinParts thin;
+  if (closed.own) {
+    thin = {.of_all = closed.own->left_out_of_all, .lost = closed.own->left_out};
+  } else if (dropped.is_some) {
+    thin = thin_parts(mesh, {evaluators.rough, options.rule}, samples);
+  }
+  if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
+  if (at_points) terms += at_points->fine.terms(), terms += at_points->rough.terms();
+  made.terms = terms;
+  return made;
+}
+
+}  // namespace raycone

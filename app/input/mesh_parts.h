@@ -1,0 +1,73 @@
+// The meshes of a job with labels, and the parts that they consist of. Parts are handed out one after the other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/input/mesh_input.h"
+#include "app/input/run_limits.h"
+#include "app/options/mesh_options.h"
+#include "core/data/triangle_mesh.h"
+#include "core/data/warning.h"
+#include "core/mesh/mesh_split.h"
+#include "io/mesh/read_mesh.h"
+
+namespace raycone {
+
+class MeshParts {
+ public:
+  struct File {
+    FileRead read;
+    std::string unit;  // of its coordinates, where the format has one
+    std::vector<FileRead> companions;
+    std::uint64_t vertices = 0, faces = 0;
+    std::vector<Warning> warnings;
+  };
+
+  // Reads all files once, so that what is wrong with one is known before the work. `whole`: that mesh is wanted, too.
+  // Several files are kept as far as they are small, and read again when their turn comes, so that memory does not grow
+  // with their number; but for `whole`, or to normalize them, they are all kept. Throws as read_mesh_file(), and
+  // InputError where groups are asked for and the format has none. `options` and `limits` must outlive this.
+  MeshParts(const MeshOptions& options, const RunLimits& limits, bool whole);
+
+  [[nodiscard]] const std::vector<File>& files() const { return files_; }
+  [[nodiscard]] const Matrix4& transform() const { return transform_; }
+  // Of all files; with a distance to weld within, which moves vertices, of each as a run of it alone has it.
+  [[nodiscard]] const Box& box() const { return box_; }
+
+  // At least one.
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
+  // By its file, group or number; never empty.
+  [[nodiscard]] const std::string& name(std::size_t part) const { return names_[part]; }
+  [[nodiscard]] std::size_t file_of(std::size_t part) const { return files_.size() > 1 ? part : 0; }
+
+  // All parts together. Only where it was asked for, or where there is one file.
+  [[nodiscard]] const TriangleMesh& whole() const { return split_->whole(); }
+
+  // Welded, but not yet oriented. Warnings about the welding are appended to `warnings`. Throws as read_mesh_file(),
+  // and InputError where the file has changed since it was read first.
+  [[nodiscard]] TriangleMesh part(std::size_t part, std::vector<Warning>& warnings);
+
+ private:
+  TriangleMesh read(std::size_t file);
+  void keep_all();
+  void keep_some();
+  [[nodiscard]] Box welded_box(TriangleMesh mesh) const;
+  void extend_box(const Box& box) { box_ = hull(box_, box); }
+  void name_groups(std::vector<std::uint32_t>& part_of);
+
+  const MeshOptions& options_;
+  const RunLimits& limits_;
+  std::vector<File> files_;
+  std::vector<std::string> names_;
+  FaceGroups groups_;  // of the only file, until they have become parts
+  Matrix4 transform_{};
+  Box box_ = empty_box();
+  std::optional<MeshSplit> split_;                 // of all; absent where files are kept one by one, or not at all
+  std::vector<std::optional<TriangleMesh>> kept_;  // of each file then, welded
+};
+
+}  // namespace raycone

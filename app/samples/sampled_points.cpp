@@ -1,0 +1,81 @@
+#include "app/samples/sampled_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "app/samples/lattice_choice.h"
+#include "core/sampling/point_sampler.h"
+#include "io/files/file_error.h"
+
+namespace raycone {
+namespace {
+
+class SampledPoints final : public PointReader {
+ public:
+  SampledPoints(std::string name, PointSampler sampler, bool single, bool on_surface)
+      : name_(std::move(name)), sampler_(std::move(sampler)), single_(single), on_surface_(on_surface) {}
+
+  bool next(std::vector<Vec3>& batch, std::size_t max) override {
+    batch.resize(static_cast<std::size_t>(std::min<std::uint64_t>(max, sampler_.size() - drawn_)));
+    faces_.resize(on_surface_ ? batch.size() : 0);
+    if (on_surface_) {
+      sampler_.draw(drawn_, batch, faces_);
+    } else {
+      sampler_.draw(drawn_, batch);
+    }
+    if (single_) round_to_floats(batch);
+    drawn_ += batch.size();
+    return !batch.empty();
+  }
+  [[nodiscard]] SurfacePlaces places() override {
+    normals_.clear();
+    for (const std::int64_t face : faces_) normals_.push_back(face < 0 ? Vec3{} : sampler_.normal(face));
+    return {normals_, faces_};
+  }
+  [[nodiscard]] bool would_block() override { return false; }
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return sampler_.size(); }
+
+ private:
+  void round_to_floats(std::vector<Vec3>& points) const {
+    for (Vec3& point : points) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double rounded = static_cast<double>(static_cast<float>(point[axis]));
+        if (!std::isfinite(rounded))
+          throw LimitError(name_ + ": points are too large for 32 bits; see --dtype and --scale");
+        point[axis] = rounded;
+      }
+    }
+  }
+
+  std::string name_;  // of the mesh's file
+  PointSampler sampler_;
+  bool single_, on_surface_;
+  std::vector<std::int64_t> faces_;
+  std::vector<Vec3> normals_;
+  std::uint64_t drawn_ = 0;
+};
+
+}  // namespace
+
+bool draws_on_surface(const SampleRequest& request) {
+  return std::ranges::any_of(request.groups,
+                             [](const SampleGroup& group) { return std::holds_alternative<SurfaceSamples>(group); });
+}
+
+std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
+                                         const SampleRequest& request, bool single) {
+  const Box box = widened(request.bounds.value_or(bounding_box(mesh)), request.padding);
+  PointSampler sampler(mesh, box, request.groups, request.seed);
+  const bool surface = std::ranges::any_of(
+      request.groups, [](const SampleGroup& group) { return !std::holds_alternative<UniformSamples>(group); });
+  if (surface && !sampler.has_area())
+    throw InputError(name + ": no triangle has an area, expected a surface to draw from");
+  if (!sampler.is_finite())
+    throw LimitError(name + ": box or noise is too large, expected points within double precision; see --scale");
+  return std::make_unique<SampledPoints>(name, std::move(sampler), single, draws_on_surface(request));
+}
+
+}  // namespace raycone

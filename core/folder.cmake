@@ -26,7 +26,7 @@ function(raycone_folder folder)
     add_library(${name} OBJECT ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE raycone_flags ${name}_headers ${arg_USES})
     if(RAYCONE_UNITY)
-      set_target_properties(${name} PROPERTIES UNITY_BUILD ON)
+      set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
       # To GCC a file's own types look like a header's then.
       target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     endif()

@@ -19,7 +19,7 @@ constexpr std::size_t kPath = 3;
 constexpr std::size_t kStamp = 4;
 constexpr std::size_t kBuffers = kStamp + kStampFields;
 constexpr std::size_t kWritten = kBuffers + 1;
-constexpr std::size_t kVersion = kBuffers + 2;
+constexpr std::size_t kVersionColumn = kBuffers + 2;
 constexpr std::size_t kOptions = kBuffers + 3;
 constexpr std::size_t kMemoryLimit = kBuffers + 4;
 constexpr std::size_t kDefaultMemoryLimit = kBuffers + 5;
@@ -117,7 +117,7 @@ CsvRecord to_record(const RowOrigin& origin, const std::string& mesh, const std:
   std::ranges::copy(to_fields(origin.stamp), record.begin() + kStamp);
   record[kBuffers] = to_text(origin.buffers);
   record[kWritten] = to_text(origin.written);
-  record[kVersion] = origin.version;
+  record[kVersionColumn] = origin.version;
   record[kOptions] = origin.options;
   record[kMemoryLimit] = std::to_string(origin.memory_limit);
   record[kDefaultMemoryLimit] = origin.default_memory_limit ? "1" : "0";
@@ -154,7 +154,7 @@ std::optional<RowOrigin> origin_from(const CsvRecord& record) {
   return RowOrigin{.stamp = *stamp,
                    .buffers = std::move(*buffers),
                    .written = std::move(*written),
-                   .version = record[kVersion],
+                   .version = record[kVersionColumn],
                    .options = record[kOptions],
                    .memory_limit = static_cast<std::uint64_t>(*memory_limit),
                    .default_memory_limit = record[kDefaultMemoryLimit] == "1",

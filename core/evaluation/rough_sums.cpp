@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kNodes = Interpolation::kOrder;
 static_assert(kNodes * kNodes * kNodes <= kTile);
 
-constexpr double kInterpolation = 4.0;  // at a sample, in units of a triangle's solid angle
+constexpr double kInterpolationCost = 4.0;  // at a sample, in units of a triangle's solid angle
 
 NodeGrid nodes_of(const LatticeRows& rows, const SampleBox& samples) {
   constexpr std::array<std::size_t, 3> kDegrees{kNodes - 1, kNodes - 1, kNodes - 1};
@@ -70,7 +70,7 @@ double RoughSums::doubt_of(const Cover& cover) const {
 }
 
 double RoughSums::cost(const RoughBox& box) {
-  return (box.cover.near.cost + kInterpolation) * static_cast<double>(box.samples.size());
+  return (box.cover.near.cost + kInterpolationCost) * static_cast<double>(box.samples.size());
 }
 
 RoughSums::Range RoughSums::range(const RoughBox& box) {

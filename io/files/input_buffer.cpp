@@ -7,7 +7,7 @@ namespace raycone {
 namespace {
 
 // Bytes asked for in one go: large enough that the calls cost nothing, small enough for the second-level cache.
-constexpr std::size_t kBlock = std::size_t{1} << 18;
+constexpr std::size_t kReadBlock = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -27,8 +27,8 @@ bool InputBuffer::fill() {
             bytes_.begin());
   end_ -= begin_;
   begin_ = 0;
-  if (bytes_.size() - end_ < kBlock) bytes_.resize(std::max(2 * bytes_.size(), end_ + kBlock));
-  const std::size_t count = source_->read(bytes_.data() + end_, kBlock);
+  if (bytes_.size() - end_ < kReadBlock) bytes_.resize(std::max(2 * bytes_.size(), end_ + kReadBlock));
+  const std::size_t count = source_->read(bytes_.data() + end_, kReadBlock);
   end_ += count;
   at_end_ = count == 0;
   return !at_end_;

@@ -22,7 +22,7 @@ constexpr std::string_view kGzipMagic = "\x1f\x8b", kZstandardMagic = "\x28\xb5\
 // Behind a byte from 0x50 to 0x5F: a frame of Zstandard that is skipped. pzstd begins its files with one.
 constexpr std::string_view kSkippableMagic = "\x2a\x4d\x18";
 constexpr std::size_t kMagic = 4;  // bytes that tell, at most
-constexpr std::size_t kBlock = std::size_t{1} << 17;
+constexpr std::size_t kUnpackedBlock = std::size_t{1} << 17;
 constexpr int kGzipWindow = 15 + 16, kBareWindow = -15;  // as zlib counts
 
 enum class Packing { kNone, kGzip, kZstandard };
@@ -45,7 +45,7 @@ bool may_become_packed(std::string_view bytes) {
 class PackedInput {
  public:
   PackedInput(std::unique_ptr<ByteSource> source, std::string name, std::string_view begun = {})
-      : source_(std::move(source)), name_(std::move(name)), bytes_(kBlock) {
+      : source_(std::move(source)), name_(std::move(name)), bytes_(kUnpackedBlock) {
     std::ranges::copy(begun, bytes_.begin());
     end_ = begun.size();
   }
@@ -88,7 +88,7 @@ class DecodingSource : public ByteSource {
   bool is_ready() final {
     while (begin_ == end_ && !at_end_) {
       if (!was_full_ && !input_.is_ready()) return false;
-      ahead_.resize(kBlock);
+      ahead_.resize(kUnpackedBlock);
       begin_ = 0;
       end_ = decode_some(ahead_.data(), ahead_.size());
     }
@@ -116,7 +116,7 @@ class DecodingSource : public ByteSource {
       set_end();
       return 0;
     }
-    const std::size_t room = std::min(size, kBlock), count = decode(bytes, room);
+    const std::size_t room = std::min(size, kUnpackedBlock), count = decode(bytes, room);
     was_full_ = count == room;
     return count;
   }
@@ -317,7 +317,7 @@ std::string unpacked(std::string_view packed, const std::string& name) {
   std::deque<std::string> pieces;
   std::size_t size = 0;
   do {
-    pieces.push_back(next_piece(*source, std::max(kBlock, size / 8)));
+    pieces.push_back(next_piece(*source, std::max(kUnpackedBlock, size / 8)));
     size += pieces.back().size();
   } while (!pieces.back().empty());
   std::string bytes;

@@ -17,11 +17,12 @@
 #include "app/batch/batch_record.h"
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
+#include "app/input/written_files.h"
 #include "app/process/limits.h"
+#include "app/process/messages.h"
 #include "app/process/progress.h"
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
-#include "app/run/written_files.h"
 #include "app/text/html.h"
 #include "app/text/readable_count.h"
 #include "io/files/counted.h"
@@ -322,14 +323,20 @@ std::string evaluated(const BatchRecords& records) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string page(const std::string& directory, const BatchRecords& records) {
+std::string gaps(const std::vector<std::string>& missing) {
+  std::string html;
+  for (const std::string& line : missing) html += "<p class=\"bad\">There are " + html_text(line) + ".</p>\n";
+  return html;
+}
+
+std::string page(const std::string& directory, const BatchRecords& records, const std::vector<std::string>& missing) {
   const std::string title = html_text("raycone batch: " + directory);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
          title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
-         "</h1>\n<div class=\"quiet\">raycone " + kVersion + provenance(records) + "</div>\n" + tiles(records) +
-         failures(records) + plots(records) + warnings(records) + evaluated(records) + "<script>" + kScript +
-         "</script>\n</body>\n</html>\n";
+         "</h1>\n<div class=\"quiet\">raycone " + kVersion + provenance(records) + "</div>\n" + gaps(missing) +
+         tiles(records) + failures(records) + plots(records) + warnings(records) + evaluated(records) + "<script>" +
+         kScript + "</script>\n</body>\n</html>\n";
 }
 
 std::vector<std::string> results_in(const std::string& directory) {
@@ -359,9 +366,13 @@ std::size_t write_report_page(const ReportCommand& command) {
   if (records.empty() && std::ranges::none_of(names_in(command.directory), holds_rows)) {
     throw InputError(command.directory + ": no results, expected the results.csv of a batch");
   }
-  if (!command.run.quiet) warn_of_unreadable_rows(command.directory);
+  const std::vector<std::string> missing = missing_shards(command.directory);
+  if (!command.run.quiet) {
+    warn_of_unreadable_rows(command.directory);
+    for (const std::string& line : missing) print_message("warning: " + command.directory + ": " + line);
+  }
   OutputFile output(command.output, command.no_clobber);
-  write_all(output, page(command.directory, records));
+  write_all(output, page(command.directory, records, missing));
   return records.size();
 }
 

@@ -120,6 +120,23 @@ BatchRecord record_of(ResultRow row, std::int64_t written_by, const std::map<std
   return record;
 }
 
+// "no results of shards 2, 3 and 5 of 5", of which `present` are there.
+std::string missing_line(const std::set<std::uint64_t>& present, std::uint64_t count) {
+  constexpr std::size_t kMostNamed = 10;
+  const std::uint64_t missing = count - present.size();
+  std::vector<std::string> names;
+  for (std::uint64_t index = 1; names.size() < std::min<std::uint64_t>(missing, kMostNamed); ++index) {
+    if (!present.contains(index)) names.push_back(std::to_string(index));
+  }
+  if (missing > kMostNamed) names.push_back(std::to_string(missing - kMostNamed) + " more");
+  std::string line = missing == 1 ? "no results of shard " : "no results of shards ";
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    if (n > 0) line += n + 1 == names.size() ? " and " : ", ";
+    line += names[n];
+  }
+  return line + " of " + std::to_string(count);
+}
+
 }  // namespace
 
 ResultsFiles::ResultsFiles(const std::string& directory, const std::optional<Shard>& shard)
@@ -242,6 +259,21 @@ void warn_of_unreadable_rows(const std::string& directory) {
   if (rows == 0) return;
   print_message("warning: " + directory + ": results: " + counted(rows, "row") +
                 " cannot be read, left out; batch makes such meshes again");
+}
+
+std::vector<std::string> missing_shards(const std::string& directory) {
+  std::map<std::uint64_t, std::set<std::uint64_t>> present;  // by the number of shards
+  for (const std::string& name : names_in(directory)) {
+    if (!holds_rows(name)) continue;
+    const std::optional<Shard> shard = shard_of(name);
+    if (!shard) return {};
+    if (shard->index <= shard->count) present[shard->count].insert(shard->index);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [count, indices] : present) {
+    if (indices.size() < count) lines.push_back(missing_line(indices, count));
+  }
+  return lines;
 }
 
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes) {

@@ -61,6 +61,11 @@ class ResultsFiles {
 // Tells the user of them, where there are any. Throws InputError.
 void warn_of_unreadable_rows(const std::string& directory);
 
+// Where there are tables of shards, but none of the whole batch: which shards have none, a line of text for each number
+// of shards that a batch was divided into: "no results of shards 2, 3 and 5 of 5". A shard of no meshes has a table.
+// Throws InputError.
+[[nodiscard]] std::vector<std::string> missing_shards(const std::string& directory);
+
 // Removes from the whole batch and all its shards the rows of meshes that are gone. Not while a shard runs: a row that
 // it adds at this moment would be lost, and made again. Throws InputError, OutputError.
 void remove_from_all_results(const std::string& directory, const std::set<std::string>& meshes);

@@ -74,6 +74,26 @@ TEST_F(Report, TellsOfRowsThatItCannotRead) {
   EXPECT_EQ(report().status, 2);  // what rows were made from is no result
 }
 
+// A task of an array that never began has left nothing that could be missed.
+TEST_F(Report, TellsOfShardsWithoutResults) {
+  put("a.obj");
+  for (const char* const shard : {"1/3", "3/3"}) (void)run({"--shard", shard, "--quiet"});
+  const auto report = [&] { return run_raycone({"report", out_}); };
+  const CommandResult result = report();
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("warning: " + out_ + ": no results of shard 2 of 3\n"), std::string::npos) << result.err;
+  const std::string page = read_text(out_ + "/report.html");
+  EXPECT_NE(page.find("There are no results of shard 2 of 3."), std::string::npos);
+  EXPECT_EQ(run_raycone({"report", out_, "--quiet"}).err, "");
+
+  (void)run({"--shard", "2/3", "--quiet"});
+  EXPECT_EQ(report().err.find("warning"), std::string::npos);
+  std::filesystem::remove(out_ + "/results-2-of-3.csv");
+  EXPECT_NE(report().err.find("warning"), std::string::npos);
+  (void)run({"--quiet"});  // does what is missing, and takes over the rest
+  EXPECT_EQ(report().err.find("warning"), std::string::npos);
+}
+
 TEST_F(Report, OfWhatIsNoBatchIsAnInputError) {
   EXPECT_EQ(run_raycone({"report", dir_ / "absent"}).status, 2);
   EXPECT_EQ(run_raycone({"report", dir_.path().string()}).status, 2);

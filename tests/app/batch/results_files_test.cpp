@@ -250,6 +250,28 @@ TEST_F(ResultsFilesTest, MayBeWrittenBySeveralAtOnce) {
   for (const auto& [mesh, one] : all) EXPECT_TRUE(one.origin) << mesh;
 }
 
+// Names of tables tell, whatever they hold; of many that are missing a few are named.
+TEST_F(ResultsFilesTest, TellWhichShardsAreMissing) {
+  const std::string directory = dir_.path().string();
+  const auto put = [&](const std::string& name) { write_text(dir_ / name, ""); };
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(missing_shards(directory), Lines());
+  put("results-1-of-1.csv");
+  put("results-9-of-4.csv");  // no shard
+  put("batch-state-1-of-7.csv");
+  EXPECT_EQ(missing_shards(directory), Lines());
+  put("results-2-of-5.csv");
+  put("results-5-of-5.csv");
+  EXPECT_EQ(missing_shards(directory), Lines{"no results of shards 1, 3 and 4 of 5"});
+  put("results-1-of-1000000000000000000.csv");
+  EXPECT_EQ(missing_shards(directory),
+            (Lines{"no results of shards 1, 3 and 4 of 5",
+                   "no results of shards 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 999999999999999989 more of "
+                   "1000000000000000000"}));
+  put("results.csv");
+  EXPECT_EQ(missing_shards(directory), Lines());
+}
+
 TEST_F(ResultsFilesTest, NamesAreReserved) {
   for (const char* const name : {"results.csv", "batch-state.csv", "results-1-of-3.csv", "batch-state-10-of-12.csv"}) {
     EXPECT_TRUE(is_results_file(name)) << name;

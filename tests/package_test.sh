@@ -37,6 +37,21 @@ if grep -rhE '^ *# *include +["<]' "$work/prefix/include" | grep -vE '<[a-z_]+>|
   fail "a public header includes what belongs to another library, or is not installed"
 fi
 
+for header in "$work"/prefix/include/raycone/*.h; do echo "#include <raycone/${header##*/}>"; done >"$work/all.cpp"
+cat >>"$work/all.cpp" <<'END'
+raycone::DistanceBlocks blocks;
+const raycone::ExteriorEdge edge;
+END
+"$compiler" -std=c++20 -fsyntax-only -I "$work/prefix/include" "$work/all.cpp" || fail "the headers do not compile"
+if grep -rhE 'core/[a-z]+/' "$work/prefix/include"; then
+  fail "a public header names another one by its place in the repository"
+fi
+
+# The library alone needs nothing that only the tool does.
+cmake -S "$root" -B "$work/library" -DCMAKE_CXX_COMPILER="$compiler" -DRAYCONE_TOOL=OFF -DRAYCONE_TESTS=OFF \
+  -DRAYCONE_BENCH=OFF -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON -DCMAKE_DISABLE_FIND_PACKAGE_EXPAT=ON \
+  -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+
 cmake -S "$work/example" -B "$work/build" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$work/prefix" \
   -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wshadow -Wconversion -Werror" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 cmake --build "$work/build" >"$work/log" 2>&1 || fail "$(cat "$work/log")"

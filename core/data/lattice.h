@@ -28,7 +28,7 @@ struct Lattice {
   }
   [[nodiscard]] std::int64_t index_max(int axis) const {
     const auto a = static_cast<std::size_t>(axis);
-    return index_min[a] + counts[a] - 1;
+    return index_min[a] + (counts[a] - 1);
   }
   // In floating point: the number may not fit in 64 bits.
   [[nodiscard]] double samples() const {
@@ -48,7 +48,7 @@ struct Lattice {
   }
   // Cells are half-open, from one sample to the next, and numbered from 0 along each axis: the cell of an index, whole
   // or not. -1 is all that is before the first sample, `counts` all that is a step and more behind the last one.
-  // Precondition: the index is not NaN.
+  // Precondition: the index is not NaN, and `counts` is at most 2^62.
   [[nodiscard]] std::int64_t cell_of(int axis, double index) const {
     const auto a = static_cast<std::size_t>(axis);
     const double cell = std::floor(index) - static_cast<double>(index_min[a]);

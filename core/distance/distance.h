@@ -44,9 +44,9 @@ class DistanceEvaluator {
   void evaluate(std::span<const Vec3> points, std::span<double> distances,
                 double limit = std::numeric_limits<double>::infinity()) const;
 
-  // Sets the numbers of the triangles that finite points are nearest to: of those with the least distance, as computed,
-  // the first; triangle 0 where all of the mesh is like one point, from far away. Precondition: triangles.size() ==
-  // points.size(), and the mesh has a triangle.
+  // Sets the numbers of the triangles that finite points are nearest to: where several are equally near up to
+  // rounding, one of them, the same for any number of threads and SIMD level; triangle 0 where all of the mesh is like
+  // one point, from far away. Precondition: triangles.size() == points.size(), and the mesh has a triangle.
   void find_nearest(std::span<const Vec3> points, std::span<std::uint32_t> triangles) const;
 
  private:

@@ -57,8 +57,9 @@ inline constexpr double kLeastToleranceOfBlocks = 1e-11;  // below, fits would r
 
 // How well values are to be known.
 struct Accuracy {
-  // |value - w| is to be at most this, turns. From kLeastTolerance on, what is far may act together (docs/method.md,
-  // "Far field"), where that pays. Below, all is summed one by one, and a value is off by its rounding alone.
+  // |value - w| is to be at most this, turns; more than 1/16 counts as 1/16. From kLeastTolerance on, what is far may
+  // act together (docs/method.md, "Far field"), where that pays. Below, all is summed one by one, and a value is off by
+  // its rounding alone.
   double tolerance = 0.0;
   // About how many samples the evaluator is for: preparing a far field must pay.
   double samples = 1e6;
@@ -120,11 +121,13 @@ class WindingNumberEvaluator {
   // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Unless
   // they are for sides only, values depend neither on their number, nor on the block's extent, nor on the diagnostics.
   // Const calls may run concurrently. Throws std::length_error for more than kMaxBlockSide samples along an axis.
+  // Precondition: the samples of the block are finite.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
-  // Sets for the same samples only whether `rule` holds, 1, or not, 0: exactly, and in a small part of the time.
-  // Precondition: sides.size() == block.size().
+  // Sets for the same samples only whether `rule` holds, 1, or not, 0: exactly. In a small part of the time, if the
+  // evaluator was made for that: with accuracy {.tolerance = tolerance_for_sides(rule), .sides_only = true}. With a
+  // tolerance of 0 an open mesh may take longer than evaluate(). Precondition: sides.size() == block.size().
   Tally evaluate_sides(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
                        std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done = nullptr) const;
 

@@ -12,7 +12,7 @@ struct Weld {
   double distance = 0.0;  // world units; only for kDistance, positive and finite
 };
 
-// The mesh with -0 stored as +0, and with equal vertices merged into representatives:
+// Precondition: the indices of `mesh` are in range. The mesh with -0 stored as +0, and with equal vertices merged into representatives:
 //
 //   kNone      none are merged
 //   kExact     those of bitwise equal coordinates

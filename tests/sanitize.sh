@@ -18,6 +18,9 @@ suites=$(grep -lE 'run_raycone|raycone_command|batch_fixture' tests/app/*_test.c
 # What is about so little memory that sanitizers have none left.
 of_memory='MemoryLimitsHoldForThoseThatLookForBuffers|AWorkerIsChargedForOpenVdbOnce'
 
+# What does the same over and over, with other threads or moments.
+of_bytes='BytesDepend|SamplesDependOnTheJobAlone|KilledAtAnyMoment'
+
 # black_box PRESET CTEST-OPTION...: the dev build's tests of what PRESET built.
 black_box() {
   preset=$1
@@ -41,9 +44,10 @@ asan_ubsan() {
   cmake --preset asan-ubsan
   phase "build asan-ubsan" cmake --build --preset asan-ubsan --parallel "$jobs" --target raycone manual replay
   # Not: what watches the threads of unoptimised code, or memory; and what asks for SIMD levels that this build leaves
-  # out. Leaks are looked for below, by fuzz corpora and where disks are full: it doubles the time of a short run.
+  # out; and what compares the bytes of many runs, which do nothing that other tests do not. Leaks are looked for below,
+  # by fuzz corpora and where disks are full: it doubles the time of a short run.
   export ASAN_OPTIONS=$tls:detect_leaks=0
-  black_box asan-ubsan -E "NeverMoreThreadsAreBusyThanAllowed|$of_memory|Engines\.AgreeOn"
+  black_box asan-ubsan -E "NeverMoreThreadsAreBusyThanAllowed|$of_memory|$of_bytes|Engines\.AgreeOn"
   export ASAN_OPTIONS=$tls
   phase 'test asan-ubsan: files and faults' \
     ctest --preset asan-ubsan --parallel "$test_jobs" --output-log build/asan-ubsan/ctest-files.log \

@@ -28,7 +28,7 @@ if not os.path.exists(manifest):
     print(f"no {manifest}: skipped")
     sys.exit(77)
 
-RESOLUTION = "12"
+OPTIONS = ["--resolution", "12", "--quiet"]
 LOADS_ALL_THE_SAME = {"trimesh__notenoughindices.obj",  # one good triangle, and a face of two corners
                       "draco__Box_Draco.glb"}  # refused before Draco was read
 MAY_BE_EITHER = {"meshoptimizer__pirate.glb", "pmp-library__beetle.off"}
@@ -58,10 +58,12 @@ def as_float(value):
     return struct.unpack("f", struct.pack("I", bits_of(nearest) + (-1 if towards_zero else 1)))[0]
 
 
-def compare(mesh, vdb, text, tolerance):
+def compare(mesh, vdb, text):
     grid = pyopenvdb.read(vdb, "winding")
     values = grid.getConstAccessor()
-    rows = csv.DictReader(text.splitlines())
+    rows = list(csv.DictReader(text.splitlines()))
+    # Position = origin + index * spacing, rounded in another order by OpenVDB: some units in the last place.
+    tolerance = 8 * math.ulp(max((abs(float(row[name])) for row in rows for name in "xyz"), default=0.0))
     for row in rows:
         index = (int(row["i"]), int(row["j"]), int(row["k"]))
         if values.getValue(index) != as_float(float(row["w"])):
@@ -70,12 +72,10 @@ def compare(mesh, vdb, text, tolerance):
         for axis, name in enumerate("xyz"):
             if abs(world[axis] - float(row[name])) > tolerance:
                 return expect(False, mesh, f"position of {index} is {world}, in the CSV {row}")
-    return expect(rows.line_num > 1, mesh, "empty CSV")
+    return expect(rows, mesh, "empty CSV")
 
 
-def compare_engines(mesh, path, folder, text, options):
-    other = run("lattice", path, "-o", "-", *options, "--engine", "embree", "--simd", "sse4")
-    expect(other.stdout == text, mesh, f"Embree's lattice differs: {other.stderr}")
+def compare_points(mesh, path, folder, text, options):
     samples = os.path.join(folder, "samples.csv")
     with open(samples, "w", encoding="utf-8") as file:
         file.write(text)
@@ -86,23 +86,48 @@ def compare_engines(mesh, path, folder, text, options):
     os.remove(samples)
 
 
-def check_good(mesh, path, folder):
+def outputs_of_batch(good, folder, *options):
+    """Of each mesh its output: one batch, since starts would take most of the time."""
+    mesh_list = os.path.join(folder, "meshes")
+    with open(mesh_list, "w", encoding="utf-8") as file:
+        file.writelines(f"{path}\n" for path in good.values())
+    out = os.path.join(folder, "out")
+    made = run("batch", "@" + mesh_list, "--out-dir", out, "--full-names", *OPTIONS, *options)
+    expect(made.returncode == 0, "batch", f"{made.returncode} {made.stderr}")
+    with open(os.path.join(out, "results.csv"), encoding="utf-8") as file:
+        outputs = {row["mesh"]: os.path.join(out, row["output"]) for row in csv.DictReader(file)}
+    return {mesh: outputs[os.path.basename(path)] for mesh, path in good.items()}
+
+
+def check_good(good, folder):
+    """VDB and the other engine by batches, CSV by `lattice`."""
+    texts = {}
+    for mesh, path in good.items():
+        text = run("lattice", path, "-o", "-", *OPTIONS)
+        expect(text.returncode == 0, mesh, f"{text.returncode} {text.stderr}")
+        compare_points(mesh, path, folder, text.stdout, OPTIONS)
+        texts[mesh] = text.stdout
+    with tempfile.TemporaryDirectory() as scratch:
+        for mesh, vdb in outputs_of_batch(good, scratch, "--format", "vdb").items():
+            compare(mesh, vdb, texts[mesh])
+    with tempfile.TemporaryDirectory() as scratch:
+        other = ("--format", "csv", "--engine", "embree", "--simd", "sse4")
+        for mesh, output in outputs_of_batch(good, scratch, *other).items():
+            with open(output, encoding="utf-8", newline="") as file:
+                expect(file.read() == texts[mesh], mesh, "Embree's lattice differs")
+
+
+def check_too_small(mesh, path, folder):
     vdb = os.path.join(folder, "out.vdb")
-    options = ["--resolution", RESOLUTION, "--quiet"]
-    if mesh in TOO_SMALL_FOR_VDB:
-        refused = run("lattice", path, "-o", vdb, *options)
-        expect(refused.returncode == 3 and "--scale" in refused.stderr, mesh, f"expected a hint at --scale: {refused}")
-        expect(not os.path.exists(vdb), mesh, "refused, but there is output")
-        options += ["--scale", "1e9"]
-    made = run("lattice", path, "-o", vdb, *options)
-    text = run("lattice", path, "-o", "-", *options)
+    refused = run("lattice", path, "-o", vdb, *OPTIONS)
+    expect(refused.returncode == 3 and "--scale" in refused.stderr, mesh, f"expected a hint at --scale: {refused}")
+    expect(not os.path.exists(vdb), mesh, "refused, but there is output")
+    options = [*OPTIONS, "--scale", "1e9"]
+    made, text = run("lattice", path, "-o", vdb, *options), run("lattice", path, "-o", "-", *options)
     expect(made.returncode == 0 and text.returncode == 0, mesh, f"{made.returncode} {made.stderr}{text.stderr}")
-    if made.returncode == 0 and text.returncode == 0:
-        numbers = [abs(float(row[name])) for row in csv.DictReader(text.stdout.splitlines()) for name in "xyz"]
-        # Position = origin + index * spacing, rounded in another order by OpenVDB: some units in the last place.
-        compare(mesh, vdb, text.stdout, 8 * math.ulp(max(numbers)))
-        compare_engines(mesh, path, folder, text.stdout, options)
-        os.remove(vdb)
+    compare(mesh, vdb, text.stdout)
+    compare_points(mesh, path, folder, text.stdout, options)
+    os.remove(vdb)
 
 
 def check_bad(mesh, path, folder):
@@ -114,15 +139,22 @@ def check_bad(mesh, path, folder):
     expect(not os.listdir(folder), mesh, f"left behind: {os.listdir(folder)}")
 
 
-count = 0
-with tempfile.TemporaryDirectory() as scratch, open(manifest, encoding="utf-8") as lines:
-    for row in csv.DictReader(lines):
-        name = row["file"]
-        if name in MAY_BE_EITHER or int(row["faces"] or 0) > most_faces:
-            continue
-        good = row["expect"].startswith("load") or name in LOADS_ALL_THE_SAME
-        (check_good if good else check_bad)(name, os.path.join(meshes, name), scratch)
-        count += 1
+count, good = 0, {}
+with tempfile.TemporaryDirectory() as folder:
+    with open(manifest, encoding="utf-8") as lines:
+        for row in csv.DictReader(lines):
+            name = row["file"]
+            if name in MAY_BE_EITHER or int(row["faces"] or 0) > most_faces:
+                continue
+            count += 1
+            path = os.path.join(meshes, name)
+            if name in TOO_SMALL_FOR_VDB:
+                check_too_small(name, path, folder)
+            elif row["expect"].startswith("load") or name in LOADS_ALL_THE_SAME:
+                good[name] = path
+            else:
+                check_bad(name, path, folder)
+    check_good(good, folder)
 print("\n".join(failures))
 print(f"{count} meshes, {len(failures)} failures")
-sys.exit(1 if failures or count == 0 else 0)
+sys.exit(1 if failures or not good else 0)

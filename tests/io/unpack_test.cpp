@@ -165,7 +165,7 @@ TEST(Unpack, GivesAllThatHasComeOfZstandardFrames) {
 }
 
 TEST(Unpack, GivesAllThatHasComeOfDeflatedBytes) {
-  for (std::size_t size = (1 << 17) - 2; size < (1 << 17) + 300; ++size) {
+  for (std::size_t size = (1 << 17) - 2; size < (1 << 17) + 300; size += 5) {
     const std::string bytes = "x" + std::string(size - 1, '\0');
     const std::string sent = deflated(bytes, kGzip, Z_DEFAULT_STRATEGY, Z_SYNC_FLUSH);
     ASSERT_EQ(arrived(sent).size(), size);

@@ -1,4 +1,4 @@
-#include "app/run/verify.h"
+#include "app/fields/verify.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/process/messages.h"
+#include "core/machine/threads.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
@@ -332,6 +333,12 @@ TEST(Verify, NamesTheFirstWrongSampleWhateverTheThreads) {
   const TriangleMesh mesh = random_mesh(20);
   const std::string expected = error_of_run(mesh, reversed(mesh), random_points(100));
   EXPECT_EQ(expected.rfind("mesh.obj: sample 0 at ", 0), 0U) << expected;
+  for (const int threads : {1, 2, 8}) {
+    const ThreadLimit limit(threads);
+    for (int run = 0; run < 3; ++run) {
+      EXPECT_EQ(error_of_run(mesh, reversed(mesh), random_points(100)), expected) << threads;
+    }
+  }
 }
 
 TEST(Verify, ComparesDistancesUpToTheBandOnly) {

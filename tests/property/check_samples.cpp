@@ -65,7 +65,12 @@ std::optional<Failure> check_samples(const TriangleMesh& mesh, std::uint64_t see
   const Box box = bounding_box(mesh);
   const PointSampler sampler(mesh, box, {NearSamples{count, 0.0}, UniformSamples{count}}, seed);
   if (sampler.has_area() == surface.triangles.empty()) return Failure{{}, "an area, or none, where there is the other"};
-  if (surface.triangles.empty() || !sampler.is_finite()) return std::nullopt;
+  if (surface.triangles.empty()) return std::nullopt;
+  constexpr double kNear = 1e300;  // to overflow
+  if (!sampler.is_finite()) {
+    if (largest_coordinate(surface) < kNear) return Failure{{}, "said to overflow where nothing is that large"};
+    return std::nullopt;
+  }
   std::vector<Vec3> points(2 * count);
   sampler.draw(0, points);
   const double tolerance = 8 * 0x1p-53 * largest_coordinate(surface) + 0x1p-1073;

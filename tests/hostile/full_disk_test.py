@@ -1,9 +1,11 @@
 """A small disk that is full or read-only: python3 full_disk_test.py RAYCONE MESH_DIRECTORY
 
 Every command, on a file system of its own (tmpfs in a namespace of users and mounts) with ever more room, until it succeeds:
-before that status 3, one line, the earlier outputs and nothing else. Status 77 where no such namespace may be made.
+before that status 3, one line, the earlier outputs and nothing else; of several outputs some may be complete. Status 77 where
+no such namespace may be made.
 """
 
+import json
 import os
 import subprocess
 import sys
@@ -46,7 +48,19 @@ def leave(room):
         file.write(bytes(free - room))
 
 
-def run_once(arguments, outputs, expected):
+# Of a run that failed: those that were replaced, and by what.
+def replaced(outputs):
+    return [(path, contents(path)) for path in outputs if contents(path) != EARLIER]
+
+
+def is_complete(path, content):
+    if path.endswith(".json"):  # it tells times, which vary
+        return content.endswith(b"}\n") and "seconds" in json.loads(content)
+    return content == contents(path)
+
+
+# Whether it succeeded; else `left` grows by what it left in place of earlier outputs.
+def run_once(arguments, outputs, expected, left):
     before = set(os.listdir())
     result = run(arguments)
     what = " ".join(arguments)
@@ -57,26 +71,30 @@ def run_once(arguments, outputs, expected):
     message = result.stderr.decode()
     if result.returncode != 3 or message.count("\n") != 1 or not message.startswith("raycone: ") or expected not in message:
         fail(what, result.returncode, result.stderr)
-    if contents(outputs[0]) != EARLIER and len(outputs) == 1:
-        fail("%s: not the earlier output" % what, result.returncode, result.stderr)
+    left += replaced(outputs)
     return False
 
 
 # From a page on, which is what a tmpfs counts in, to enough.
 def sweep_room(arguments, outputs):
-    refusals, room = 0, 0
+    refusals, room, left = 0, 0, []
     while True:
         empty()
         for path in outputs:
             with open(path, "wb") as file:
                 file.write(EARLIER)
         leave(room)
-        if run_once(arguments, outputs, "No space left on device"):
+        if run_once(arguments, outputs, "No space left on device", left):
             break
         if room > DISK // 2:
             return failures.append("%s: no room is enough" % " ".join(arguments))
         refusals += 1
         room += 4096 if room < 16384 else 65536
+    for path, content in left:  # now that the last run has made the complete ones
+        if len(outputs) == 1 or not is_complete(path, content):
+            failures.append("%s: %s neither the earlier nor the complete one" % (" ".join(arguments), path))
+    if len(replaced(outputs)) < len(outputs):
+        failures.append("%s: succeeded without all outputs" % " ".join(arguments))
     if refusals == 0:
         failures.append("%s: had room on a full disk" % " ".join(arguments))
 
@@ -142,7 +160,10 @@ def inside(directory):
     empty()
     subprocess.run(["mount", "-o", "remount,ro", directory], check=True)
     for arguments, outputs in COMMANDS:
+        before = [contents(path) for path in outputs]
         result = run(arguments)
+        if [contents(path) for path in outputs] != before:
+            fail("read-only, but other outputs: " + " ".join(arguments), result.returncode, result.stderr)
         if result.returncode != 3 or b"Read-only file system" not in result.stderr or result.stderr.count(b"\n") != 1:
             fail("read-only: " + " ".join(arguments), result.returncode, result.stderr)
     os.chdir("/")

@@ -5,6 +5,7 @@ a sanitizer, which ends the process then), with --threads batches of a user who 
 the earlier outputs as they were or replaces them by the complete new ones. --long sweeps more finely.
 """
 
+import csv
 import os
 import random
 import re
@@ -122,6 +123,22 @@ def sweep_batch_memory(step):
             return fail("batch: no memory is enough", process.returncode, process.stderr)
 
 
+# One row per mesh, and the output of each that is ok. A batch that can start nothing at all (4) may have no rows.
+def check_rows(directory, names, status, message):
+    table = os.path.join(directory, "results.csv")
+    rows = []
+    if os.path.exists(table):
+        with open(table, newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    made = [row["output"] for row in rows if row["status"] == "ok"]
+    if [row["mesh"] for row in rows] != names and (status, rows) != (4, []):
+        fail("%s: rows of %s" % (directory, [row["mesh"] for row in rows]), status, message)
+    if rows and (status == 0) != (len(made) == len(rows)):
+        fail("%s: %d of %d rows are ok" % (directory, len(made), len(rows)), status, message)
+    if made and not set(made) <= set(os.listdir(directory)):
+        fail("%s: not all outputs of rows that are ok: %s" % (directory, made), status, message)
+
+
 # Processes that load OpenVDB at once take threads from each other. Root has as many as it likes, so another user runs this.
 def batch_with_few_threads(count):
     def few_threads(threads=12):
@@ -137,6 +154,8 @@ def batch_with_few_threads(count):
     except (OSError, subprocess.SubprocessError):
         print("batches with few threads need root, and a build that others may read")
         sys.exit(77)
+    names = sorted(os.listdir(MESHES))
+    failed = 0
     for i in range(count):
         arguments = [RAYCONE, "batch", MESHES, "--resolution", "6", "--jobs", "4", "--quiet", "--out-dir", "few%d" % i]
         process = subprocess.Popen(arguments, stderr=subprocess.PIPE, preexec_fn=lambda: few_threads(11 + i % 2))
@@ -147,6 +166,10 @@ def batch_with_few_threads(count):
             return fail("batch with few threads hangs", None, b"")
         if process.returncode not in (0, 4, 5) or not all(line.startswith(b"raycone: ") for line in message.splitlines()):
             fail("batch with few threads", process.returncode, message)
+        failed += process.returncode != 0
+        check_rows("few%d" % i, names, process.returncode, message)
+    if failed == 0:
+        fail("batch with few threads: they were enough each time", 0, b"")
 
 
 # Meshes that never end are read until the limit, and no further.

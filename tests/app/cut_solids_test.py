@@ -1,8 +1,8 @@
-"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY [--long]
+"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY [--long|--quick]
 
 Boxes between whole numbers, of either orientation, share sides, parts of sides, edges and corners in every way. The
 oracle: a unit cell is inside where the rule holds of the sum of the boxes around it, so volumes are whole numbers of
-cells. Also under sanitizers (tests/sanitize.sh). --long: ten times as many.
+cells. Also under sanitizers (tests/sanitize.sh), with --quick. --long: ten times as many.
 """
 
 import itertools
@@ -14,7 +14,8 @@ import sys
 from command_case import SURFACE, CommandCase, run_tests
 
 TIMES = 10 if "--long" in sys.argv else 1
-sys.argv = [word for word in sys.argv if word != "--long"]
+QUICK = "--quick" in sys.argv
+sys.argv = [word for word in sys.argv if word not in ("--long", "--quick")]
 SIZE = 5  # of the lattice of cells
 HOLDS = {"threshold=0.5": lambda w: w > 0, "threshold=1.5": lambda w: w > 1, "odd": lambda w: w % 2 == 1,
          "nonzero": lambda w: w != 0}
@@ -64,6 +65,11 @@ def volume(boxes, holds):
     return sum(holds(winding(cell)) for cell in itertools.product(range(SIZE), repeat=3))
 
 
+def but_quick(test):
+    """Of geometry rather than of memory: sanitizers, which take long, see the same code in the other tests."""
+    return None if QUICK else test
+
+
 class CutSolids(CommandCase):
     def measured(self, path):
         """Its volume, once it is what a surface has to be."""
@@ -94,6 +100,7 @@ class CutSolids(CommandCase):
             self.works("surface %s -o out.stl --simplify 0.1" % words)
             self.measured("out.stl")
 
+    @but_quick
     def test_samples_on_sides(self):
         # Where parts touch next to a sample on their sides they move against the perturbation.
         for seed in (1, 5):
@@ -102,6 +109,7 @@ class CutSolids(CommandCase):
                     self.works("surface %s -o out.ply" % words.replace("0.37", size))
                     self.assertAlmostEqual(self.measured("out.ply"), expected, delta=1e-7, msg=words + size)
 
+    @but_quick
     def test_turned(self):
         # Sides of one plane are so but for roundings; a contour, if that is what it takes, may lose tips.
         for words, expected in self.solids(3, 8, turned(random.Random(4))):

@@ -24,6 +24,7 @@ TIMES = re.compile(r" in [0-9.]+ s( \([^)]*\))?|, [^,;\n]*samples/s", re.M)
 
 Row = collections.namedtuple("Row", "words option verdict status", defaults=[0])
 CHANGES, REFUSED, HARMLESS = "changes the result", "is refused", "is harmless"
+OUTPUT = "changes the output"  # not only reports, tables and messages, which name the lattice in any case
 
 BARE = "lattice cubes.obj -o out/a.csv --report out/report.json"
 LATTICE = BARE + " --resolution 5"
@@ -33,8 +34,11 @@ SAMPLE = "points cubes.obj -o out/a.npz --report out/report.json --sample unifor
 NEAR = "points cubes.obj -o out/a.npz --sample near=5:0.1"
 SLICE = "slice cubes.obj -o out/a.png --size 8 --report out/report.json"
 SURFACE = "surface cubes.obj -o out/a.ply --resolution 5 --report out/report.json"
+CONTOUR = "surface open.obj -o out/a.ply --padding .5 --rule abs=.2"  # of samples; cubes.obj is its own surface
 INFO = "info cubes.obj"
-BATCH = "batch good --out-dir out/batch --resolution 5"
+BARE_BATCH = "batch good --out-dir out/batch --format csv"  # for VDB each worker loads OpenVDB
+BATCH = BARE_BATCH + " --resolution 5"
+VDB_BATCH = "batch good --out-dir out/batch --resolution 5"
 
 # Options that say how to run, or what must not happen; no value depends on them.
 RUN = ["--threads 1", "--memory-limit 4G", "--timeout 1000", "--progress never", "--quiet", "--strict"]
@@ -43,10 +47,10 @@ TABLE = [
     # --- Meshes
     *(Row(words.replace("cubes.obj", "nameless"), "--mesh-format obj", CHANGES)
       for words in (LATTICE, POINTS, SLICE, SURFACE, INFO)),
-    Row("batch nameless --out-dir out/batch --resolution 4", "--mesh-format obj", CHANGES),
+    Row("batch nameless --out-dir out/batch --resolution 4 --format csv", "--mesh-format obj", CHANGES),
     *(Row(words.replace("cubes.obj", "seam.obj"), "--weld none", CHANGES)
       for words in (LATTICE, POINTS, SLICE, SURFACE, INFO)),
-    Row("batch seam.obj --out-dir out/batch --resolution 4", "--weld none", CHANGES),
+    Row("batch seam.obj --out-dir out/batch --resolution 4 --format csv", "--weld none", CHANGES),
     *(Row(words, option, CHANGES)
       for words in (LATTICE, POINTS, SLICE, SURFACE, INFO, BATCH) for option in ("--scale 2", "--up y-to-z")),
     *(Row(words, "--normalize sphere:3", CHANGES) for words in (LATTICE, POINTS, SLICE, SURFACE, INFO, BATCH, SAMPLE)),
@@ -55,11 +59,12 @@ TABLE = [
     *(Row(words, "--orient flip", CHANGES) for words in (LATTICE, POINTS, INFO, BATCH, SLICE)),
     Row(SURFACE, "--orient flip", CHANGES, 2),  # nothing is inside then
     # --- Lattices
-    *(Row(words, option, CHANGES)
+    *(Row(words, option, OUTPUT)
       for words in (LATTICE, BATCH)
       for option in ("--bounds 0,0,0,2,2,2", "--padding .5", "--padding 5%", "--resolution 6", "--centers")),
-    *(Row(words, option, CHANGES)
-      for words in (BARE, "batch good --out-dir out/batch") for option in ("--voxel-size .25", "--like grid.vdb", "--like grid.npz", "--like grid.nrrd",
+    *(Row(words, option, OUTPUT)
+      for words in (BARE, BARE_BATCH)
+      for option in ("--voxel-size .25", "--like grid.vdb", "--like grid.npz", "--like grid.nrrd",
                      "--like grid.nii.gz")),
     *(Row(LATTICE, option, REFUSED) for option in ("--voxel-size .25", "--like grid.vdb")),
     *(Row(BARE + " --like grid.vdb", option, REFUSED)
@@ -134,8 +139,9 @@ TABLE = [
     Row(NEAR, "--seed 2", CHANGES),
     Row(BATCH, "--seed 2", REFUSED),
     # --- Slices
-    *(Row(SLICE, option, CHANGES)
-      for option in ("--axis x", "--at 10%", "--normal 1,1,0", "--bounds 0,0,0,2,2,2", "--padding .5", "--size 9",
+    Row(SLICE.replace("cubes.obj", "open.obj"), "--axis x", OUTPUT),  # cubes.obj looks the same along all axes
+    *(Row(SLICE, option, OUTPUT)
+      for option in ("--at 10%", "--normal 1,1,0", "--bounds 0,0,0,2,2,2", "--padding .5", "--size 9",
                      "--values out/v.npy")),
     Row("slice cubes.obj -o out/a.png --size 400", "--no-legend", CHANGES),
     Row(SLICE + " --normal 1,1,0", "--origin .1,.1,.1", CHANGES),
@@ -143,16 +149,15 @@ TABLE = [
     Row(SLICE + " --normal 1,1,0", "--axis x", REFUSED),
     Row(SLICE + " --normal 1,1,0", "--at 10%", REFUSED),
     # --- Surfaces
-    *(Row(SURFACE, option, CHANGES)
-      for option in ("--bounds -1,-1,-1,3,3,3", "--padding .5", "--padding 2v", "--resolution 6", "--centers",
-                     "--rule odd", "--simplify none")),
-    Row(SURFACE, "--simplify 0", HARMLESS),  # the default
-    Row(SURFACE, "--thicken .1", CHANGES),
-    Row("surface open.obj -o out/a.ply --resolution 9 --padding .5 --rule abs=.2", "--simplify .1", CHANGES),
+    *(Row(CONTOUR + " --resolution 9", option, OUTPUT)
+      for option in ("--bounds -1,-1,-1,2,2,2", "--padding .75", "--padding 8v", "--resolution 6", "--centers",
+                     "--rule abs=.15", "--simplify none", "--simplify .1", "--thicken .1")),
+    *(Row(SURFACE, option, OUTPUT) for option in ("--rule odd", "--simplify none", "--thicken .1")),
+    *(Row(words, "--simplify 0", HARMLESS) for words in (SURFACE, CONTOUR + " --resolution 9")),  # the default
     Row(SURFACE, "--voxel-size .25", REFUSED),
     Row(SURFACE, "--like grid.vdb", REFUSED),
-    *(Row(SURFACE.replace(" --resolution 5", ""), option, CHANGES)
-      for option in ("--voxel-size .25", "--like grid.vdb")),
+    Row(CONTOUR, "--voxel-size .25", OUTPUT),
+    Row(CONTOUR.replace(" --padding .5", ""), "--like around.vdb", OUTPUT),  # else its box is too small
     # --- Output
     *(Row(re.sub("-o out/a.... ", "", words), "-o out/b" + end, CHANGES)
       for words, end in ((LATTICE, ".csv"), (POINTS, ".csv"), (SAMPLE, ".npz"), (SLICE, ".png"),
@@ -184,7 +189,7 @@ TABLE = [
     *(Row(FILE + end, "--dtype f64", CHANGES) for end in ("nrrd", "nii", "nii.gz")),
     *(Row(words, "--compress", CHANGES) for words in (FILE + "nrrd", BATCH + " --format nrrd")),
     *(Row(words, "--compress", REFUSED)
-      for words in (FILE + "vdb", FILE + "nii", FILE + "nii.gz", BATCH, BATCH + " --format none")),
+      for words in (FILE + "vdb", FILE + "nii", FILE + "nii.gz", VDB_BATCH, VDB_BATCH + " --format none")),
     *(Row(FILE + end, "--diagnostics", REFUSED) for end in ("nrrd", "nii")),
     *(Row(words, "--dtype f32", CHANGES)
       for words in (SAMPLE, SAMPLE + " --field inside", POINTS + " --format npy", "batch good --out-dir out/batch --sample uniform=3")),
@@ -195,8 +200,8 @@ TABLE = [
       for words in (SAMPLE, FILE + "npz --field inside,winding", BATCH + " --format npz --field inside",
                     POINTS + " --format npz --field inside")),
     *(Row(words, "--pack-bits", REFUSED)
-      for words in (FILE + "npz", FILE + "npy --field inside", POINTS + " --field inside", BATCH + " --field inside",
-                    BATCH + " --format none")),
+      for words in (FILE + "npz", FILE + "npy --field inside", POINTS + " --field inside",
+                    VDB_BATCH + " --field inside", BATCH + " --format none")),
     Row(FILE + "csv", "--double", REFUSED),
     Row(BATCH + " --format csv", "--double", REFUSED),
     *(Row(FILE + end + " --field inside", "--double", REFUSED) for end in ("vdb", "npy", "vti")),
@@ -209,7 +214,7 @@ TABLE = [
     Row(FILE + "vdb --field inside", "--grid-name mask", CHANGES),
     *(Row(FILE + end, "--grid-name w", REFUSED) for end in ("csv", "npy", "vti")),
     Row(FILE + "vdb --field winding,inside", "--grid-name w", REFUSED),
-    *(Row(BATCH, option, CHANGES)
+    *(Row(VDB_BATCH, option, CHANGES)
       for option in ("--double", "--half", "--grid-name w", "--format csv", "--format none")),
     *(Row(BATCH + " --format none", option, REFUSED)
       for option in ("--double", "--half", "--grid-name w", "--full-names")),
@@ -220,9 +225,9 @@ TABLE = [
     Row(INFO + " --json", "--intersections", CHANGES),
     Row("info open.obj", "--mark out/mark.ply", CHANGES),
     # --- batch
-    Row("batch good --resolution 4", "--out-dir out/other", CHANGES),
+    Row("batch good --resolution 4 --format csv", "--out-dir out/other", CHANGES),
     Row(BATCH, "--full-names", CHANGES),
-    Row("batch @null.txt --out-dir out/batch --resolution 4", "--null", CHANGES),
+    Row("batch @null.txt --out-dir out/batch --resolution 4 --format csv", "--null", CHANGES),
     Row(BATCH, "--null", REFUSED),
     Row(BATCH, "-0", REFUSED),
     Row(BATCH, "--shard 1/2", CHANGES),
@@ -270,12 +275,25 @@ def without_metadata(content):
     return kinds, [grid.split(b"raycone_")[0] for grid in grids]
 
 
+def without_text(content):
+    """PNG: its chunks but those that say in words what is shown."""
+    chunks, place = [], 8
+    while place < len(content):
+        end = place + 12 + struct.unpack_from(">I", content, place)[0]
+        if content[place + 4 : place + 8] != b"iTXt":
+            chunks.append(content[place:end])
+        place = end
+    return chunks
+
+
 def without_times(name, content):
     if name.startswith("results") and name.endswith(".csv"):
         rows = csv.DictReader(content.decode().splitlines())
         return [{key: value for key, value in row.items() if not key.endswith(("_s", "_bytes"))} for row in rows]
     if name.endswith(".vdb"):
         return without_metadata(content)
+    if name.endswith(".png"):
+        return without_text(content)
     if name.endswith(".npz"):
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             return {member: archive.read(member) for member in archive.namelist() if member != "raycone.npy"}
@@ -296,6 +314,10 @@ def written():
             with open(path, "rb") as file:
                 result[path] = without_times(name, file.read())
     return result
+
+
+def outputs_of(files):
+    return {path: content for path, content in files.items() if not path.endswith((".json", "results.csv"))}
 
 
 def clear():
@@ -350,8 +372,9 @@ class OptionEffects(unittest.TestCase):
             with open(name, "wb") as file:
                 file.write(content)
         for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "lattice cubes.obj -o grid.npz --resolution 3",
+                      "lattice open.obj -o around.vdb --resolution 5 --padding .5",
                       "lattice cubes.obj -o grid.nrrd --resolution 3", "lattice cubes.obj -o grid.nii.gz --resolution 3",
-                      "batch good --out-dir done --resolution 4"):
+                      "batch good --out-dir done --resolution 4 --format csv"):
             assert run(words).returncode == 0, words
         cls.baselines = {}
 
@@ -377,6 +400,8 @@ class OptionEffects(unittest.TestCase):
         elif row.verdict == HARMLESS:
             expected, _, _, others = self.without(row.words)
             self.assertTrue((status, files) == (expected, others), line + " is not harmless: " + messages)
+        elif row.verdict == OUTPUT:
+            self.assertNotEqual(outputs_of(files), outputs_of(self.without(row.words)[3]), line)
         else:
             changed = (status, output, messages, files) != self.without(row.words)
             self.assertTrue(changed, line + " changes nothing: " + messages)

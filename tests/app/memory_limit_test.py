@@ -112,14 +112,17 @@ def check_batch(meshes, limit, out, runs):
                               "--memory-limit", limit], capture_output=True, text=True, check=False)
     if process.returncode not in (0, 5):
         return [f"batch: status {process.returncode}: {process.stderr}"]
-    wrong = []
+    wrong, count = [], 0
     with open(os.path.join(out, "results.csv"), encoding="utf-8") as file:
         header = file.readline().strip().split(",")
         for line in file:
             row = dict(zip(header, line.strip().split(",")))
-            runs[0] += 1
+            count += 1
             if row["status"] not in ("ok", "memory") or int(row["peak_memory_bytes"] or 0) > bytes_of(limit):
                 wrong.append("batch: " + line)
+    runs[0] += count
+    if count != len(meshes):
+        wrong.append(f"batch within {limit}: {count} rows of {len(meshes)} meshes")
     return wrong
 
 

@@ -96,23 +96,30 @@ class Labels(CommandCase):
         self.works("lattice %s -o labels.npy --field label%s%s" % (words, place, options))
         return numpy.load("labels.npy")
 
-    def expected(self, files, options="", first=False, place=BOX):
-        """Label by label, from single jobs."""
-        labels = None
-        for number, name in enumerate(files.split(), 1):
+    def single_jobs(self, files, options="", place=BOX):
+        """What is inside of each file."""
+        arrays = []
+        for name in files.split():
             self.works("lattice %s -o single.npy --field inside%s%s" % (name, place, options))
-            inside = numpy.load("single.npy")
-            labels = numpy.zeros(inside.shape, "i4") if labels is None else labels
-            labels[inside & (labels == 0) if first else inside] = number
-        return labels
+            arrays.append(numpy.load("single.npy"))
+        return arrays
+
+
+def labels_of(arrays, first=False):
+    """Label by label, of the last array, or the first one, that holds a sample."""
+    labels = numpy.zeros(arrays[0].shape, "i4")
+    for number, inside in enumerate(arrays, 1):
+        labels[inside & (labels == 0) if first else inside] = number
+    return labels
 
 
 class Values(Labels):
     def test_files_are_what_single_jobs_say(self):
         for options in ("", " --rule abs=0.5", " --rule nonzero", " --orient auto", " --rule threshold=0.25",
                         " --rule threshold=-0.5", " --scale 1.5 --up y-to-z", " --weld 0.01", " --tolerance 0"):
+            arrays = self.single_jobs(self.files, options)
             for first in (False, True):
-                expected = self.expected(self.files, options, first)
+                expected = labels_of(arrays, first)
                 labels = self.lattice(self.files, options + (" --priority" if first else ""))
                 self.assertEqual(labels.dtype, numpy.int32)
                 self.assertTrue((labels == expected).all(), (options, first))
@@ -121,7 +128,8 @@ class Values(Labels):
         # A fine lattice has samples just within all faces.
         for place in (" --bounds -.25,.3,.3,3.25,1.7,1.7 --resolution 701,3,3",
                       " --bounds .3,.3,-.25,2.7,1.7,1.75 --resolution 5,3,401"):
-            self.assertTrue((self.lattice(self.files, "", place) == self.expected(self.files, place=place)).all())
+            expected = labels_of(self.single_jobs(self.files, place=place))
+            self.assertTrue((self.lattice(self.files, "", place) == expected).all())
         # Overlap is there, and decides.
         self.assertFalse((self.lattice(self.files) == self.lattice(self.files, " --priority")).all())
 
@@ -147,7 +155,7 @@ class Values(Labels):
         self.write("b.obj", obj({"": (twice[0] + shifted[0], list(twice[1]) + list(shifted[1]))}))
         self.write("a.obj", obj({"": box((0, 0, 0))}))
         labels = self.lattice("m.gltf", " --parts group --report r.json")
-        self.assertTrue((labels == self.expected("a.obj b.obj")).all())
+        self.assertTrue((labels == labels_of(self.single_jobs("a.obj b.obj"))).all())
         self.assertEqual([part["name"] for part in json.loads(read("r.json"))["parts"]], ["part 1", "b"])
 
     def test_more_parts_than_a_byte_holds(self):

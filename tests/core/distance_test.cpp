@@ -81,7 +81,6 @@ double least_of_all(const TriangleMesh& mesh, const Vec3& p) {
   return std::sqrt(least);
 }
 
-// Of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
 TEST(Distance, OfPointsWithinALimitIsWhatItIsWithout) {
   const TriangleMesh mesh = test::assorted_triangles();
   const DistanceEvaluator distance(mesh);
@@ -103,6 +102,7 @@ TEST(Distance, OfPointsWithinALimitIsWhatItIsWithout) {
   }
 }
 
+// Of needles of all thicknesses: next to them, nearly all squares are in doubt until the nearest is known.
 TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

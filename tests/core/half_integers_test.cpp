@@ -137,8 +137,8 @@ TEST(HalfIntegers, AreExactOnLatticesAsAtPoints) {
   }
 }
 
-// Where the exterior edges do not lie in one plane, 113 bits tell that all else cancels: two cups whose openings are in
-// one plane, and beside them a sheet and its mirror image in that plane.
+// Where the exterior edges do not lie in one plane, 113 bits tell that all else cancels: a cup, and beside it a sheet
+// and its mirror image in the plane of the cup's opening.
 TEST(HalfIntegers, AreExactWhereOtherEdgesCancel) {
   Random random(3);
   const TriangleMesh upright = cup(random, 9);

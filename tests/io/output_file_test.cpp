@@ -263,7 +263,6 @@ TEST(OutputFile, WritesToANamedDescriptor) {
   close(ends[0]);
 }
 
-// `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
 // The link there reads "pipe:[...]".
 TEST(OutputFile, WritesToAPipeOfAnyProcess) {
   std::array<int, 2> ends{};
@@ -280,6 +279,7 @@ TEST(OutputFile, WritesToAPipeOfAnyProcess) {
   ::close(ends[0]);
 }
 
+// `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
 TEST(OutputFile, WritesToANamedDescriptorOfARegularFileWhereItStands) {
   const TemporaryDirectory directory;
   put(directory / "log", "before ");

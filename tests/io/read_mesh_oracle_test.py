@@ -454,7 +454,7 @@ def ask(dump, paths):
 
 
 def written(dump, count, seed):
-    """Yields what is wrong with meshes written here, then how many there were."""
+    """Yields what is wrong with meshes written here."""
     with tempfile.TemporaryDirectory() as directory:
         for start in range(0, count, 500):
             cases = []

@@ -162,7 +162,7 @@ TEST(TakeApart, TakesCellsApart) {
   int touching = 0;
   for (int round = 0; round < 300; ++round) {
     const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
-    if (mesh.triangles.empty() || is_closed_and_embedded(mesh)) continue;
+    if (is_closed_and_embedded(mesh)) continue;
     ++touching;
     for (const bool single_precision : {false, true}) {
       const Taken taken = taken_apart(mesh, single_precision);
@@ -203,7 +203,7 @@ TEST(TakeApart, KeepsNodesOnTheirSides) {
   int touching = 0, apart = 0, moved = 0;
   for (int round = 0; round < 200; ++round) {
     const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
-    if (mesh.triangles.empty() || is_closed_and_embedded(mesh)) continue;
+    if (is_closed_and_embedded(mesh)) continue;
     ++touching;
     Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
     taken.is_apart = take_apart(taken.mesh, taken.sources, {.distance = kDistance, .way = (1.0 / norm(way)) * way});

@@ -150,12 +150,11 @@ TEST(WindingNumber, ScalingByAPowerOfTwoChangesNoBit) {
 
 TEST(WindingNumber, JumpsByOneAcrossTheSurfaceOnly) {
   const TriangleMesh mesh = test::open_box();
-  const double below = 0.25, step = 1e-9;
+  const double step = 1e-9;
   const std::vector<double> v =
       values_of(mesh, {{0.3, 0.4, -step}, {0.3, 0.4, step}, {0.3, 0.4, 1 - step}, {0.3, 0.4, 1 + step}});
   EXPECT_NEAR(v[1] - v[0], 1.0, 1e-8);
   EXPECT_NEAR(v[3] - v[2], 0.0, 1e-8);  // the open side
-  EXPECT_GT(v[1], below);
 }
 
 // --- Degeneracies ---

@@ -444,13 +444,15 @@ class Meshes(DataSets):
         original = json.loads(self.works("info %s --json" % TEAPOT))
         for kind, size in (("cube", 1), ("cube:3", 3), ("sphere:2", 2)):
             bounds = numpy.array(json.loads(self.works("info %s --json --normalize %s" % (TEAPOT, kind)))["bounds"])
-            self.assertTrue(abs(bounds.sum(axis=0)).max() < 1e-15 * size)
+            # Each is a difference times a factor, of half the size: of the two, both are rounded, and the middle is.
+            rounding = 2.0**-53 * size
+            self.assertTrue(abs(bounds.sum(axis=0)).max() <= 4 * rounding)
             if kind != "sphere:2":
-                self.assertLess(abs((bounds[1] - bounds[0]).max() - size), 1e-15 * size)
+                self.assertLess(abs((bounds[1] - bounds[0]).max() - size), 6 * rounding)  # the side and the factor, too
             values = self.points(TEAPOT + " --sample surface=2e3 --normalize " + kind)
             transform = values["transform"]
             moved = numpy.array(original["bounds"]) @ transform[:3, :3].T + transform[:3, 3]
-            self.assertTrue(abs(moved - bounds).max() < 4e-16 * size)
+            self.assertTrue(abs(moved - bounds).max() <= 4 * rounding)  # of the one way, and of the other
             if kind == "sphere:2":
                 most = numpy.linalg.norm(values["points"], axis=1).max()
                 self.assertTrue(0.9 < most <= 1 + 1e-15, most)

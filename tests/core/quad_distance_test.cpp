@@ -21,9 +21,10 @@ TEST(QuadDistance, IsThatOfTheDefinition) {
     const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}, {0, 1, 1}}};
     const Vec3 p = i % 2 == 0 ? test::uniform_point(random, box)
                               : a + 0.3 * (b - a) + 0.2 * (c - a) + 1e-3 * height * test::uniform_point(random, box);
-    // In doubles: what is left of 113 bits where 47 cancel in the sides of the thinnest triangles.
-    EXPECT_NEAR(static_cast<double>(test::quad_distance(mesh, p)), static_cast<double>(direct_distance(mesh, p)),
-                1e-17);
+    // A few roundings to 113 bits, times the triangle's length over its height: by that its plane may be turned. Of
+    // 12000 such cases, in decimal numbers of 34 digits, the worst misses by 6e-33 / height.
+    const Quad difference = test::quad_distance(mesh, p) - direct_distance(mesh, p);
+    EXPECT_LT(static_cast<double>(difference < 0 ? -difference : difference), 1e-31 / height) << i;
   }
 }
 

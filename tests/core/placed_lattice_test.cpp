@@ -90,18 +90,22 @@ TEST(PlacedLattice, OtherAxesHaveNoOrder) {
 
 TEST(PlacedLattice, IndicesAreThoseOfThePlace) {
   Random random(1);
+  int tried = 0;
   for (int repeat = 0; repeat < 100; ++repeat) {
     const Box box{{-1, -1, -1}, {1, 1, 1}};
     std::array<Vec3, 3> steps;
     for (Vec3& step : steps) step = uniform_point(random, box);
     const PlacedLattice lattice(uniform_point(random, box), steps, {-5, 0, 2}, {9, 9, 9});
     if (std::abs(lattice.signed_volume()) < 1e-3) continue;
+    ++tried;
     const Vec3 indices = indices_of(lattice, lattice.position(-3, 4, 7));
-    // Rounding of places, some 1e-15, over a volume of 1e-3.
+    // Rounding of places, some 3e-15 of 20, times the inverse: products of two steps, up to 3, over a volume of 1e-3.
+    // And as much for the roundings of these products, and of the volume.
     EXPECT_NEAR(indices.x, -3, 1e-10);
     EXPECT_NEAR(indices.y, 4, 1e-10);
     EXPECT_NEAR(indices.z, 7, 1e-10);
   }
+  EXPECT_GT(tried, 90);
 }
 
 TEST(PlacedLattice, BoxHoldsAllSamples) {

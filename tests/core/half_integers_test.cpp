@@ -103,7 +103,7 @@ TEST(HalfIntegers, AreExactInThePlaneOfAnOpeningWhateverItsAxis) {
           EXPECT_EQ(values[i], 0.5);
           EXPECT_EQ(backwards[i], -0.5);
         } else {
-          EXPECT_NEAR(values[i], 0.0, 1e-14);
+          EXPECT_NEAR(values[i], 0.0, 1e-14);  // a sum of up to 40 angles, each rounded by some 1e-16 of a turn
         }
       }
       EXPECT_EQ(evaluate(mesh, queries, RayEngine::kEmbree), values);
@@ -195,6 +195,7 @@ TEST(HalfIntegers, AreNotThoseOfTheRim) {
     }
     const std::vector<double> values = evaluate(mesh, queries);
     for (std::size_t i = 0; i < queries.size(); ++i) {
+      // A few roundings of the angles of four edges, of 1e-16 each.
       EXPECT_NEAR(values[i], static_cast<double>(perturbed_direct_sum(mesh, queries[i]).value), 1e-15);
     }
   }
@@ -225,6 +226,7 @@ TEST(HalfIntegers, AreMissedByTheAngleOfASheetAtItsRim) {
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
   for (const TriangleMesh& mesh : {sheet, test::reversed(sheet)}) {
     const double w = evaluate(mesh, {{0, 0, 0.5}})[0];
+    // Within two doubles, which are 2^-54 apart below 1/2. The angle makes 1.8e-14.
     EXPECT_NEAR(std::abs(w), 0.5 - 0x1p-43 / (2 * 3.14159265358979), 1e-16);
     EXPECT_NEAR(w, static_cast<double>(perturbed_direct_sum(mesh, {0, 0, 0.5}).value), 1e-16);
   }

@@ -16,7 +16,8 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr double kLeastSquare = 0x1p-900;  // of a distance: less has lost bits, or loses them in what follows
+// Of a distance: less has lost bits, or its third power does.
+constexpr double kLeastSquare = 0x1p-660;
 constexpr std::size_t kDeepest = 16;       // levels of nodes: each has eight times as many as the one above it
 
 // Of the distances of the boxes from lane i on from `box`.

@@ -27,7 +27,7 @@ inline constexpr std::size_t kChangeOrders = 8;
 using ChangeSums = std::array<double, kChangeOrders>;
 
 // Bounds of what all sources below node 0 add in a box, but for rounding. Sums come in one order: they are the same for
-// every SIMD level. Infinite where a source is closer than 2^-450. Thread-safe.
+// every SIMD level. Infinite where a source is closer than 2^-330. Thread-safe.
 struct ChangeKernel {
   // To gradients; infinite beyond `limit`.
   double (*gradient)(std::span<const ChangeNode> nodes, const Box& box, double limit);

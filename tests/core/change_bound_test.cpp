@@ -80,6 +80,30 @@ TEST(ChangeBound, KnowsThatALoopCancelsFromAfar) {
   }
 }
 
+// Sources next to samples, in units of the mesh: the third power of the distance loses its bits, or is 0.
+TEST(ChangeBound, IsNeverLessBecauseDistancesAreTiny) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kArea = 0x1p-1000;
+  ChangeNode node{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    node.lower[a].fill(kInfinity);  // nothing
+    node.upper[a].fill(kInfinity);
+    node.lower[a][0] = node.upper[a][0] = 0.0;
+  }
+  node.far_square.fill(-1.0);
+  node.area[0] = kArea;
+  int finite = 0;
+  for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    for (double d = 0x1p-480; d < 0x1p-300; d *= 1.07) {
+      const double gradient = change_kernel(level).gradient({&node, 1}, {{d, 0, 0}, {d, 0, 0}}, kInfinity);
+      const long double expected = static_cast<long double>(kArea) / d / d / d;  // whose exponents have more bits
+      EXPECT_GE(gradient, expected * (1 - 1e-12L)) << d;
+      finite += std::isfinite(gradient);
+    }
+  }
+  EXPECT_GT(finite, 500);
+}
+
 TEST(ChangeBound, IsTheSameForAllSimdLevels) {
   test::Random random(8);
   const Caps caps = make_caps(Boundary(weld(test::soup(random, 40), {})), 0.05);

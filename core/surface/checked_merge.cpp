@@ -12,6 +12,7 @@
 #include "core/mesh/used_part.h"
 #include "core/surface/certificate.h"
 #include "core/surface/kept_vertices.h"
+#include "core/surface/left_behind.h"
 #include "core/surface/merge_planes.h"
 #include "core/surface/mesh_corners.h"
 #include "core/surface/repeated_check.h"
@@ -64,6 +65,8 @@ class CheckedMerger {
     std::uint64_t faults_before = 0;
     NodeSet misplaced(inside_.lattice());
     moves_ = PointMoves::kNone;
+    constexpr int kMostDrifts = 32;  // a bend of 62 tolerances takes one
+    int drifts = 0;
     const int rounds = KeptVertices::kRounds + (effort == Effort::kAll ? KeptVertices::kWideRounds : 0);
     const auto may_go_on = [&] { return effort == Effort::kLeast || is_right(); };
     for (int round = 0; round < rounds; ++round) {
@@ -77,7 +80,14 @@ class CheckedMerger {
         cuts_nodes_off_ = cuts_nodes_off_ || faults.nodes > 0;
         faces_of_all_ = std::max(faces_of_all_, static_cast<double>(compact.triangles.size()));
       }
-      if (faults.none()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
+      if (faults.none()) {
+        const std::vector<std::uint32_t> behind = left_behind(surface_, merged, compact, most_apart(most, compact));
+        if (behind.empty()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
+        if (++drifts > kMostDrifts) return std::nullopt;
+        kept_.keep(behind);
+        --round;  // nothing is at fault
+        continue;
+      }
       if (faults.nodes > few_nodes && effort != Effort::kAll) return std::nullopt;
       const std::uint64_t count = count_of(faults);
       const bool no_better = round > 0 && count >= faults_before;
@@ -127,6 +137,13 @@ class CheckedMerger {
         if (kept_.at_home()[v]) mesh.vertices[mesh.triangles[face][n]] = surface_.mesh.vertices[v];
       }
     }
+  }
+
+  // Points at a node become one; what vanished may be off a plane on one side, what is left on the other.
+  [[nodiscard]] double most_apart(double most, const TriangleMesh& mesh) const {
+    constexpr double kRounding = 0x1p-48;  // of distances, for coordinates
+    const Box box = bounding_box(mesh);
+    return kNearCorner * unit_ + 2 * most + kRounding * (largest_coordinate(box.lower) + largest_coordinate(box.upper));
   }
 
   // Of those that are undone.

@@ -37,6 +37,10 @@ double voxels_between(const Vec3& p, const Vec3& q, const Lattice& lattice) {
 
 }  // namespace
 
+void KeptVertices::keep(std::span<const std::uint32_t> vertices) {
+  for (const std::uint32_t v : vertices) kept_[v] = true;
+}
+
 bool KeptVertices::keep_more(const FaultyMerge& found, int round) {
   constexpr double kFirstReach = 0.25;  // voxels; then 1, 2, 4, ...
   const bool any_home = keep_at_home(found);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
@@ -32,6 +34,9 @@ class KeptVertices {
   // Those that are not merged; and those of them that are not moved either. By their numbers.
   [[nodiscard]] const std::vector<bool>& kept() const { return kept_; }
   [[nodiscard]] const std::vector<bool>& at_home() const { return at_home_; }
+
+  // Keeps these, too.
+  void keep(std::span<const std::uint32_t> vertices);
 
   // Keeps more, as what is left in this round has faults. Returns whether there are any.
   bool keep_more(const FaultyMerge& found, int round);

@@ -82,6 +82,34 @@ double volume_of(const TriangleMesh& mesh) {
   return volume;
 }
 
+// A box whose top is bent by a parabola in strips, two triangles each, with coordinates that are floats.
+TriangleMesh bent_box(std::uint32_t strips, double depth, double bend, double height) {
+  constexpr double kWidth = 1000;
+  TriangleMesh mesh;
+  for (const bool is_top : {true, false}) {
+    for (std::uint32_t n = 0; n <= strips; ++n) {
+      const double x = kWidth * (2.0 * n / strips - 1),
+                   z = is_top ? height - bend * x * x / (kWidth * kWidth) : -height;
+      mesh.vertices.insert(mesh.vertices.end(), {{x, -depth, z}, {x, depth, z}});
+    }
+  }
+  round_to_float(mesh.vertices);
+  const std::uint32_t below = 2 * (strips + 1);
+  const auto quad = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  for (std::uint32_t t = 0; t < 2 * strips; t += 2) {
+    const std::uint32_t b = below + t;
+    quad(t, t + 2, t + 3, t + 1);
+    quad(b, b + 1, b + 3, b + 2);
+    quad(b, b + 2, t + 2, t);
+    quad(b + 3, b + 1, t + 1, t + 3);
+  }
+  quad(below + 1, below, 0, 1);
+  quad(2 * below - 2, 2 * below - 1, below - 1, below - 2);
+  return mesh;
+}
+
 std::vector<Vec3> sorted_vertices(const TriangleMesh& mesh) {
   std::vector<Vec3> vertices = mesh.vertices;
   std::ranges::sort(vertices, {}, [](const Vec3& v) { return std::tuple(v.x, v.y, v.z); });
@@ -121,6 +149,22 @@ TriangleMesh finned(double thickness, double length) {
 TriangleMesh box_at(double x, double size, bool outward = true) {
   const TriangleMesh box = test::box_mesh({x, 0.3, 0.4}, {x + size, 0.3 + size, 0.4 + size});
   return outward ? box : test::reversed(box);
+}
+
+// Strip by strip, each in the planes of those that are left: the whole bend of 62 tolerances was merged away.
+TEST(MeshAsSurface, MergingDoesNotAddUp) {
+  for (const double simplify : {0.0, 9.6e-4}) {
+    const TriangleMesh mesh = bent_box(3000, 1000, 0.0163, 1000);
+    SurfaceOptions options;
+    options.simplify = simplify;
+    const std::optional<FinishedSurface> made = kept(mesh, 33, options);
+    ASSERT_TRUE(made);
+    EXPECT_LT(made->surface.mesh.triangles.size(), mesh.triangles.size() / 2) << "nothing was merged";
+    std::vector<double> distances(mesh.vertices.size());
+    DistanceEvaluator(made->surface.mesh).evaluate(mesh.vertices, distances);
+    constexpr double kTolerance = 1000 * 0x1p-22;  // plane_tolerance() of floats
+    EXPECT_LE(std::ranges::max(distances), simplify > 0.0 ? simplify : 2 * kTolerance);
+  }
 }
 
 TEST(MeshAsSurface, IsTheMeshWhereThatIsASolid) {

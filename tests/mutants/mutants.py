@@ -786,6 +786,11 @@ MUTANTS = [
     Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [
         ("core/surface/certificate.cpp", "cells.meets(range_of(mesh.triangles[face]))",
          "std::ranges::find(change.faces, face) != change.faces.end()")]),
+    Mutant("pulls_add_up", "merging stays near all points that are gone", [
+        ("core/surface/checked_merge.cpp", "if (behind.empty())", "if (!behind.empty() || behind.empty())")]),
+    Mutant("third_powers_underflow", "sources so near that powers of distances underflow have no bound", [
+        ("core/boundary/change_kernel.cpp", "constexpr double kLeastSquare = 0x1p-660;",
+         "constexpr double kLeastSquare = 0x1p-900;")]),
     Mutant("bricks_not_merged_again", "bricks in which something else is kept are merged again", [
         ("core/surface/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
          "if (kept[v] != kept_[v] && v % 2 == 0) changed.push_back(v);")]),

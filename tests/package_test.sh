@@ -48,8 +48,8 @@ if grep -rhE 'core/[a-z]+/' "$work/prefix/include"; then
 fi
 
 # The library alone needs nothing that only the tool does.
-cmake -S "$root" -B "$work/library" -DCMAKE_CXX_COMPILER="$compiler" -DRAYCONE_TOOL=OFF -DRAYCONE_TESTS=OFF \
-  -DRAYCONE_BENCH=OFF -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON -DCMAKE_DISABLE_FIND_PACKAGE_EXPAT=ON \
+cmake -S "$root" -B "$work/library" -DCMAKE_CXX_COMPILER="$compiler" -DRAYCONE_TOOL=OFF \
+  -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON -DCMAKE_DISABLE_FIND_PACKAGE_EXPAT=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 
 cmake -S "$work/example" -B "$work/build" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$work/prefix" \

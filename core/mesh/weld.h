@@ -12,7 +12,7 @@ struct Weld {
   double distance = 0.0;  // world units; only for kDistance, positive and finite
 };
 
-// Precondition: the indices of `mesh` are in range. The mesh with -0 stored as +0, and with equal vertices merged into representatives:
+// The mesh with -0 stored as +0, and with equal vertices merged into representatives:
 //
 //   kNone      none are merged
 //   kExact     those of bitwise equal coordinates
@@ -21,7 +21,7 @@ struct Weld {
 //
 // Triangles keep their number and order. The result does not depend on the order of faces, with kDistance not on that
 // of vertices either. n vertices take time in proportion to n, with kDistance to n log n, wherever they lie. Uses the
-// threads that ThreadLimit allows.
+// threads that ThreadLimit allows. Precondition: indices are in range.
 [[nodiscard]] TriangleMesh weld(TriangleMesh mesh, const Weld& how);
 
 }  // namespace raycone

@@ -51,7 +51,7 @@ double most_moved(const Cube& cube) {
 }
 
 // What that changes of the fit of a dipole of unit strength, in the units of dipole_error(): the dipole's field changes
-// by at most 1 / (2 pi r^3) times the way, and the fit by its weights times that (docs/method.md, "Rounding").
+// by at most 1 / (2 pi r^3) times the way, and the fit by its weights times that (docs/method.md, "Moved nodes").
 double moved_nodes_error(double distance, double moved) {
   constexpr double kPerWay = HarmonicFit::kLargestWeights * 0.27567;  // sqrt(3) / (2 pi)
   const double gap = distance - 1.0 - moved;
@@ -234,7 +234,7 @@ double LatticeBlocksWalk::error_of(const TriangleExtent& source, const Cube& cub
     distance =
         std::max({distance, source.box.lower[axis] - cube.centre[axis], cube.centre[axis] - source.box.upper[axis]});
   }
-  distance *= (1 - 0x1p-40) / cube.half;  // rounding of the quotients must make it no larger
+  distance = distance / cube.half * (1 - 0x1p-40);  // rounding of the quotients must make it no larger
   return source.area / (cube.half * cube.half) * (dipole_error(distance) + moved_nodes_error(distance, moved));
 }
 

@@ -141,9 +141,8 @@ class CheckedMerger {
 
   // Points at a node become one; what vanished may be off a plane on one side, what is left on the other.
   [[nodiscard]] double most_apart(double most, const TriangleMesh& mesh) const {
-    constexpr double kRounding = 0x1p-48;  // of distances, for coordinates
-    const Box box = bounding_box(mesh);
-    return kNearCorner * unit_ + 2 * most + kRounding * (largest_coordinate(box.lower) + largest_coordinate(box.upper));
+    constexpr double kRounding = 0x1p-47;  // of distances: 2^-51 of coordinates is what they are off by at most
+    return kNearCorner * unit_ + 2 * most + kRounding * largest_coordinate(bounding_box(mesh));
   }
 
   // Of those that are undone.

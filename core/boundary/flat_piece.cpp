@@ -11,6 +11,7 @@ namespace {
 // "Rules on lattices"). Smaller pieces than kLeastLength have no plane: products would lose bits.
 constexpr double kPlaneError = 0x1p-44;
 constexpr double kLeastLength = 0x1p-200;
+constexpr double kUnderflow = 0x1p-1022;  // more than products that underflow lose together
 
 }  // namespace
 
@@ -35,7 +36,7 @@ bool FlatPiece::may_meet(const Box& other) const {
   const Vec3 to_middle = middle(other) - corner_, half = 0.5 * (other.upper - other.lower);
   const double reach = std::abs(normal_.x) * half.x + std::abs(normal_.y) * half.y + std::abs(normal_.z) * half.z;
   const double farthest = std::max(largest_coordinate(corner_), largest_coordinate(other));
-  return !(std::abs(dot(normal_, to_middle)) > reach + kPlaneError * farthest * magnitude_);
+  return !(std::abs(dot(normal_, to_middle)) > reach + (kPlaneError * farthest * magnitude_ + kUnderflow));
 }
 
 }  // namespace raycone

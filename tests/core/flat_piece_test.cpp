@@ -46,5 +46,23 @@ TEST(FlatPiece, MeetsTheBoxesThatItsPointsAreIn) {
   EXPECT_GT(missed, 40'000);
 }
 
+// Their products with normals do, as far as they are not 0.
+TEST(FlatPiece, MeetsPointsSoCloseToACornerThatProductsUnderflow) {
+  test::Random random(10);
+  const Box unit{{0, 0, 0}, {1, 1, 1}};
+  for (int i = 0; i < 1000; ++i) {
+    const auto edge = [&] {  // of few bits, so that a multiple of it is on it exactly
+      const Vec3 p = 1024 * test::uniform_point(random, unit);
+      return 0x1p-209 * Vec3{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
+    };
+    const Vec3 b = edge(), c = edge();
+    const FlatPiece piece = FlatPiece::of_triangle({}, b, c, box_of({}, b, c));
+    for (int exponent = -400; exponent > -840; --exponent) {
+      const Vec3 p = std::ldexp(1.0, exponent) * b;
+      EXPECT_TRUE(piece.may_meet({p, p})) << exponent;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raycone

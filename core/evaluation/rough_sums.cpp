@@ -23,6 +23,12 @@ NodeGrid nodes_of(const LatticeRows& rows, const SampleBox& samples) {
   return {rows, samples, kDegrees, kUnit};
 }
 
+double largest_at_nodes(const RoughBox& box) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < box.nodes.size(); ++n) largest = std::max(largest, std::abs(box.at_nodes[n]));
+  return largest;
+}
+
 }  // namespace
 
 RoughSums::RoughSums(const LatticeBlocks& blocks, const LatticeRows& rows)
@@ -59,9 +65,8 @@ void RoughSums::add_at_nodes(RoughBox& box, const RoughBox* around) const {
     const std::vector<double> of_around = around->nodes.at_nodes_of(box.nodes, values);
     for (std::size_t n = 0; n < samples.size(); ++n) box.at_nodes[n] += of_around[n];
   }
-  double largest = 0.0;
-  for (const double value : box.at_nodes) largest = std::max(largest, std::abs(value));
-  const double doubt = doubt_of(box.cover.smooth) + kSumsRound * (1 + largest);
+  const double taken_over = around ? around->nodes.growth() * largest_at_nodes(*around) : 0.0;
+  const double doubt = doubt_of(box.cover.smooth) + kSumsRound * (1 + largest_at_nodes(box) + taken_over);
   box.error = (around ? around->error : 0.0) + box.cover.error + box.nodes.growth() * doubt;
 }
 

@@ -430,7 +430,7 @@ MUTANTS = [
     Mutant("nodes_without_expansion_are_nothing", "a node without expansion has no bounds", [
         ("core/far/source_tree.cpp", "if (node.order == 0) return std::nullopt;", "if (node.order < 0) return std::nullopt;")]),
     Mutant("planes_are_missed", "a piece of a plane is missed only beyond the reach of the box", [
-        ("core/boundary/flat_piece.cpp", "> reach + kPlaneError", "> 0.5 * reach + kPlaneError")]),
+        ("core/boundary/flat_piece.cpp", "> reach + (kPlaneError", "> 0.5 * reach + (kPlaneError")]),
     Mutant("planes_are_exact", "normals and differences round", [
         ("core/boundary/flat_piece.cpp", "constexpr double kPlaneError = 0x1p-44;", "constexpr double kPlaneError = 0.0;")]),
 

@@ -12,7 +12,8 @@ flags="-DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE"  # of io/mesh/CMak
 # each must match LICENCES.
 check() {
   sources=$(find core io app -name '*.cpp' -o -name '*.h')
-  files=$(grep -lE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]$2" $sources)
+  files=$(grep -lE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]$2" $sources) ||
+    { echo "check_licences: no file includes $1" >&2; exit 1; }
   for file in $files; do
     headers=$("${CXX:-g++}" -std=c++20 -I. $flags -x c++ -M "$file" | tr ' \\' '\n\n' | grep "$3" | sort -u)
     [ -n "$headers" ] || { echo "check_licences: $file: no header of $1 found" >&2; exit 1; }

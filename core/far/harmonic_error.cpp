@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace raycone {
@@ -49,11 +50,30 @@ constexpr std::array kTable = {
     Entry{6.320633, 5.388e-17},
 };
 
+// Of steps from the table's first distance on: the last entry that is not beyond the step's start. The table's entries
+// are farther from each other than a step is long.
+constexpr double kStepsPerUnit = 128.0;
+constexpr auto kLast = [] {
+  constexpr double kReach = kTable.back().distance - kTable.front().distance;
+  std::array<std::uint8_t, static_cast<std::size_t>(kReach * kStepsPerUnit) + 2> last{};
+  for (std::size_t step = 0, n = 0; step < last.size(); ++step) {
+    const double start = kTable.front().distance + static_cast<double>(step) / kStepsPerUnit;
+    while (n + 1 < kTable.size() && kTable[n + 1].distance <= start) ++n;
+    last[step] = static_cast<std::uint8_t>(n);
+  }
+  return last;
+}();
+static_assert(kTable.size() <= 256 && kTable[1].distance - kTable[0].distance > 1 / kStepsPerUnit);
+
 }  // namespace
 
+// The step is found without rounding: the difference has no more bits than the distance.
 double dipole_error(double distance) {
   if (!(distance >= kTable.front().distance)) return std::numeric_limits<double>::infinity();
-  return std::prev(std::ranges::upper_bound(kTable, distance, {}, &Entry::distance))->error;
+  const double step = (distance - kTable.front().distance) * kStepsPerUnit;
+  const std::size_t n = kLast[static_cast<std::size_t>(std::min(step, static_cast<double>(kLast.size() - 1)))];
+  const bool is_beyond_next = n + 1 < kTable.size() && kTable[n + 1].distance <= distance;
+  return kTable[n + (is_beyond_next ? 1 : 0)].error;
 }
 
 }  // namespace raycone

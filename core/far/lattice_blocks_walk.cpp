@@ -158,9 +158,14 @@ Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_
   block.cube = cube_around(block);
   Far far = far_triangles(block, triangles);
   Cover cover = cover_at_nodes(far.triangles, block.cube);
-  if (making_cost(cover.cost, false) > static_cast<double>(far.triangles.size()) * block.size()) far = {}, cover = {};
+  if (making_cost(cover.cost, false) > static_cast<double>(far.triangles.size()) * block.size()) {
+    far = {};
+    cover = {};
+    block.near.assign(triangles.begin(), triangles.end());
+  } else {
+    block.near = std::move(far.others);
+  }
   block.spent += far.error;
-  std::ranges::set_difference(triangles, far.triangles, std::back_inserter(block.near));
   block.near_cost = cover_at(block, block.first, block.last).cost;
   return cover;
 }
@@ -182,7 +187,16 @@ double LatticeBlocksWalk::far_budget_of(const SampleBlock& block) const {
 LatticeBlocksWalk::Far LatticeBlocksWalk::far_triangles(const SampleBlock& block,
                                                         std::span<const std::uint32_t> triangles) const {
   Far far;
-  if (block.level > last_level_ || !can_fit_in(block.cube)) return far;
+  std::vector<char> is_far(triangles.size(), 0);
+  if (block.level <= last_level_ && can_fit_in(block.cube)) far.error = mark_far(block, triangles, is_far);
+  for (std::size_t n = 0; n < triangles.size(); ++n) (is_far[n] ? far.triangles : far.others).push_back(triangles[n]);
+  return far;
+}
+
+// Returns by how much the fit of what it marks is off at most.
+double LatticeBlocksWalk::mark_far(const SampleBlock& block, std::span<const std::uint32_t> triangles,
+                                   std::span<char> is_far) const {
+  double error = 0.0;
   const double budget = far_budget_of(block);
   std::vector<Together> candidates = harmless_of(block.cube, triangles, budget);
   // By halves: sorting all takes longer.
@@ -190,19 +204,15 @@ LatticeBlocksWalk::Far LatticeBlocksWalk::far_triangles(const SampleBlock& block
     const auto middle = begin + (end - begin) / 2;
     std::nth_element(begin, middle, end);
     const double with =
-        std::accumulate(begin, middle + 1, far.error, [](double s, const Together& t) { return s + t.error; });
+        std::accumulate(begin, middle + 1, error, [](double s, const Together& t) { return s + t.error; });
     if (with > budget) {
       end = middle;
       continue;
     }
-    far.error = with;
-    for (; begin <= middle; ++begin) {
-      const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(begin->first);
-      far.triangles.insert(far.triangles.end(), first, first + static_cast<std::ptrdiff_t>(begin->count));
-    }
+    error = with;
+    for (; begin <= middle; ++begin) std::ranges::fill(is_far.subspan(begin->first, begin->count), 1);
   }
-  std::ranges::sort(far.triangles);
-  return far;
+  return error;
 }
 
 // Of many triangles, those of a leaf are far together or not at all: parts of leaves are no expansions, neither at

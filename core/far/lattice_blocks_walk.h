@@ -113,12 +113,14 @@ class LatticeBlocksWalk {
                                       std::span<const std::uint32_t> triangles) const;
   // What is far from the block; the others become its near ones.
   [[nodiscard]] Cover far_of(SampleBlock& block, std::span<const std::uint32_t> triangles) const;
-  // Triangles, ascending, and by how much the fit of their field is off at most.
+  // A list of triangles in two, each ascending, and by how much the fit of the field of those that are far is off at
+  // most.
   struct Far {
-    std::vector<std::uint32_t> triangles;
+    std::vector<std::uint32_t> triangles, others;
     double error = 0.0;
   };
   [[nodiscard]] Far far_triangles(const SampleBlock& block, std::span<const std::uint32_t> triangles) const;
+  double mark_far(const SampleBlock& block, std::span<const std::uint32_t> triangles, std::span<char> is_far) const;
   // Some of a list of triangles, one after the other, and what they are off by together.
   struct Together {
     double mean_error;

@@ -754,7 +754,7 @@ MUTANTS = [
 
     # --- Blocks of lattices ---
     Mutant("dipole_error_too_small", "a far source is within the certified error of its fit", [
-        ("core/far/harmonic_error.cpp", "&Entry::distance))->error;", "&Entry::distance))->error / 8;")]),
+        ("core/far/harmonic_error.cpp", "(is_beyond_next ? 1 : 0)].error;", "(is_beyond_next ? 1 : 0)].error / 8;")]),
     Mutant("levels_forget_what_is_spent", "what is far at all levels together keeps the budget", [
         ("core/far/lattice_blocks_walk.cpp", "block.spent += far.error;", "block.spent = far.error;")]),
     Mutant("nodes_that_are_not_moved", "what rounding of a fit's nodes changes is within the tolerance", [

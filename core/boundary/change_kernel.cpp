@@ -18,7 +18,7 @@ namespace {
 
 // Of a distance: less has lost bits, or its third power does.
 constexpr double kLeastSquare = 0x1p-660;
-constexpr std::size_t kDeepest = 16;       // levels of nodes: each has eight times as many as the one above it
+constexpr std::size_t kDeepest = 16;  // levels of nodes: each has eight times as many as the one above it
 
 // Of the distances of the boxes from lane i on from `box`.
 HWY_INLINE Lanes square_of_gap(const ChangeNode& node, std::size_t i, const Box& box) {
@@ -55,7 +55,7 @@ HWY_INLINE void visit(std::span<const ChangeNode> nodes, const Box& box, const A
   }
 }
 
-HWY_INLINE bool comes_too_close(Lanes square, hn::Mask<Doubles> taken) {
+HWY_INLINE bool comes_too_close(Lanes square, LaneMask taken) {
   return !hn::AllFalse(d, hn::And(taken, hn::Lt(square, hn::Set(d, kLeastSquare))));
 }
 
@@ -63,7 +63,7 @@ double gradient_here(std::span<const ChangeNode> nodes, const Box& box, double l
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   alignas(64) ChangeNode::Numbers sums{};
   bool too_close = false;
-  visit(nodes, box, [&](const ChangeNode& node, std::size_t i, Lanes square, hn::Mask<Doubles> taken) {
+  visit(nodes, box, [&](const ChangeNode& node, std::size_t i, Lanes square, LaneMask taken) {
     too_close = comes_too_close(square, taken);
     const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);
     const Lanes of_area = hn::Div(hn::Load(d, &node.area[i]), hn::Mul(square, hn::Sqrt(square)));
@@ -80,7 +80,7 @@ ChangeSums derivatives_here(std::span<const ChangeNode> nodes, const Box& box) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   alignas(64) std::array<ChangeNode::Numbers, kChangeOrders> sums{};
   bool too_close = false;
-  visit(nodes, box, [&](const ChangeNode& node, std::size_t i, Lanes square, hn::Mask<Doubles> taken) {
+  visit(nodes, box, [&](const ChangeNode& node, std::size_t i, Lanes square, LaneMask taken) {
     too_close = comes_too_close(square, taken);
     const Lanes used = hn::IfThenElse(taken, square, hn::Set(d, 1.0));
     const Lanes inverse_square = hn::Div(hn::Set(d, 1.0), used), inverse = hn::Sqrt(inverse_square);

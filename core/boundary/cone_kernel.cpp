@@ -58,7 +58,7 @@ HWY_INLINE EdgeFactors factors_of(const Rays& rays, const ChunkView<Rays>& view,
 HWY_INLINE Lanes magnitude(const EdgeFactors& f) { return hn::Add(hn::Abs(f.re), hn::Abs(f.im)); }
 
 // Not near the edge; false where anything is NaN.
-HWY_INLINE hn::Mask<Doubles> is_not_near(const EdgeFactors& f) {
+HWY_INLINE LaneMask is_not_near(const EdgeFactors& f) {
   return hn::Gt(magnitude(f), hn::Mul(hn::Set(d, kNearEdge), f.product_of_s));
 }
 

@@ -66,7 +66,7 @@ HWY_INLINE ProjectedEdge project(const ProjectedVertex& a, const ProjectedVertex
 
 // Where an edge is level with a ray as a whole and does not meet its line: it is a tie without a factor, as in
 // unscaled_tied_factor(). Flat meshes have many of these in their plane.
-HWY_INLINE hn::Mask<Doubles> is_level_beside(Lanes a_y, Lanes a_z, Lanes b_y, Lanes b_z) {
+HWY_INLINE LaneMask is_level_beside(Lanes a_y, Lanes a_z, Lanes b_y, Lanes b_z) {
   const auto is_zero = [](Lanes v, Lanes w) { return hn::And(hn::Eq(v, hn::Zero(d)), hn::Eq(w, hn::Zero(d))); };
   const auto same_side = [](Lanes v, Lanes w) {
     return hn::Or(hn::And(hn::Gt(v, hn::Zero(d)), hn::Gt(w, hn::Zero(d))),

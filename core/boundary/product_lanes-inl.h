@@ -69,12 +69,12 @@ void multiply_one(ProductTile& z, std::size_t i, double re, double im) {
 
 // A block's product, where all its factors were trusted and none so large that it shows as one that is large, infinite
 // or NaN.
-HWY_INLINE hn::Mask<Doubles> is_sound(const ProductLanes& z) {
+HWY_INLINE LaneMask is_sound(const ProductLanes& z) {
   return hn::Lt(hn::Add(hn::Abs(z.re), hn::Abs(z.im)), hn::Set(d, kLargestProduct));
 }
 
 // Stores the trusted lanes of a block's product; the others have been multiplied in memory.
-HWY_INLINE void store_trusted(const ProductLanes& z, hn::Mask<Doubles> trusted, ProductTile& products, std::size_t i) {
+HWY_INLINE void store_trusted(const ProductLanes& z, LaneMask trusted, ProductTile& products, std::size_t i) {
   const ProductLanes careful = load(products, i);
   store(scaled({hn::IfThenElse(trusted, z.re, careful.re), hn::IfThenElse(trusted, z.im, careful.im),
                 hn::IfThenElse(trusted, z.passages, careful.passages)}),

@@ -74,7 +74,7 @@ class TrianglesOfRays {
 // Lanes of z_T = |a||b||c| + (a . b)|c| + (b . c)|a| + (c . a)|b| + i n . a.
 struct TriangleFactors {
   Lanes re, im;
-  hn::Mask<Doubles> trusted;
+  LaneMask trusted;
 };
 
 // a, b, c: norms of the corners; ab, bc, ca: their products.
@@ -156,7 +156,7 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const Soli
 template <class Rays>
 HWY_INLINE void finish_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
                              const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                             hn::Mask<Doubles> active, const ProductLanes& z, hn::Mask<Doubles> trusted) {
+                             LaneMask active, const ProductLanes& z, LaneMask trusted) {
   trusted = hn::And(trusted, is_sound(z));
   const auto done = hn::Or(trusted, hn::Not(active));
   if (HWY_LIKELY(hn::AllTrue(d, done))) {
@@ -175,7 +175,7 @@ HWY_INLINE void finish_block(ProductTile& products, std::span<const SolidTriangl
 template <bool kCertain = false, class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
                                const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                               hn::Mask<Doubles> active) {
+                               LaneMask active) {
   ProductLanes z = load(products, i);
   auto trusted = active;
   for (std::size_t n = begin; n < end; ++n) {

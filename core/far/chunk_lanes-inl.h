@@ -203,7 +203,7 @@ HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const S
 template <class Views>
 HWY_INLINE void multiply_small_block(ProductTile& products, std::span<const SolidTriangle> triangles, Views& views,
                                      const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                                     hn::Mask<Doubles> active) {
+                                     LaneMask active) {
   static_assert(kFactorsPerBlock * 0.28 < 3.14);
   auto [re, im, trusted] = factors_at(views, triangles[begin], begin, samples, i);
   for (std::size_t n = begin + 1; n < end; ++n) {
@@ -226,7 +226,7 @@ enum class Looks {
 // Multiplies the factors of a chunk onto the products of those of the samples from i on that are `active`.
 template <class Views>
 HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk& chunk, Views& views,
-                               const SampleTile& samples, std::size_t i, hn::Mask<Doubles> active, Looks looks) {
+                               const SampleTile& samples, std::size_t i, LaneMask active, Looks looks) {
   views.begin(i);
   for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
     const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());

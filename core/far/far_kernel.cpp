@@ -177,7 +177,7 @@ struct FarSamples {
   std::array<std::uint8_t, kTile> places;  // in the tile
   std::size_t count = 0;
 
-  HWY_INLINE void add(hn::Mask<Doubles> lanes, std::size_t first) {
+  HWY_INLINE void add(LaneMask lanes, std::size_t first) {
     for (std::uint32_t bits = bits_of(lanes); bits != 0; bits &= bits - 1) {
       places[count++] = static_cast<std::uint8_t>(first + static_cast<std::size_t>(std::countr_zero(bits)));
     }
@@ -211,7 +211,7 @@ struct Walk {
   alignas(64) Tile until;  // infinite behind the last sample
 
   // Lanes from sample i on that have not taken a node above node k.
-  [[nodiscard]] HWY_INLINE hn::Mask<Doubles> open(std::size_t i, std::size_t k) const {
+  [[nodiscard]] HWY_INLINE LaneMask open(std::size_t i, std::size_t k) const {
     return hn::Ge(hn::Set(d, static_cast<double>(k)), hn::Load(d, &until[i]));
   }
 

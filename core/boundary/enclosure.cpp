@@ -182,7 +182,7 @@ TurnsWithin<Quad> enclose_group_closely(const ChainGroup& group, const Vec3& q) 
 
 // The sum over the groups; `rounding` bounds what a group's rest, its multiple and the sum round, relative to the two.
 template <class Real, class EncloseGroup>
-TurnsWithin<Real> sum_over(std::span<const ChainGroup> groups, Real rounding, const EncloseGroup& enclose_one) {
+TurnsWithin<Real> sum_of_groups(std::span<const ChainGroup> groups, Real rounding, const EncloseGroup& enclose_one) {
   const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
   TurnsWithin<Real> sum;
   for (const ChainGroup& group : groups) {
@@ -199,13 +199,13 @@ TurnsWithin<Real> sum_over(std::span<const ChainGroup> groups, Real rounding, co
 
 template <>
 TurnsWithin<Wide> enclose<Wide>(std::span<const ChainGroup> groups, const Vec3& q) {
-  return sum_over<Wide>(groups, u, [&](const ChainGroup& group) { return enclose_group(group, q); });
+  return sum_of_groups<Wide>(groups, u, [&](const ChainGroup& group) { return enclose_group(group, q); });
 }
 
 template <>
 TurnsWithin<Quad> enclose<Quad>(std::span<const ChainGroup> groups, const Vec3& q) {
-  return sum_over<Quad>(groups, 8 * kQuadRounding,
-                        [&](const ChainGroup& group) { return enclose_group_closely(group, q); });
+  return sum_of_groups<Quad>(groups, 8 * kQuadRounding,
+                             [&](const ChainGroup& group) { return enclose_group_closely(group, q); });
 }
 
 }  // namespace raycone

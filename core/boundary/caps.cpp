@@ -46,10 +46,10 @@ class EdgeGraph {
 
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
 
-  // All loops without a repeated vertex, as a walk finds them that turns back as sharply as it can: cracks turn by 180
-  // degrees at their ends.
+  // Calls visit(loop) for all loops without a repeated vertex, as a walk finds them that turns back as sharply as it
+  // can: cracks turn by 180 degrees at their ends. The walk uses the edges up: a second one would find none.
   template <class Visit>
-  void for_each_loop(const Visit& visit) {
+  void take_loops(const Visit& visit) {
     std::vector<std::uint32_t> place(vertices_.size(), kNone);  // on the path
     Loop path;
     for (std::uint32_t start = 0; start < vertices_.size(); ++start) {
@@ -253,7 +253,7 @@ Caps make_caps(const Boundary& boundary, double width) {
   caps.mesh.vertices = graph.vertices();
   const LoopFiller filler(caps.mesh.vertices);
   std::vector<Triangle> wide;
-  graph.for_each_loop([&](const Loop& loop) {
+  graph.take_loops([&](const Loop& loop) {
     const auto [triangles, area] = filler.fill(loop);
     const bool narrow = area <= width * filler.length(loop) / 2;
     std::vector<Triangle>& all = narrow ? caps.mesh.triangles : wide;
@@ -270,7 +270,7 @@ Caps make_caps(const Boundary& boundary, double width) {
 TriangleMesh caps_and_strips(const Boundary& boundary) {
   EdgeGraph graph(boundary.directed_edges());
   FilledLoops filled{LoopFiller(graph.vertices())};
-  graph.for_each_loop([&](const Loop& loop) { filled.add(loop); });
+  graph.take_loops([&](const Loop& loop) { filled.add(loop); });
   filled.join();
   TriangleMesh caps = filled.triangles();
   caps.vertices = graph.vertices();

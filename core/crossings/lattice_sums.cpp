@@ -122,7 +122,7 @@ void LatticeSums::add_to_samples(std::span<const RowCrossing> crossed) {
   }
 }
 
-void LatticeSums::add_degenerate(std::size_t row, const TriangleCrossing& crossing) {
+void LatticeSums::mark(std::size_t row, const TriangleCrossing& crossing) {
   const std::size_t first = row * samples_;
   if (diagnostics_ && crossing.ties > 0 && crossing.met > 0) {
     add_to(diagnostics_->degenerate[first + crossing.met - 1], std::int64_t{crossing.ties});

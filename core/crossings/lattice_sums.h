@@ -95,8 +95,7 @@ class LatticeSums {
     explicit Collector(LatticeSums& sums) : sums_(sums) {}
     void add(std::size_t row, const TriangleCrossing& crossing) {
       if (crossing.crossed > 0 && sums_.counts_) count(row, crossing);
-      if (sums_.marks_ && (crossing.ties > 0 || crossing.on_begin < crossing.on_end))
-        sums_.add_degenerate(row, crossing);
+      if (sums_.marks_ && (crossing.ties > 0 || crossing.on_begin < crossing.on_end)) sums_.mark(row, crossing);
       ties_ += crossing.met * static_cast<std::uint64_t>(crossing.ties);
     }
     // To be called when all has been said.
@@ -130,7 +129,8 @@ class LatticeSums {
   void take(std::vector<RowCrossing>& crossed);
   void make_dense();
   void add_to_samples(std::span<const RowCrossing> crossed);
-  void add_degenerate(std::size_t row, const TriangleCrossing& crossing);
+  // Adds ties where diagnostics ask for them, and flags samples on the surface.
+  void mark(std::size_t row, const TriangleCrossing& crossing);
   std::uint8_t* on_surface();
   void sum_prefixes(std::size_t row);
   void make_runs(std::size_t row);

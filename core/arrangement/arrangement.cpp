@@ -16,15 +16,10 @@ namespace {
 
 using Number = ExactPoints::Number;
 
-Corners3 corners_of(const TriangleMesh& mesh, std::uint32_t face) {
-  const Triangle& t = mesh.triangles[face];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 std::vector<std::uint32_t> faces_with_area(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> faces;
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-    const auto [a, b, c] = corners_of(mesh, face);
+    const auto [a, b, c] = corners_of(mesh, mesh.triangles[face]);
     if (!collinear(a, b, c)) faces.push_back(face);
   }
   return faces;
@@ -74,7 +69,8 @@ class Arrangement::Builder {
     std::vector<Contact> contacts;
     DisjointSets planes(mesh_.triangles.size());
     for (const auto& [s, t] : pairs) {
-      contacts.push_back(contact_of(corners_of(mesh_, s), corners_of(mesh_, t), result_.points_));
+      contacts.push_back(
+          contact_of(corners_of(mesh_, mesh_.triangles[s]), corners_of(mesh_, mesh_.triangles[t]), result_.points_));
       if (contacts.back().is_of_one_plane) planes.join(s, t);
     }
     std::vector<std::uint32_t> faces;

@@ -28,11 +28,6 @@ constexpr double kAreaError = 1e-14;
 constexpr double kLeastDerivative = 0x1p-700;  // less has lost bits, or loses them in what follows
 constexpr double kFar = 4.0;                   // clusters act as one from twice their size on, squared
 
-std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 // Slices abc, whose side ab is short, across: visit(box, part of the area) for each of so many.
 template <class Visit>
 void slice(const Vec3& a, const Vec3& b, const Vec3& c, double count, double part, const Visit& visit) {
@@ -109,7 +104,7 @@ void ChangeBound::add_edges(const std::vector<DirectedEdge>& edges) {
 
 void ChangeBound::add_narrow(const Caps& caps) {
   for (std::size_t n = 0; n < caps.narrow; ++n) {
-    const auto [a, b, c] = corners(caps.mesh, n);
+    const auto [a, b, c] = corners_of(caps.mesh, caps.mesh.triangles[n]);
     const Vec3 normal = cross(b - a, c - a);
     const double twice_area = safe_norm(normal) + kAreaError * square_of_diagonal(box_of(a, b, c));
     cut(a, b, c, piece_, [this, of_cap = twice_area / (4 * std::numbers::pi)](const Box& box, double part) {
@@ -120,7 +115,7 @@ void ChangeBound::add_narrow(const Caps& caps) {
 
 void ChangeBound::add_wide(const Caps& caps) {
   for (std::size_t n = caps.narrow; n < caps.mesh.triangles.size(); ++n) {
-    const auto [a, b, c] = corners(caps.mesh, n);
+    const auto [a, b, c] = corners_of(caps.mesh, caps.mesh.triangles[n]);
     cut(a, b, c, 2 * piece_, [&, &a = a, &b = b, &c = c](const Box& box, double) {
       wide_caps_.push_back(FlatPiece::of_triangle(a, b, c, widened(box, place_error_)));
     });

@@ -25,6 +25,11 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
+// Where its corners are.
+[[nodiscard]] inline std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& triangle) {
+  return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
+}
+
 // The smallest box of the vertices that triangles use; of no triangles, empty_box().
 [[nodiscard]] Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);
 [[nodiscard]] inline Box bounding_box(const TriangleMesh& mesh) { return bounding_box(mesh.triangles, mesh.vertices); }

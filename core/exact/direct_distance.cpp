@@ -58,10 +58,6 @@ Quad square_to_triangle(const Corners& corners) {
 
 using Points = std::array<Vec3, 3>;
 
-Points corners_of(const TriangleMesh& mesh, const Triangle& t) {
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 Quad distance_to_triangle(const Points& points, const Vec3& q) {
   const ScaledTriangle triangle = as_integers(points, q);
   return ldexpq(sqrtq(square_to_triangle(triangle.corners)), -triangle.exponent);

@@ -191,10 +191,7 @@ class PairTree {
   [[nodiscard]] std::size_t size() const { return triangles_.size(); }
   [[nodiscard]] std::uint32_t triangle(std::size_t place) const { return triangles_[place]; }
   [[nodiscard]] const Triangle& vertices(std::size_t place) const { return mesh_.triangles[triangles_[place]]; }
-  [[nodiscard]] Corners3 corners(std::size_t place) const {
-    const Triangle& t = vertices(place);
-    return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-  }
+  [[nodiscard]] Corners3 corners(std::size_t place) const { return corners_of(mesh_, vertices(place)); }
 
   [[nodiscard]] std::size_t runs() const { return levels_.front().size(); }
 

@@ -22,10 +22,6 @@ constexpr double kNear = 0.25, kNotFar = 1.0;  // voxels
 // looked at in quarters of such faces.
 constexpr double kLittle = 1.0, kLittleLost = 0.25;
 
-std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 }  // namespace
 
 bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel) {

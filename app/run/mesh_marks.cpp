@@ -32,8 +32,7 @@ std::uint32_t add_vertex(ColouredMesh& marked, const Vec3& position, const Colou
 void add_triangles(ColouredMesh& marked, const TriangleMesh& mesh, const std::vector<bool>& intersecting) {
   for (const Vec3& vertex : mesh.vertices) {
     // One that no triangle uses may be infinite, which programs do not expect.
-    const bool finite = std::isfinite(vertex.x) && std::isfinite(vertex.y) && std::isfinite(vertex.z);
-    add_vertex(marked, finite ? vertex : Vec3{}, kSound);
+    add_vertex(marked, is_finite(vertex) ? vertex : Vec3{}, kSound);
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (!intersecting[i]) {

@@ -65,8 +65,7 @@ SlabOrder::SlabOrder(const TriangleMesh& mesh, int axis)
     const std::span<const std::uint32_t> group = (*this)[static_cast<std::uint32_t>(n)];
     groups_[n] = extent_of(mesh, mesh.triangles[group.front()], axis);
     for (const std::uint32_t triangle : group) {
-      const Interval one = extent_of(mesh, mesh.triangles[triangle], axis);
-      groups_[n] = {std::min(groups_[n].lower, one.lower), std::max(groups_[n].upper, one.upper)};
+      groups_[n] = hull(groups_[n], extent_of(mesh, mesh.triangles[triangle], axis));
     }
   });
 }

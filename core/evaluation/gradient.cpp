@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -85,7 +84,7 @@ void GradientEvaluator::evaluate_tile(std::size_t count, const Point& point, con
   std::array<std::size_t, kTile> numbers;
   for (std::size_t n = 0; n < count; ++n) {
     const Vec3 p = point(n), q = scale_(p);
-    if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) {
+    if (!is_finite(q)) {
       value(n) = {};  // so far away that the gradient is no double but 0
     } else if (largest_coordinate(q) < kFar && scale_.keeps(p.x) && scale_.keeps(p.y) && scale_.keeps(p.z)) {
       numbers[tile.count] = n;
@@ -99,9 +98,8 @@ void GradientEvaluator::evaluate_tile(std::size_t count, const Point& point, con
   GradientTile sums;
   sum_parts_(segments_, tile, careful_part_of, sums);
   for (std::size_t i = 0; i < tile.count; ++i) {
-    const bool is_finite = std::isfinite(sums.x[i]) && std::isfinite(sums.y[i]) && std::isfinite(sums.z[i]);
-    value(numbers[i]) = is_finite ? within_doubles(scale_({sums.x[i], sums.y[i], sums.z[i]})) + kNoMinusZero
-                                  : sum_unscaled(point(numbers[i]));
+    const Vec3 sum{sums.x[i], sums.y[i], sums.z[i]};
+    value(numbers[i]) = is_finite(sum) ? within_doubles(scale_(sum)) + kNoMinusZero : sum_unscaled(point(numbers[i]));
   }
 }
 

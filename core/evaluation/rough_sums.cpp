@@ -53,7 +53,6 @@ RoughBox RoughSums::look_at(const SampleBox& samples, double each, const RoughBo
 // What `around` interpolates is a polynomial of the same degrees, which the nodes take over as it is.
 void RoughSums::add_at_nodes(RoughBox& box, const RoughBox* around) const {
   SampleTile tile;
-  tile.clear();
   const std::vector<std::array<std::size_t, 3>> samples = box.nodes.nodes();
   for (const std::array<std::size_t, 3>& node : samples) tile.add(rows_.query(node));
   const auto set = [&](std::size_t n, double turns, double rest) { box.at_nodes[n] = turns + rest; };

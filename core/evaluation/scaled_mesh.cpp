@@ -264,7 +264,6 @@ void ScaledMesh::set_again_near_half_integers(const SampleTile& samples, std::sp
   std::array<std::int64_t, kTile> crossings_here;
   std::array<double, kTile> values_here;
   SampleTile here;
-  here.clear();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (distance_to_half_integer(values[i]) > doubt) continue;
     indices[here.count] = i;

@@ -79,7 +79,7 @@ QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, cons
   const QuadVec3 a = relative_to(q, va), b = relative_to(q, vb), c = relative_to(q, vc);
   const Quad la = sqrtq(dot(a, a)), lb = sqrtq(dot(b, b)), lc = sqrtq(dot(c, c));
   const Quad re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  const Quad im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  const Quad im = dot(a, cross(b, c));
   const Quad error = kRoundings * la * lb * lc / (fabsq(re) + fabsq(im));
   const bool half_turn = re < 0 && fabsq(im) <= error * (fabsq(re) + fabsq(im));
   if (!(error < 0.001) || half_turn) return {0, kPi};

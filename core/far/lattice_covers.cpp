@@ -43,7 +43,6 @@ void LatticeCovers::add(const Cover& cover, const Box& box, const SampleBox& sam
 
 void LatticeCovers::add_in_rows(CoverSums& cover, const SampleBox& samples, const BoxSums& sums) const {
   SampleTile tile;
-  tile.clear();
   for (std::size_t y = samples.begin[1]; y < samples.end[1]; ++y) {
     for (std::size_t i = 0; i < kRow; ++i) {
       tile.add({axes_[0][std::min(samples.begin[0] + i, samples.end[0] - 1)], axes_[1][y], axes_[2][samples.begin[2]]});
@@ -62,7 +61,6 @@ void LatticeCovers::add_in_rows(CoverSums& cover, const SampleBox& samples, cons
 void LatticeCovers::add_one_by_one(CoverSums& cover, const SampleBox& samples, const BoxSums& sums) const {
   SampleTile tile;
   std::array<std::size_t, kTile> places;  // among the sums
-  tile.clear();
   const auto evaluate = [&] {
     cover.evaluate(tile, TileShape::kScattered, [&](std::size_t n, double turns, double rest) {
       double& sum = sums.numbers[places[n]];

@@ -105,7 +105,8 @@ MUTANTS = [
 
     # --- Slabs and sums ---
     Mutant("slabs_miss_triangles", "a slab looks at all triangles that meet it", [
-        ("core/crossings/slab_order.cpp", "std::max(groups_[n].upper, one.upper)", "groups_[n].upper")]),
+        ("core/crossings/slab_order.cpp", "hull(groups_[n], extent_of(mesh, mesh.triangles[triangle], axis))",
+         "{std::min(groups_[n].lower, extent_of(mesh, mesh.triangles[triangle], axis).lower), groups_[n].upper}")]),
     Mutant("kept_crossings_lost", "crossings that were kept count where many are added up", [
         ("core/crossings/lattice_sums.cpp", "  for (const std::vector<RowCrossing>& part : parts_) add_to_samples(part);\n", "")]),
     Mutant("rest_of_rows_lost", "what a row leaves shares a tile with other rows", [

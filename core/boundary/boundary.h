@@ -13,11 +13,13 @@
 
 namespace raycone {
 
+// An exterior edge, turned so that its multiplicity is positive.
 struct DirectedEdge {
   Vec3 from, to;
   std::int32_t multiplicity;  // positive
 };
 
+// Const calls are thread-safe.
 class Boundary {
  public:
   // Of a welded mesh with these exterior_edges(). Needs DefaultFloatingPoint.
@@ -27,7 +29,7 @@ class Boundary {
   // Number of undirected edges; 0: the mesh is closed.
   [[nodiscard]] std::uint64_t exterior_edges() const { return edges_; }
 
-  // Whether all exterior edges lie in one plane.
+  // Whether there is just one plane in which all exterior edges lie: not where they are on a line.
   [[nodiscard]] bool is_flat() const { return plane_.has_value(); }
 
   // The sum of |multiplicities|. What w is off by is bounded in proportion to it: doubt_of_factors().
@@ -44,7 +46,7 @@ class Boundary {
   // longer than two where the answer is a half-integer because all exterior edges lie in one plane with q. Needs
   // DefaultFloatingPoint. Thread-safe.
   [[nodiscard]] double settle(const Vec3& q, double w, double critical) const;
-  static constexpr double kMostDoubt = 0.125;
+  static constexpr double kMostDoubt = 0.125;  // turns
 
  private:
   void add_chains(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);

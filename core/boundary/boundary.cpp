@@ -37,8 +37,6 @@ DirectedEdge directed(const Vec3& from, const Vec3& to, bool reversed, std::int3
   return reversed ? DirectedEdge{to, from, multiplicity} : DirectedEdge{from, to, multiplicity};
 }
 
-bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return on_triangle(a, b, b, q); }
-
 }  // namespace
 
 Boundary::Boundary(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {

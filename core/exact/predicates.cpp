@@ -30,8 +30,6 @@ bool in_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   return true;
 }
 
-bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return in_box(a, a, b, q) && collinear(a, b, q); }
-
 }  // namespace
 
 int exact_edge_orientation(const Vec3& a, const Vec3& b, const Vec3& q) {
@@ -48,6 +46,8 @@ int plane_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   return orientation_along(0, a, b, c) == 0 && orientation_along(1, a, b, c) == 0 && orientation_along(2, a, b, c) == 0;
 }
+
+bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q) { return in_box(a, a, b, q) && collinear(a, b, q); }
 
 bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   if (!in_box(a, b, c, q)) return false;

@@ -84,6 +84,9 @@ inline constexpr double kSideUnderflow = 0x1p-1000;  // far more than a product 
 // point.
 [[nodiscard]] bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q);
 
+// Whether q lies on the closed segment from a to b, which may be a point.
+[[nodiscard]] bool on_segment(const Vec3& a, const Vec3& b, const Vec3& q);
+
 // Whether the three points lie on one line.
 [[nodiscard]] bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -113,21 +113,35 @@ class WindingNumberEvaluator {
   // value is exactly an integer.
   [[nodiscard]] std::uint64_t exterior_edges() const;
 
-  // What it was made with.
+  // The accuracy that it was made with.
   [[nodiscard]] const Accuracy& asked_accuracy() const;
 
   // Sets the winding numbers (turns) of a block of `lattice`, x fastest. Precondition: values.size() == block.size().
   // If `done` is given, it grows by one per finished sample while the call runs. If `diagnostics` are given, they are
-  // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Unless
-  // they are for sides only, values depend neither on their number, nor on the block's extent, nor on the diagnostics.
-  // Const calls may run concurrently. Throws std::length_error for more than kMaxBlockSide samples along an axis.
-  // Precondition: the samples of the block are finite.
+  // set, too; for open meshes that takes a hundred times as long. Uses the threads that ThreadLimit allows. Values
+  // depend neither on how many there are, nor on the block's extent, nor on the diagnostics, unless they are for sides
+  // only (Accuracy::sides_only). Const calls may run concurrently. Throws std::length_error for more than kMaxBlockSide
+  // samples along an axis. Precondition: the samples of the block are finite.
   Tally evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,
                  std::atomic<std::uint64_t>* done = nullptr, const Diagnostics* diagnostics = nullptr) const;
 
-  // Sets for the same samples only whether `rule` holds, 1, or not, 0: exactly. In a small part of the time, if the
-  // evaluator was made for that: with accuracy {.tolerance = tolerance_for_sides(rule), .sides_only = true}. With a
-  // tolerance of 0 an open mesh may take longer than evaluate(). Precondition: sides.size() == block.size().
+  // Sets the winding numbers of finite points, in their order; all else as for lattices. Precondition: values.size() ==
+  // points.size().
+  Tally evaluate(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done = nullptr,
+                 const Diagnostics* diagnostics = nullptr) const;
+
+  // The same values, but within doubt() of a half-integer they may be on its wrong side: they are not settled. A
+  // hundred times sooner where most of them are so near, as in a search for the places where w is one.
+  void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
+
+  // Builds the search structure that points need and lattices may not. Without this call, the first evaluation of
+  // points builds it.
+  void prepare_points() const;
+
+  // Sets for each sample of a block of `lattice` only whether `rule` holds, 1, or not, 0: exactly. In a small part of
+  // the time, if the evaluator was made for that: with accuracy {.tolerance = tolerance_for_sides(rule), .sides_only =
+  // true}. With a tolerance of 0 an open mesh may take longer than evaluate(). Precondition: sides.size() ==
+  // block.size().
   Tally evaluate_sides(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
                        std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done = nullptr) const;
 
@@ -147,31 +161,22 @@ class WindingNumberEvaluator {
   // value.
   [[nodiscard]] double accuracy() const;
 
+  // No value is off by more, turns, but for its last rounding (docs/method.md, "What is guaranteed"). 0 for closed
+  // meshes, whose values are exact.
+  [[nodiscard]] double doubt() const;
+
   // Values are right about half-integers. A value is exactly 0.5, 1.5, -0.5 ... where w cannot be told from it
   // (kIndistinguishable). Else it is on the same side of it as w.
   //
   // settle() makes values right about another number, too. values[i], which was evaluated at points[i], is moved to the
   // side of `critical` on which w is; it is `critical` itself where w cannot be told from it. A value takes a
   // millisecond or more per thousand exterior edges where the direct sum cannot tell, else as long as that sum. None
-  // need be given that may_be_across(value, critical, doubt()) says no of; doubt(), in turns, is 0 for closed meshes,
-  // whose values are exact. Thread-safe.
-  [[nodiscard]] double doubt() const;
+  // need be given that may_be_across(value, critical, doubt()) says no of (core/data/rule.h). Precondition:
+  // values.size() == points.size(). Thread-safe.
   void settle(std::span<const Vec3> points, double critical, std::span<double> values) const;
 
-  // Of all values that have been evaluated so far. Not while an evaluation runs.
+  // What all values that have been evaluated so far took. Not while an evaluation runs.
   [[nodiscard]] Terms terms() const;
-
-  // Builds the search structure that points need and lattices may not. Without this call, the first evaluation of
-  // points builds it.
-  void prepare_points() const;
-
-  // The same for finite points, in their order. Precondition: values.size() == points.size().
-  Tally evaluate(std::span<const Vec3> points, std::span<double> values, std::atomic<std::uint64_t>* done = nullptr,
-                 const Diagnostics* diagnostics = nullptr) const;
-
-  // The same values, but within doubt() of a half-integer they may be on its wrong side: they are not settled. A
-  // hundred times sooner where most of them are so near, as in a search for the places where w is one.
-  void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
 
  private:
   struct Implementation;

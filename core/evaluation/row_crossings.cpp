@@ -56,7 +56,7 @@ void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const Lat
 
 std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums) {
   std::atomic<std::uint64_t> on_surface = 0;
-  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     std::uint64_t here = 0;
     for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
     on_surface.fetch_add(here, std::memory_order_relaxed);

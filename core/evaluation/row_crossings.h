@@ -1,6 +1,7 @@
 // What the rays of a block of a lattice cross.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/crossings/lattice_rows.h"
@@ -9,6 +10,9 @@
 #include "core/evaluation/scaled_mesh.h"
 
 namespace raycone {
+
+// Of loops that only finish rows or read what was found of them, some microseconds each.
+inline constexpr std::size_t kRowsPerTask = 16;
 
 // The scaled mesh where it can take the block's coordinates, the unscaled one where not: along each axis all or none.
 [[nodiscard]] const ScaledMesh& mesh_for(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block);

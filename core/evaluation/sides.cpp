@@ -20,7 +20,7 @@ namespace {
 void set_sides_of_runs(const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
                        std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   const std::size_t samples = rows.xs.size();
-  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const std::span<std::uint8_t> of_row = sides.subspan(row * samples, samples);
       crossings.runs(row).for_each(0, samples, [&](std::size_t first, std::size_t last, double n) {
@@ -40,7 +40,7 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
   const Tally tally = evaluate_block(meshes, lattice, block, values, done, nullptr);
   const MeshRule side(mesh, rule);
   const std::size_t samples = rows.xs.size();
-  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     SideSetter setter(side, sides);
     for (std::size_t n = begin * samples; n < end * samples; ++n) {
       setter.set(n, rows.row(n / samples).query(n % samples), values[n]);

@@ -63,11 +63,10 @@ void take_care(const PlacedTriangle& placed, std::size_t first, LaneMask sure, A
     hn::Store(hn::IfThenElse(sure, least, hn::Min(least, squares)), d, &group.least[first]);
     return;
   }
-  alignas(64) std::array<double, kWidth> is_sure;
-  hn::Store(hn::IfThenElseZero(sure, hn::Set(d, 1.0)), d, is_sure.data());
+  const std::uint32_t bits = bits_of(sure);
   const TriangleDistance triangle = placed.pack.triangle(placed.slot);
   for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-    if (is_sure[lane] != 0.0) continue;
+    if ((bits >> lane & 1U) != 0) continue;
     const std::size_t n = first + lane;
     group.least[n] = std::min(group.least[n], triangle.squared({group.x[n], group.y[n], group.z[n]}));
   }

@@ -84,11 +84,11 @@ class LeastSquare {
   }
 
   HWY_INLINE void doubt(const TrianglePack& pack, std::size_t first, LaneMask settled, Lanes bounds) {
-    alignas(64) std::array<double, TrianglePack::kWidth> is_settled, bound;
-    hn::Store(hn::IfThenElseZero(settled, hn::Set(d, 1.0)), d, is_settled.data());
+    const std::uint32_t bits = bits_of(settled);
+    alignas(64) std::array<double, TrianglePack::kWidth> bound;
     hn::Store(bounds, d, bound.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (is_settled[lane] != 0.0) continue;
+      if ((bits >> lane & 1U) != 0) continue;
       if (count_ == doubtful_.size()) settle();
       doubtful_[count_++] = {&pack, first + lane, bound[lane]};
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE
@@ -63,11 +64,11 @@ class Sums {
   // part(lane) is added to the lanes that are not sure.
   template <class CarefulPart>
   HWY_NOINLINE void add_carefully(LaneMask sure, const CarefulPart& part) {
-    alignas(64) std::array<double, hn::MaxLanes(d)> is_sure, x, y, z;
-    hn::Store(hn::IfThenElseZero(sure, hn::Set(d, 1.0)), d, is_sure.data());
+    const std::uint32_t bits = bits_of(sure);
+    alignas(64) std::array<double, hn::MaxLanes(d)> x, y, z;
     store(x.data(), y.data(), z.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (is_sure[lane] != 0.0) continue;
+      if ((bits >> lane & 1U) != 0) continue;
       const Vec3 more = part(lane);
       x[lane] += more.x;
       y[lane] += more.y;

@@ -17,6 +17,7 @@
 
 #include "core/far/chunk_lanes-inl.h"
 #include "core/machine/simd_kernel.h"
+#include "core/machine/vector_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
@@ -32,21 +33,13 @@ constexpr std::array<double, kMultipoleTerms> kSteps = [] {
   return steps;
 }();
 
-struct LanesOfPoints {
-  Lanes x, y, z;
-};
-
-HWY_INLINE LanesOfPoints points_at(const SampleTile& samples, std::size_t i) {
+HWY_INLINE VectorLanes points_at(const SampleTile& samples, std::size_t i) {
   return {hn::Load(d, &samples.x[i]), hn::Load(d, &samples.y[i]), hn::Load(d, &samples.z[i])};
 }
 
-HWY_INLINE LanesOfPoints seen_from(const Vec3& centre, const LanesOfPoints& q) {
-  return {hn::Sub(q.x, hn::Set(d, centre.x)), hn::Sub(q.y, hn::Set(d, centre.y)), hn::Sub(q.z, hn::Set(d, centre.z))};
-}
+HWY_INLINE VectorLanes seen_from(const Vec3& centre, const VectorLanes& q) { return minus(q, in_all_lanes(centre)); }
 
-HWY_INLINE Lanes square_of(const LanesOfPoints& r) {
-  return hn::Add(hn::Add(hn::Mul(r.x, r.x), hn::Mul(r.y, r.y)), hn::Mul(r.z, r.z));
-}
+HWY_INLINE Lanes square_of(const VectorLanes& r) { return dot(r, r); }
 
 constexpr std::array<double, kMultipoleOrder + 1> kDegrees = [] {
   std::array<double, kMultipoleOrder + 1> degrees{};
@@ -134,9 +127,9 @@ struct Expansion {
 };
 
 HWY_INLINE Lanes multipole(const SourceNode& node, const double* coefficients, const Degrees& degrees,
-                           const LanesOfPoints& r) {
+                           const VectorLanes& r) {
   const Lanes scale = hn::Set(d, 1 / node.unit);
-  const LanesOfPoints s{hn::Mul(r.x, scale), hn::Mul(r.y, scale), hn::Mul(r.z, scale)};
+  const VectorLanes s = times(scale, r);
   // So many units away that products may overflow, the node adds nothing that counts.
   constexpr double kFarthest = 0x1p1000;
   const Lanes square = square_of(s);
@@ -184,7 +177,7 @@ struct FarSamples {
   }
 
   // Those from `first` on, the last one repeated where there are none left.
-  [[nodiscard]] HWY_INLINE LanesOfPoints points(const SampleTile& samples, std::size_t first) const {
+  [[nodiscard]] HWY_INLINE VectorLanes points(const SampleTile& samples, std::size_t first) const {
     alignas(64) std::array<double, hn::MaxLanes(d)> x, y, z;
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       const std::size_t i = places[std::min(first + lane, count - 1)];
@@ -245,7 +238,7 @@ struct Walk {
       far.add(accepted, i);
     }
     for (std::size_t n = 0; n < far.count; n += hn::Lanes(d)) {
-      const LanesOfPoints r = seen_from(node.centre, far.points(samples, n));
+      const VectorLanes r = seen_from(node.centre, far.points(samples, n));
       const Degrees degrees = degrees_at(node, square_of(r));
       if (n == 0) fetch(coefficients, often + 1, degrees.most);
       far.add_to(result.far, n, multipole(node, coefficients, degrees, r));

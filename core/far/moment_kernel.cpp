@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/machine/lanes-inl.h"
 #include "core/machine/simd_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,10 +19,7 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, kMomentLanes>;
-using Lanes = hn::Vec<Doubles>;
-constexpr Doubles d;
+static_assert(hn::MaxLanes(d) <= kMomentLanes);
 
 // What leads from R_(n-1)^m and R_n^m to R_(n+1)^m, in the order of multipole_index(n, m, kMomentOrder).
 struct Step {

@@ -31,12 +31,15 @@ bool far_field_may_pay(double samples, double sources, double direct) {
   return kPreparation < small_part * samples * direct;
 }
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
-                   SimdLevel level)
+FarField::FarField(const Boundary& boundary, const TriangleMesh* caps, SimdLevel level)
     : boundary_(boundary),
       kernel_(far_kernel(level)),
       has_caps_(caps != nullptr),
-      cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()) {
+      cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()) {}
+
+FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
+                   SimdLevel level)
+    : FarField(boundary, caps, level) {
   SolidFaces faces = solid_faces(caps ? *caps : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = doubt(tolerance, static_cast<double>(faces.triangles.size()));
@@ -46,11 +49,8 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const Tri
 
 FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, const SourceTree& tree,
                    double tolerance, SimdLevel level)
-    : boundary_(boundary),
-      kernel_(far_kernel(level)),
-      has_caps_(caps != nullptr),
-      cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()),
-      tree_(&tree) {
+    : FarField(boundary, caps, level) {
+  tree_ = &tree;
   doubt_ = doubt(tolerance, static_cast<double>(tree.triangles().size()));
   set_costs(bounding_box(mesh), tolerance);
 }
@@ -63,7 +63,6 @@ void FarField::set_costs(const Box& box, double tolerance) {
   const Costs at_point = is_own ? kAtPoint : Costs{2.5, 2.0 + 0.7 * digits};
   const Costs on_lattice = is_own ? kOnLattice : Costs{2.5, 3.0 + 2.0 * digits};
   SampleTile places;
-  places.clear();
   for (std::size_t n = 1; n <= kTile; ++n) {
     const Vec3 part = even_place(n);
     Vec3 place;

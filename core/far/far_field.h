@@ -63,6 +63,8 @@ class FarField final : public BoundaryTerm {
   [[nodiscard]] std::uint64_t far_terms() const { return far_terms_; }
 
  private:
+  // What both have; without the tree.
+  FarField(const Boundary& boundary, const TriangleMesh* caps, SimdLevel level);
   void set_costs(const Box& box, double tolerance);
 
   const Boundary& boundary_;
@@ -70,7 +72,7 @@ class FarField final : public BoundaryTerm {
   bool has_caps_;
   CapCrossings cap_crossings_;
   std::optional<SourceTree> own_tree_;
-  const SourceTree* tree_;
+  const SourceTree* tree_ = nullptr;
   bool faces_repeat_ = false;
   double doubt_ = 0;
   double cost_ = 0, cost_on_lattice_ = 0;

@@ -1,7 +1,5 @@
 #include "core/evaluation/points.h"
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -191,7 +189,7 @@ Tally evaluate_in_order(const ScaledMesh& mesh, std::span<const Vec3> points, st
   Tally tally;
   for (std::size_t n = 0; n < order.size(); ++n) {
     const Vec3& later = points[order[std::min(n + kAhead, order.size() - 1)]];
-    _mm_prefetch(reinterpret_cast<const char*>(&later), _MM_HINT_T0);
+    __builtin_prefetch(&later);
     tile.add(order[n], mesh.to_scale(points[order[n]]));
     if (tile.full()) tally += tile.evaluate(mesh);
   }

@@ -37,6 +37,21 @@ bool SideSamples::decide(const SampleBox& box, Crossings which, double rest, dou
   });
 }
 
+bool SideSamples::decide_together(std::size_t index, double crossings, std::span<const double> rest,
+                                  double needed) const {
+  double least = rest[0], most = rest[0];
+  bool are_known = true;  // no NaN
+  for (const double value : rest) {
+    least = std::min(least, value), most = std::max(most, value);
+    are_known &= value == value;
+  }
+  const double middle = crossings + (least + most) / 2;
+  const double off = needed + (most - least) / 2 + kSumsRound * (1 + std::abs(least) + std::abs(most));
+  if (!are_known || !is_certain(middle, off)) return false;
+  std::fill(place(index), place(index + rest.size()), holds(side_.rule(), middle) ? 1 : 0);
+  return true;
+}
+
 // Some samples at a time, where all of them are on the same side.
 void SideSamples::decide_row(const Index& first, Crossings which, std::span<const double> rest, double needed,
                              std::vector<SampleBox>& undecided) const {
@@ -47,19 +62,7 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
   for_each_run(part, which, [&](std::size_t begin, std::size_t end, double n) {
     for (std::size_t some = begin - row; some < end - row; some += kTogether) {
       const std::size_t last = std::min(some + kTogether, end - row);
-      const auto values = rest.subspan(some - x, last - some);
-      double least = values[0], most = values[0];
-      bool are_known = true;  // no NaN
-      for (const double value : values) {
-        least = std::min(least, value), most = std::max(most, value);
-        are_known &= value == value;
-      }
-      const double middle = n + (least + most) / 2;
-      if (are_known &&
-          is_certain(middle, needed + (most - least) / 2 + kSumsRound * (1 + std::abs(least) + std::abs(most)))) {
-        std::fill(place(row + some), place(row + last), holds(side_.rule(), middle) ? 1 : 0);
-        continue;
-      }
+      if (decide_together(row + some, n, rest.subspan(some - x, last - some), needed)) continue;
       for (std::size_t i = some; i < last; ++i) {
         const double w = n + rest[i - x];
         if (is_certain(w, needed)) {

@@ -86,6 +86,9 @@ class SideSamples {
     return distance_to_threshold(side_.rule(), w) - kSumsRound * std::abs(w) > needed;
   }
 
+  // As decide(), for samples of a row from that index on, which have the same crossings; rest[n] is that of sample n.
+  bool decide_together(std::size_t index, double crossings, std::span<const double> rest, double needed) const;
+
   // visit(begin, end of the indices, crossings) for runs of samples whose crossings are the same, as long as it returns
   // true. Returns whether it always did.
   template <class Visit>

@@ -12,14 +12,14 @@ void SideSetter::wait(std::size_t index, const Vec3& scaled_query, double w) {
 }
 
 void SideSetter::finish() {
-  for (const double threshold : side_.thresholds()) {
-    Settler settler(side_.mesh(), threshold, values_);
+  for (const double threshold : mesh_rule_.thresholds()) {
+    Settler settler(mesh_rule_.mesh(), threshold, values_);
     for (std::size_t i = 0; i < waiting_.count; ++i) {
-      if (side_.may_be_across(values_[i], threshold)) settler.add(i, waiting_.query(i));
+      if (mesh_rule_.may_be_across(values_[i], threshold)) settler.add(i, waiting_.query(i));
     }
     settler.evaluate();
   }
-  for (std::size_t i = 0; i < waiting_.count; ++i) sides_[indices_[i]] = holds(side_.rule(), values_[i]) ? 1 : 0;
+  for (std::size_t i = 0; i < waiting_.count; ++i) sides_[indices_[i]] = holds(mesh_rule_.rule(), values_[i]) ? 1 : 0;
   waiting_.clear();
 }
 

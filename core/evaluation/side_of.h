@@ -49,12 +49,12 @@ class MeshRule {
 // DefaultFloatingPoint; not thread-safe.
 class SideSetter {
  public:
-  SideSetter(const MeshRule& side, std::span<std::uint8_t> sides) : side_(side), sides_(sides) {}
+  SideSetter(const MeshRule& mesh_rule, std::span<std::uint8_t> sides) : mesh_rule_(mesh_rule), sides_(sides) {}
 
   // `w` as the mesh's set_values() sets it at the query.
   void set(std::size_t index, const Vec3& scaled_query, double w) {
-    if (side_.is_doubtful(w)) return wait(index, scaled_query, w);
-    sides_[index] = holds(side_.rule(), w) ? 1 : 0;
+    if (mesh_rule_.is_doubtful(w)) return wait(index, scaled_query, w);
+    sides_[index] = holds(mesh_rule_.rule(), w) ? 1 : 0;
   }
 
   // Of those that wait.
@@ -63,7 +63,7 @@ class SideSetter {
  private:
   void wait(std::size_t index, const Vec3& scaled_query, double w);
 
-  const MeshRule& side_;
+  const MeshRule& mesh_rule_;
   std::span<std::uint8_t> sides_;
   SampleTile waiting_;
   std::array<double, kTile> values_;

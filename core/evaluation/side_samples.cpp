@@ -32,7 +32,7 @@ bool SideSamples::decide(const SampleBox& box, Crossings which, double rest, dou
   return for_each_run(box, which, [&](std::size_t begin, std::size_t end, double n) {
     const double w = n + rest;
     if (!is_certain(w, needed)) return false;
-    std::fill(place(begin), place(end), holds(side_.rule(), w) ? 1 : 0);
+    std::fill(place(begin), place(end), holds(mesh_rule_.rule(), w) ? 1 : 0);
     return true;
   });
 }
@@ -48,7 +48,7 @@ bool SideSamples::decide_together(std::size_t index, double crossings, std::span
   const double middle = crossings + (least + most) / 2;
   const double off = needed + (most - least) / 2 + kSumsRound * (1 + std::abs(least) + std::abs(most));
   if (!are_known || !is_certain(middle, off)) return false;
-  std::fill(place(index), place(index + rest.size()), holds(side_.rule(), middle) ? 1 : 0);
+  std::fill(place(index), place(index + rest.size()), holds(mesh_rule_.rule(), middle) ? 1 : 0);
   return true;
 }
 
@@ -66,7 +66,7 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
       for (std::size_t i = some; i < last; ++i) {
         const double w = n + rest[i - x];
         if (is_certain(w, needed)) {
-          sides_[row + i] = holds(side_.rule(), w) ? 1 : 0;
+          sides_[row + i] = holds(mesh_rule_.rule(), w) ? 1 : 0;
         } else if (i > begin - row && !undecided.empty() && undecided.back().end == Index{i, j + 1, k + 1}) {
           ++undecided.back().end[0];  // of the same run
         } else {
@@ -80,7 +80,7 @@ void SideSamples::decide_row(const Index& first, Crossings which, std::span<cons
 
 // Samples that share a ray are cheaper together.
 void SideSamples::evaluate_rows(const SampleBox& box) const {
-  SideSetter setter(side_, sides_);
+  SideSetter setter(mesh_rule_, sides_);
   RowTiles tiles(mesh_, [&setter](std::size_t index, const Vec3& q, double w) { setter.set(index, q, w); });
   for (std::size_t k = box.begin[2]; k < box.end[2]; ++k) {
     for (std::size_t j = box.begin[1]; j < box.end[1]; ++j) {
@@ -113,7 +113,7 @@ void SideSamples::evaluate_each(std::span<const SampleBox> boxes) const {
     }
   }
   std::ranges::sort(places, {}, &Place::code);
-  SideSetter setter(side_, sides_);
+  SideSetter setter(mesh_rule_, sides_);
   LatticeTile tile(mesh_, [&setter](std::size_t index, const Vec3& q, double w) { setter.set(index, q, w); });
   for (const Place& place : places) {
     const auto& [i, j, k] = place.sample;

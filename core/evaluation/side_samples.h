@@ -39,7 +39,7 @@ class SideSamples {
               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides)
       : mesh_(mesh),
         rows_(rows),
-        side_(mesh, rule),
+        mesh_rule_(mesh, rule),
         crossings_(crossings),
         cap_crossings_(cap_crossings),
         sides_(sides) {}
@@ -83,7 +83,7 @@ class SideSamples {
 
   // Whether numbers of turns that are off by at most `needed` are on w's side.
   [[nodiscard]] bool is_certain(double w, double needed) const {
-    return distance_to_threshold(side_.rule(), w) - kSumsRound * std::abs(w) > needed;
+    return distance_to_threshold(mesh_rule_.rule(), w) - kSumsRound * std::abs(w) > needed;
   }
 
   // As decide(), for samples of a row from that index on, which have the same crossings; rest[n] is that of sample n.
@@ -96,7 +96,7 @@ class SideSamples {
 
   const ScaledMesh& mesh_;
   const LatticeRows& rows_;
-  const MeshRule side_;
+  const MeshRule mesh_rule_;
   const LatticeSums& crossings_;
   const LatticeSums& cap_crossings_;
   std::span<std::uint8_t> sides_;

@@ -38,10 +38,10 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
                       std::atomic<std::uint64_t>* done) {
   std::vector<double> values(sides.size());
   const Tally tally = evaluate_block(meshes, lattice, block, values, done, nullptr);
-  const MeshRule side(mesh, rule);
+  const MeshRule mesh_rule(mesh, rule);
   const std::size_t samples = rows.xs.size();
   parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    SideSetter setter(side, sides);
+    SideSetter setter(mesh_rule, sides);
     for (std::size_t n = begin * samples; n < end * samples; ++n) {
       setter.set(n, rows.row(n / samples).query(n % samples), values[n]);
     }
